@@ -1,0 +1,40 @@
+"""Friction noise in the time domain: elastic bodies in exact contact that squeal, squeak or judder."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+from .version import __version__
+
+_HOME = {
+    "bodies": (
+        "BodyPoint",
+        "Circle",
+        "FiniteElementBeam",
+        "Material",
+        "ModalBeam",
+        "Modes",
+        "Rectangle",
+        "Section",
+    ),
+    "contact": ("Coulomb", "PointContact"),
+    "drives": ("Force", "Gravity", "ImposedVelocity", "InitialVelocity"),
+    "histories": ("Constant", "Harmonic", "Ramp", "Sampled"),
+    "system": ("System",),
+    "records": ("Acceleration", "Displacement", "Reaction", "Velocity"),
+    "integration": ("CentralDifference", "Diverged", "ExactModal", "Interrupted", "Progress", "simulate"),
+}
+_MODULE = {name: module for module, names in _HOME.items() for name in names}
+__all__ = ["__version__", *_MODULE]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name from its home on first use, so that `import stridula` stays quick."""
+    if name not in _MODULE:
+        raise AttributeError(f"module 'stridula' has no attribute {name!r}")
+    return getattr(import_module(f".{_MODULE[name]}", __name__), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,226 @@
+"""A straight finite-element beam that bends and stretches in the plane."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import scipy.linalg
+
+from ..checks import choice, count, finite, instance, non_negative, positive, within
+from .finite_elements import (
+    FIXED_BY_SUPPORT,
+    X,
+    assemble,
+    displacement_row,
+    element_mass,
+    element_stiffness,
+)
+from .modes import Array, BodyPoint, Modes
+from .sections import Circle, Material, Rectangle, Section
+
+
+@dataclass(frozen=True)
+class FiniteElementBeam:
+    """A straight beam of Hermite cubic and bar elements, inclined to the normal of the track.
+
+    Its axis runs from its tip E to its root A along ``e1 = (sin a, cos a)``; its transverse direction is
+    ``t1 = (cos a, -sin a)``, world x along the track and y along its normal towards the slider. Euler-Bernoulli
+    bending, no shear, no rotatory inertia.
+
+    Parameters
+    ----------
+    material : Material
+        What it is made of.
+    section : Rectangle, Circle or Section
+        Its cross-section.
+    length : float
+        Length [m].
+    angle : float, optional
+        Angle a of its axis from the track's normal [rad], strictly between -pi/2 and pi/2; above zero the root is
+        ahead of the tip in x.
+    elements : int, optional
+        Number of equal elements.
+    damping : float, optional
+        Modal damping ratio of every mode [1], from 0 to 1 (1 excluded).
+    root_support, tip_support : {"free", "guided", "pinned", "clamped"}, optional
+        Support of the root and of the tip. Guided: the section does not rotate, both translations are free.
+    mass : {"consistent", "lumped"}, optional
+        Mass matrix of the elements.
+    cutoff : float, optional
+        Keep the modes up to this frequency [Hz], rigid ones always; all modes if left out, which is then exactly the
+        finite-element model.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or if no mode is left.
+    """
+
+    material: Material
+    section: Rectangle | Circle | Section
+    length: float
+    angle: float = 0.0
+    elements: int = 20
+    damping: float = 0.0
+    root_support: str = "guided"
+    tip_support: str = "free"
+    mass: str = "consistent"
+    cutoff: float | None = None
+
+    def __post_init__(self) -> None:
+        instance("material", self.material, Material)
+        instance("section", self.section, (Rectangle, Circle, Section))
+        positive("length", self.length)
+        within("angle", self.angle, -np.pi / 2, np.pi / 2, ends=False)
+        count("elements", self.elements)
+        if non_negative("damping", self.damping) >= 1.0:
+            raise ValueError(f"damping must be below 1 (critical), got {self.damping!r}")
+        choice("root_support", self.root_support, tuple(FIXED_BY_SUPPORT))
+        choice("tip_support", self.tip_support, tuple(FIXED_BY_SUPPORT))
+        choice("mass", self.mass, ("consistent", "lumped"))
+        if self.cutoff is not None:
+            positive("cutoff", self.cutoff)
+
+    @property
+    def tip(self) -> BodyPoint:
+        """The tip E, the end that touches the track."""
+        return BodyPoint(self, 0.0)
+
+    @property
+    def root(self) -> BodyPoint:
+        """The root A, the driven end."""
+        return BodyPoint(self, self.length)
+
+    def at(self, position: float) -> BodyPoint:
+        """Return the point at `position` [m] from the tip along the axis."""
+        return BodyPoint(self, within("position", position, 0.0, self.length))
+
+    @property
+    def axes(self) -> Array:
+        """World components of the axial direction e1 (tip to root) and the transverse t1, shape (2, 2)."""
+        sine, cosine = np.sin(self.angle), np.cos(self.angle)
+        return np.array([[sine, cosine], [cosine, -sine]])
+
+    @property
+    def total_mass(self) -> float:
+        """Mass [kg]."""
+        return self.material.density * self.section.area * self.length
+
+    def modes(self, held_x: bool = False) -> Modes:
+        """Return the modes; with `held_x` the root's x is prescribed, as under an imposed velocity."""
+        return _reduced(self, held_x).modes
+
+    def trace(self, position: float, held_x: bool = False) -> Array:
+        """Return the rows that give the world displacement (x, y) at `position` from the modes, shape (2, modes)."""
+        finite("position", position)
+        row = displacement_row(position, self.length, self.angle, self.elements)
+        return row @ _reduced(self, held_x).shapes
+
+    def root_reaction(self, held_x: bool = False) -> RootReaction:
+        """Return what gives the forces that the root's support exerts on the beam."""
+        reduced = _reduced(self, held_x)
+        root = np.arange(3 * self.elements, 3 * self.elements + 3)
+        held = np.isin(root, reduced.fixed).astype(float)
+        along = np.zeros((3 * (self.elements + 1), 2))
+        along[0::3, 0] = along[1::3, 1] = 1.0
+        return RootReaction(
+            held,
+            held[:, None] * (reduced.stiffness[root] @ reduced.shapes),
+            held[:, None] * (reduced.mass[root] @ reduced.shapes),
+            held[:, None] * (reduced.mass[root] @ along),
+        )
+
+    def root_share(self, position: float) -> Array:
+        """Return the share of a world force at `position` that its element hands to the root's node, shape (3, 2)."""
+        return displacement_row(position, self.length, self.angle, self.elements)[:, -3:].T
+
+
+@dataclass(frozen=True)
+class RootReaction:
+    """Rows that give the support's force along world x and y [N] and its moment against the slope [N m].
+
+    Zero where the root is free. Damping is modal and has no share in them.
+
+    Attributes
+    ----------
+    held : ndarray, shape (3,)
+        1 where the support holds the root, 0 where it is free.
+    stiffness, mass : ndarray, shape (3, modes)
+        Rows on the modal coordinates and on their accelerations.
+    inertia : ndarray, shape (3, 2)
+        Shares of a uniform acceleration along x and y.
+    """
+
+    held: Array
+    stiffness: Array
+    mass: Array
+    inertia: Array
+
+
+@dataclass(frozen=True)
+class _Reduced:
+    modes: Modes
+    shapes: Array
+    stiffness: Array
+    mass: Array
+    fixed: Array
+
+
+@lru_cache(maxsize=16)
+def _reduced(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
+    section, material = beam.section, beam.material
+    le = beam.length / beam.elements
+    stiffness = assemble(
+        element_stiffness(material.young * section.area, material.young * section.second_moment, le),
+        beam.angle,
+        beam.elements,
+    )
+    mass = assemble(element_mass(material.density * section.area, le, beam.mass), beam.angle, beam.elements)
+    fixed = _fixed(beam, held_x)
+    free = np.setdiff1d(np.arange(mass.shape[0]), fixed)
+    rigid = _rigid_shapes(beam, mass, fixed)
+
+    squared, shapes = np.zeros(0), np.zeros((mass.shape[0], 0))
+    if free.size:
+        squared, free_shapes = scipy.linalg.eigh(stiffness[np.ix_(free, free)], mass[np.ix_(free, free)])
+        shapes = np.zeros((mass.shape[0], free.size))
+        shapes[free] = free_shapes
+    elastic = shapes[:, rigid.shape[1] :]
+    elastic = elastic - rigid @ (rigid.T @ mass @ elastic)
+    shapes = np.hstack([rigid, elastic])
+    angular = np.concatenate([np.zeros(rigid.shape[1]), np.sqrt(squared[rigid.shape[1] :])])
+
+    if beam.cutoff is not None:
+        kept = angular <= 2.0 * np.pi * beam.cutoff
+        angular, shapes = angular[kept], shapes[:, kept]
+    if angular.size == 0:
+        raise ValueError(f"cutoff must leave at least one mode, got {beam.cutoff!r} Hz")
+    directions = np.zeros((2, mass.shape[0]))
+    directions[0, 0::3] = directions[1, 1::3] = 1.0
+    modes = Modes(angular, np.full(angular.size, float(beam.damping)), directions @ mass @ shapes)
+    return _Reduced(modes, shapes, stiffness, mass, fixed)
+
+
+def _fixed(beam: FiniteElementBeam, held_x: bool) -> Array:
+    root = 3 * beam.elements
+    fixed = set(FIXED_BY_SUPPORT[beam.tip_support]) | {root + k for k in FIXED_BY_SUPPORT[beam.root_support]}
+    if held_x:
+        fixed.add(root + X)
+    return np.array(sorted(fixed), dtype=int)
+
+
+def _rigid_shapes(beam: FiniteElementBeam, mass: Array, fixed: Array) -> Array:
+    """Return the mass-normalised rigid motions that the supports allow, shape (degrees of freedom, rigid modes)."""
+    nodes = np.linspace(0.0, beam.length, beam.elements + 1) - beam.length / 2.0
+    motions = np.zeros((mass.shape[0], 3))
+    motions[0::3, 0] = motions[1::3, 1] = 1.0
+    motions[0::3, 2], motions[1::3, 2] = nodes * beam.axes[1, 0], nodes * beam.axes[1, 1]
+    motions[2::3, 2] = 1.0
+    if fixed.size:
+        motions = motions @ scipy.linalg.null_space(motions[fixed] / np.array([1.0, 1.0, beam.length]))
+    if motions.shape[1]:
+        motions = motions @ np.linalg.inv(np.linalg.cholesky(motions.T @ mass @ motions)).T
+    motions[fixed] = 0.0
+    return motions

@@ -1,0 +1,104 @@
+"""Materials and cross-sections of beams."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..checks import positive
+
+
+@dataclass(frozen=True)
+class Material:
+    """A homogeneous, isotropic, linear elastic material.
+
+    Parameters
+    ----------
+    young : float
+        Young's modulus [Pa].
+    density : float
+        Mass density [kg/m³].
+    """
+
+    young: float
+    density: float
+
+    def __post_init__(self) -> None:
+        positive("young", self.young)
+        positive("density", self.density)
+
+
+@dataclass(frozen=True)
+class Section:
+    """A cross-section given by its two properties.
+
+    Parameters
+    ----------
+    area : float
+        Area [m²].
+    second_moment : float
+        Second moment of area about the axis normal to the plane of motion [m⁴].
+    """
+
+    area: float
+    second_moment: float
+
+    def __post_init__(self) -> None:
+        positive("area", self.area)
+        positive("second_moment", self.second_moment)
+
+
+@dataclass(frozen=True)
+class Rectangle:
+    """A rectangular cross-section.
+
+    Parameters
+    ----------
+    width : float
+        Side normal to the plane of motion [m].
+    height : float
+        Side in the plane of motion, the one that bends [m].
+    """
+
+    width: float
+    height: float
+
+    def __post_init__(self) -> None:
+        positive("width", self.width)
+        positive("height", self.height)
+
+    @property
+    def area(self) -> float:
+        """Area [m²]."""
+        return self.width * self.height
+
+    @property
+    def second_moment(self) -> float:
+        """Second moment of area [m⁴], ``width height³ / 12``."""
+        return self.width * self.height**3 / 12.0
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A solid circular cross-section.
+
+    Parameters
+    ----------
+    diameter : float
+        Diameter [m].
+    """
+
+    diameter: float
+
+    def __post_init__(self) -> None:
+        positive("diameter", self.diameter)
+
+    @property
+    def area(self) -> float:
+        """Area [m²]."""
+        return math.pi * self.diameter**2 / 4.0
+
+    @property
+    def second_moment(self) -> float:
+        """Second moment of area [m⁴], ``pi diameter⁴ / 64``."""
+        return math.pi * self.diameter**4 / 64.0

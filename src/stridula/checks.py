@@ -1,0 +1,73 @@
+"""Checks of arguments: each says in one line what was wrong, its value and what is allowed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from difflib import get_close_matches
+from numbers import Integral, Real
+from typing import Any
+
+
+def finite(name: str, value: Any) -> float:
+    """Return `value` as a float if it is a finite real number."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise ValueError(f"{name} must be a number, got {value!r}")
+    if not math.isfinite(value):
+        raise ValueError(f"{name} must be finite, got {value!r}")
+    return float(value)
+
+
+def positive(name: str, value: Any) -> float:
+    """Return `value` as a float if it is finite and above zero."""
+    number = finite(name, value)
+    if number <= 0.0:
+        raise ValueError(f"{name} must be above 0, got {value!r}")
+    return number
+
+
+def non_negative(name: str, value: Any) -> float:
+    """Return `value` as a float if it is finite and not below zero."""
+    number = finite(name, value)
+    if number < 0.0:
+        raise ValueError(f"{name} must be 0 or above, got {value!r}")
+    return number
+
+
+def within(name: str, value: Any, low: float, high: float, *, ends: bool = True) -> float:
+    """Return `value` as a float if it lies between `low` and `high` (ends included or not)."""
+    number = finite(name, value)
+    inside = low <= number <= high if ends else low < number < high
+    if not inside:
+        words = f"from {low:g} to {high:g}" if ends else f"strictly between {low:g} and {high:g}"
+        raise ValueError(f"{name} must be {words}, got {value!r}")
+    return number
+
+
+def count(name: str, value: Any, low: int = 1) -> int:
+    """Return `value` as an int if it is a whole number of at least `low`."""
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise ValueError(f"{name} must be a whole number, got {value!r}")
+    if value < low:
+        raise ValueError(f"{name} must be at least {low}, got {value!r}")
+    return int(value)
+
+
+def choice(name: str, value: Any, allowed: Sequence[str]) -> str:
+    """Return `value` if it is one of the words in `allowed`."""
+    if value not in allowed:
+        raise ValueError(f"{name} must be one of {', '.join(allowed)}, got {value!r}{suggestion(value, allowed)}")
+    return str(value)
+
+
+def instance(name: str, value: Any, kinds: type | tuple[type, ...]) -> None:
+    """Raise if `value` is not an instance of one of `kinds`."""
+    if not isinstance(value, kinds):
+        words = " or ".join(kind.__name__ for kind in (kinds if isinstance(kinds, tuple) else (kinds,)))
+        raise ValueError(f"{name} must be a {words}, got {value!r}")
+
+
+def suggestion(word: Any, known: Sequence[str]) -> str:
+    """Return ``"; did you mean 'x'?"`` for the known word nearest to `word`, or nothing."""
+    nearest = get_close_matches(str(word), known, n=1, cutoff=0.6)
+    return f"; did you mean {nearest[0]!r}?" if nearest else ""

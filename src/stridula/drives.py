@@ -1,0 +1,118 @@
+"""What pushes: forces, an imposed velocity, gravity and an initial velocity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from .bodies import BodyPoint, FiniteElementBeam, ModalBeam
+from .checks import finite, instance, positive
+from .histories import Constant, Harmonic, History, Ramp, Sampled
+
+HISTORIES = (Constant, Ramp, Harmonic, Sampled)
+
+
+@dataclass(frozen=True)
+class Force:
+    """A force at a point of a body, the sum of its components, times its history.
+
+    Parameters
+    ----------
+    point : BodyPoint
+        Where it acts.
+    axial : float, optional
+        Component along the body's axis [N]: for a slider from its tip to its root, so that a push towards the track is
+        negative.
+    transverse : float, optional
+        Component along the body's transverse direction [N]: ``(cos a, -sin a)`` for a slider.
+    x, y : float, optional
+        Components along the world's axes [N].
+    history : Constant, Ramp, Harmonic or Sampled, optional
+        Factor over time.
+    """
+
+    point: BodyPoint
+    axial: float = 0.0
+    transverse: float = 0.0
+    x: float = 0.0
+    y: float = 0.0
+    history: History = field(default_factory=Constant)
+
+    def __post_init__(self) -> None:
+        instance("point", self.point, BodyPoint)
+        for name in ("axial", "transverse", "x", "y"):
+            finite(name, getattr(self, name))
+        instance("history", self.history, HISTORIES)
+
+
+@dataclass(frozen=True)
+class ImposedVelocity:
+    """The root of the slider moves along x at a prescribed velocity, under a load along the track's normal.
+
+    The whole body moves at this velocity from the start; the root stays free along y.
+
+    Parameters
+    ----------
+    point : BodyPoint
+        The root of the slider.
+    velocity : float
+        Velocity along x [m/s].
+    normal_load : float, optional
+        Force on the root towards the track, along -y [N], constant.
+    history : Constant, Ramp, Harmonic or Sampled, optional
+        Factor on the velocity over time.
+    """
+
+    point: BodyPoint
+    velocity: float
+    normal_load: float = 0.0
+    history: History = field(default_factory=Constant)
+
+    def __post_init__(self) -> None:
+        instance("point", self.point, BodyPoint)
+        instance("point.body", self.point.body, FiniteElementBeam)
+        if self.point != self.point.body.root:  # type: ignore[attr-defined]
+            raise ValueError(f"point must be the root of the slider, got position {self.point.position!r} m")
+        finite("velocity", self.velocity)
+        finite("normal_load", self.normal_load)
+        instance("history", self.history, HISTORIES)
+
+
+@dataclass(frozen=True)
+class Gravity:
+    """Weight of every body, along -y (from the slider towards the track).
+
+    Parameters
+    ----------
+    acceleration : float, optional
+        Acceleration of free fall [m/s²].
+    """
+
+    acceleration: float = 9.80665
+
+    def __post_init__(self) -> None:
+        positive("acceleration", self.acceleration)
+
+
+@dataclass(frozen=True)
+class InitialVelocity:
+    """A uniform velocity of a body at the start.
+
+    Parameters
+    ----------
+    body : FiniteElementBeam or ModalBeam
+        The body.
+    x, y : float, optional
+        Velocity along the world's axes [m/s].
+    """
+
+    body: FiniteElementBeam | ModalBeam
+    x: float = 0.0
+    y: float = 0.0
+
+    def __post_init__(self) -> None:
+        instance("body", self.body, (FiniteElementBeam, ModalBeam))
+        finite("x", self.x)
+        finite("y", self.y)
+
+
+Drive = Force | ImposedVelocity | Gravity | InitialVelocity

@@ -1,0 +1,160 @@
+"""How a drive's amplitude goes in time: a factor on its stated value, with its rate and its integral."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from .bodies.modes import Array
+from .checks import finite, positive
+
+
+class History(Protocol):
+    """A factor over time t [s] from the start of the run; vectorised over t."""
+
+    def factor(self, time: Array) -> Array:
+        """Return the factor [1]."""
+        ...
+
+    def rate(self, time: Array) -> Array:
+        """Return its time derivative [1/s]."""
+        ...
+
+    def integral(self, time: Array) -> Array:
+        """Return its integral from 0 [s]."""
+        ...
+
+
+@dataclass(frozen=True)
+class Constant:
+    """The stated value from the start to the end."""
+
+    def factor(self, time: Array) -> Array:
+        """Return 1."""
+        return np.ones_like(time)
+
+    def rate(self, time: Array) -> Array:
+        """Return 0."""
+        return np.zeros_like(time)
+
+    def integral(self, time: Array) -> Array:
+        """Return the time."""
+        return np.array(time, dtype=float)
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """A straight rise from zero to the stated value, which then stays.
+
+    Parameters
+    ----------
+    duration : float
+        Length of the rise [s].
+    """
+
+    duration: float
+
+    def __post_init__(self) -> None:
+        positive("duration", self.duration)
+
+    def factor(self, time: Array) -> Array:
+        """Return ``min(t / duration, 1)``."""
+        return np.clip(time / self.duration, 0.0, 1.0)
+
+    def rate(self, time: Array) -> Array:
+        """Return ``1 / duration`` during the rise, then 0."""
+        return np.where(time < self.duration, 1.0 / self.duration, 0.0)
+
+    def integral(self, time: Array) -> Array:
+        """Return the area under the factor."""
+        risen = np.clip(time, 0.0, self.duration)
+        return risen**2 / (2.0 * self.duration) + np.maximum(time - self.duration, 0.0)
+
+
+@dataclass(frozen=True)
+class Harmonic:
+    """A sine about a mean: ``mean + amplitude sin(2 pi frequency t + phase)`` times the stated value.
+
+    Parameters
+    ----------
+    frequency : float
+        Frequency [Hz].
+    amplitude, mean : float, optional
+        Amplitude and mean of the factor [1].
+    phase : float, optional
+        Phase at t = 0 [rad].
+    """
+
+    frequency: float
+    amplitude: float = 1.0
+    mean: float = 0.0
+    phase: float = 0.0
+
+    def __post_init__(self) -> None:
+        positive("frequency", self.frequency)
+        for name in ("amplitude", "mean", "phase"):
+            finite(name, getattr(self, name))
+
+    def factor(self, time: Array) -> Array:
+        """Return the mean plus the sine."""
+        return self.mean + self.amplitude * np.sin(self._angle(time))
+
+    def rate(self, time: Array) -> Array:
+        """Return the derivative of the sine."""
+        return self.amplitude * 2.0 * np.pi * self.frequency * np.cos(self._angle(time))
+
+    def integral(self, time: Array) -> Array:
+        """Return the integral of mean and sine."""
+        swing = (np.cos(self.phase) - np.cos(self._angle(time))) / (2.0 * np.pi * self.frequency)
+        return self.mean * time + self.amplitude * swing
+
+    def _angle(self, time: Array) -> Array:
+        return 2.0 * np.pi * self.frequency * time + self.phase
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """Any history given at points in time, straight between them, level before the first and after the last.
+
+    Parameters
+    ----------
+    time : tuple of float
+        Times [s], rising, from 0 on.
+    value : tuple of float
+        Factors at those times [1].
+    """
+
+    time: tuple[float, ...]
+    value: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "time", tuple(float(t) for t in self.time))
+        object.__setattr__(self, "value", tuple(float(v) for v in self.value))
+        if len(self.time) < 2 or len(self.time) != len(self.value):
+            raise ValueError(
+                f"time and value must have the same length, at least 2, got {len(self.time)} and {len(self.value)}"
+            )
+        for name in ("time", "value"):
+            if not np.all(np.isfinite(getattr(self, name))):
+                raise ValueError(f"{name} must be finite throughout, got {getattr(self, name)!r}")
+        if self.time[0] < 0.0 or np.any(np.diff(self.time) <= 0.0):
+            raise ValueError(f"time must rise from 0 or above, got {self.time!r}")
+
+    def factor(self, time: Array) -> Array:
+        """Return the interpolated value."""
+        return np.interp(time, self.time, self.value)
+
+    def rate(self, time: Array) -> Array:
+        """Return the slope of the piece that begins at or before t."""
+        slopes = np.concatenate([[0.0], np.diff(self.value) / np.diff(self.time), [0.0]])
+        return slopes[np.searchsorted(self.time, time, side="right")]
+
+    def integral(self, time: Array) -> Array:
+        """Return the area under the interpolated value from 0."""
+        knots = np.concatenate([[0.0], self.time]) if self.time[0] > 0.0 else np.array(self.time)
+        values = self.factor(knots)
+        areas = np.concatenate([[0.0], np.cumsum(np.diff(knots) * (values[1:] + values[:-1]) / 2.0)])
+        piece = np.clip(np.searchsorted(knots, time, side="right") - 1, 0, knots.size - 1)
+        return areas[piece] + (time - knots[piece]) * (values[piece] + self.factor(time)) / 2.0

@@ -1,0 +1,68 @@
+"""The one table of recorded variables: name, dimensions, unit, meaning."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A recorded variable.
+
+    Attributes
+    ----------
+    name : str
+        Its name in a Dataset, on labels and in files.
+    units : str
+        Unit.
+    long_name : str
+        Meaning, in a phrase.
+    cell_methods : str
+        ``mean`` or ``sum`` over the sample interval, or ``point`` at its end.
+    """
+
+    name: str
+    units: str
+    long_name: str
+    cell_methods: str = "point"
+
+
+STATUS_WORDS = ("separated", "sticking", "sliding")
+
+CONTACT = (
+    Variable("normal_force", "N", "normal contact force, compressive", "mean"),
+    Variable("tangential_force", "N", "tangential contact force on the track along +x", "mean"),
+    Variable("contact_position", "m", "abscissa of the tip along the track"),
+    Variable("contact_height", "m", "height of the tip above the undeformed track"),
+    Variable("gap", "m", "distance from tip to track"),
+    Variable("slip_velocity", "m/s", "velocity of the tip along the track's material", "mean"),
+    Variable("jammed_steps", "1", "steps in which sliding would have jammed", "sum"),
+)
+STATUS = Variable("status", "1", "contact status that holds for the largest part of the interval", "mode")
+STATUS_SHARE = Variable("status_share", "1", "share of the interval in each contact status", "mean")
+
+ENERGY = (
+    Variable("kinetic_and_elastic", "J", "kinetic and elastic energy of the vibration"),
+    Variable("drive_work", "J", "work of the drives since the start"),
+    Variable("contact_work", "J", "work of the contact forces on both bodies since the start"),
+    Variable("friction_loss", "J", "energy lost to friction since the start"),
+    Variable(
+        "convection_work",
+        "J",
+        "work by the advance of the contact point along the bent track since the start",
+    ),
+    Variable("damping_loss", "J", "energy lost to damping since the start"),
+    Variable("impact_loss", "J", "energy lost in impacts since the start"),
+    Variable(
+        "ledger_residual",
+        "J",
+        "kinetic_and_elastic + damping_loss - drive_work - contact_work - initial energy",
+    ),
+)
+
+PROBES = {
+    "displacement": Variable("displacement", "m", "displacement at the probes", "low-pass"),
+    "velocity": Variable("velocity", "m/s", "velocity at the probes", "low-pass"),
+    "acceleration": Variable("acceleration", "m/s2", "acceleration at the probes", "low-pass"),
+    "reaction": Variable("reaction", "N", "force of the root's support (its moment in N m)", "low-pass"),
+}
