@@ -23,6 +23,8 @@ _HOME = {
     "histories": ("Constant", "Harmonic", "Ramp", "Sampled"),
     "system": ("System",),
     "records": ("Acceleration", "Displacement", "Reaction", "Velocity"),
+    "records.files": ("load", "save"),
+    "scenarios": ("Scenario", "ScenarioError", "list_scenarios", "load_scenario", "scenario_schema", "scenario_text"),
     "integration": ("CentralDifference", "Diverged", "ExactModal", "Interrupted", "Progress", "simulate"),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}

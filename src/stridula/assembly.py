@@ -150,12 +150,9 @@ def _loads(system: System, rows: _Rows) -> tuple[list[_Load], list[Signal]]:
             for body in (system.slider, system.track):
                 own = -drive.acceleration * reaction.inertia[:, 1] * (body == system.slider)
                 add(Constant(), -drive.acceleration * rows.translation(body)[1], own)
-    loads = [load for load in by_history.values() if load.modal.any()]
-    signals: list[Signal] = [
-        history.factor  # type: ignore[attr-defined]
-        for history, load in by_history.items()
-        if load.modal.any()
-    ]
+    felt = {history: load for history, load in by_history.items() if load.modal.any() or load.root.any()}
+    loads = list(felt.values())
+    signals: list[Signal] = [history.factor for history in felt]  # type: ignore[attr-defined]
 
     imposed = system.imposed_velocity
     history, velocity = (imposed.history, imposed.velocity) if imposed else (Constant(), 0.0)
@@ -196,6 +193,11 @@ def _initial_velocity(system: System, rows: _Rows) -> Array:
 
 
 def _probe(probe: Probe, rows: _Rows, loads: list[_Load]) -> ProbeRows:
+    body = probe.body if isinstance(probe, Reaction) else probe.point.body
+    allowed = (rows.system.slider,) if isinstance(probe, Reaction) else (rows.system.slider, rows.system.track)
+    if body not in allowed:
+        words = "slider" if isinstance(probe, Reaction) else "slider or the track"
+        raise ValueError(f"probe must be on the {words} of this system, got {probe!r}")
     direct = np.zeros(len(loads) + 3)
     if isinstance(probe, Reaction):
         return _reaction_rows(probe, rows, loads, direct)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -130,15 +131,16 @@ class Sampled:
     value: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "time", tuple(float(t) for t in self.time))
-        object.__setattr__(self, "value", tuple(float(v) for v in self.value))
+        for name in ("time", "value"):
+            numbers = getattr(self, name)
+            if isinstance(numbers, str) or not isinstance(numbers, Iterable):
+                raise ValueError(f"{name} must be a sequence of numbers, got {numbers!r}")
+            checked = tuple(finite(f"{name}[{k}]", number) for k, number in enumerate(numbers))
+            object.__setattr__(self, name, checked)
         if len(self.time) < 2 or len(self.time) != len(self.value):
             raise ValueError(
                 f"time and value must have the same length, at least 2, got {len(self.time)} and {len(self.value)}"
             )
-        for name in ("time", "value"):
-            if not np.all(np.isfinite(getattr(self, name))):
-                raise ValueError(f"{name} must be finite throughout, got {getattr(self, name)!r}")
         if self.time[0] < 0.0 or np.any(np.diff(self.time) <= 0.0):
             raise ValueError(f"time must rise from 0 or above, got {self.time!r}")
 

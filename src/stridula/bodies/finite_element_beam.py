@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 import scipy.linalg
 
-from ..checks import choice, count, finite, instance, non_negative, positive, within
+from ..checks import choice, count, instance, non_negative, positive, within
 from .finite_elements import (
     FIXED_BY_SUPPORT,
     X,
@@ -95,7 +95,7 @@ class FiniteElementBeam:
 
     def at(self, position: float) -> BodyPoint:
         """Return the point at `position` [m] from the tip along the axis."""
-        return BodyPoint(self, within("position", position, 0.0, self.length))
+        return BodyPoint(self, position)
 
     @property
     def axes(self) -> Array:
@@ -114,7 +114,7 @@ class FiniteElementBeam:
 
     def trace(self, position: float, held_x: bool = False) -> Array:
         """Return the rows that give the world displacement (x, y) at `position` from the modes, shape (2, modes)."""
-        finite("position", position)
+        within("position", position, 0.0, self.length)
         row = displacement_row(position, self.length, self.angle, self.elements)
         return row @ _reduced(self, held_x).shapes
 
@@ -134,6 +134,7 @@ class FiniteElementBeam:
 
     def root_share(self, position: float) -> Array:
         """Return the share of a world force at `position` that its element hands to the root's node, shape (3, 2)."""
+        within("position", position, 0.0, self.length)
         return displacement_row(position, self.length, self.angle, self.elements)[:, -3:].T
 
 
@@ -216,10 +217,11 @@ def _rigid_shapes(beam: FiniteElementBeam, mass: Array, fixed: Array) -> Array:
     nodes = np.linspace(0.0, beam.length, beam.elements + 1) - beam.length / 2.0
     motions = np.zeros((mass.shape[0], 3))
     motions[0::3, 0] = motions[1::3, 1] = 1.0
-    motions[0::3, 2], motions[1::3, 2] = nodes * beam.axes[1, 0], nodes * beam.axes[1, 1]
-    motions[2::3, 2] = 1.0
+    # The rotation has slope 1 / length, so that all three columns are of the order of 1 whatever the size of the beam.
+    motions[0::3, 2], motions[1::3, 2] = np.outer(beam.axes[1], nodes / beam.length)
+    motions[2::3, 2] = 1.0 / beam.length
     if fixed.size:
-        motions = motions @ scipy.linalg.null_space(motions[fixed] / np.array([1.0, 1.0, beam.length]))
+        motions = motions @ scipy.linalg.null_space(motions[fixed])
     if motions.shape[1]:
         motions = motions @ np.linalg.inv(np.linalg.cholesky(motions.T @ mass @ motions)).T
     motions[fixed] = 0.0

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..checks import count, finite, instance, non_negative, positive, within
+from ..checks import count, instance, non_negative, positive, within
 from .modes import Array, BodyPoint, Modes
 from .sections import Circle, Material, Rectangle, Section
 
@@ -72,7 +72,7 @@ class ModalBeam:
 
     def at(self, position: float) -> BodyPoint:
         """Return the point at abscissa `position` [m]."""
-        return BodyPoint(self, within("position", position, 0.0, self.length))
+        return BodyPoint(self, position)
 
     @property
     def axes(self) -> Array:
@@ -105,7 +105,7 @@ class ModalBeam:
 
     def trace(self, position: float, held_x: bool = False) -> Array:
         """Return the rows that give the displacement (u, w) at abscissa `position` from the modes, shape (2, modes)."""
-        finite("position", position)
+        within("position", position, 0.0, self.length)
         bending, axial = self.harmonics
         rows = np.zeros((2, bending + axial))
         rows[1, :bending] = self.amplitude * np.sin(np.arange(1, bending + 1) * np.pi * position / self.length)

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import within
+
 Array = NDArray[Any]
 
 
@@ -50,7 +52,18 @@ class BodyPoint:
         The body.
     position : float
         Distance along the body's axis from its first end [m]: from the tip of a slider, from the left end of a track.
+
+    Raises
+    ------
+    ValueError
+        If the position is not on the body.
     """
 
     body: object
     position: float
+
+    def __post_init__(self) -> None:
+        length = getattr(self.body, "length", None)
+        if length is None:
+            raise ValueError(f"body must be a FiniteElementBeam or ModalBeam, got {self.body!r}")
+        within("position", self.position, 0.0, length)

@@ -98,7 +98,7 @@ class CentralDifference:
 
 @dataclass(frozen=True)
 class ExactModal:
-    """Free motion of every damped mode exact at any step (Issanchou, Acary, Perignon, Touze & Le Carrou, JASA 143, 2018).
+    """Free motion of every damped mode exact at any step (Issanchou, Acary, Perignon, Touze & Le Carrou 2018).
 
     The step stays below half the period of the highest mode; it defaults to a fifth of that.
     """

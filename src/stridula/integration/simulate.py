@@ -21,6 +21,7 @@ from ..records.provenance import scenario_toml
 from ..system import System
 from ..version import __version__
 from .decimation import Decimator
+from .interrupts import DeferredInterrupt
 from .schemes import CentralDifference, ExactModal, Scheme
 from .watchers import Progress, Watcher
 
@@ -187,7 +188,6 @@ class _Run:
             self.state, self.carried = _at_rest(system, arrays, scheme, timing.step)
             self.decimator = Decimator(timing.ratio)
             self.initial_energy = float(stored_energy(self.block, self.state))
-            self.impulse_before = 0.0
         else:
             self._go_on_from(start)
         self.record = np.empty((timing.samples, at.COLUMNS))
@@ -199,26 +199,22 @@ class _Run:
         """March to the end, or to what stops it, and return the record."""
         began = clock.perf_counter()
         samples_per_chunk = max(1, STEPS_PER_CHUNK // self.timing.ratio)
+        whole = self.timing.samples * self.timing.interval
         ended, filled = at.FINISHED, 0
-        interrupted = False
-        try:
-            while self.done < self.timing.samples and ended == at.FINISHED:
+        with DeferredInterrupt() as interrupt:
+            while self.done < self.timing.samples and ended == at.FINISHED and not interrupt.requested:
                 count = min(samples_per_chunk, self.timing.samples - self.done)
                 raw, completed, ended = self._chunk(self.state, self.carried, self.done, count)
                 self.done += completed
                 filled = self._keep(self.decimator.feed(raw), filled)
                 self._remember(raw)
                 seconds = clock.perf_counter() - began
-                for watch in watchers:
-                    watch(
-                        Progress(
-                            self.done * self.timing.interval,
-                            self.timing.samples * self.timing.interval,
-                            seconds,
-                        )
-                    )
-        except KeyboardInterrupt:
-            interrupted = True
+                try:
+                    for watch in watchers:
+                        watch(Progress(self.done * self.timing.interval, whole, seconds))
+                except KeyboardInterrupt:
+                    interrupt.requested = True
+        interrupted = interrupt.requested and self.done < self.timing.samples
         filled = self._look_ahead(filled, ended)
         words = "interrupted" if interrupted else ENDED[ended]
         record = self._dataset(words, clock.perf_counter() - began)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields
+from numbers import Integral, Real
 from typing import Any
 
 import tomli_w
@@ -21,10 +22,10 @@ def scenario_toml(system: System, probes: Sequence[Probe], simulation: dict[str,
         "slider": _body(system.slider),
         "track": _body(system.track),
         "contact": {
-            "at": contact.at,
-            "gap": contact.gap,
+            "at": _value(contact.at),
+            "gap": _value(contact.gap),
             "point": _point(contact.tip),
-            "friction": {"law": "coulomb", "coefficient": contact.friction.coefficient},
+            "friction": {"law": "coulomb", "coefficient": _value(contact.friction.coefficient)},
         },
         "drives": [_drive(drive, system) for drive in system.drives],
         "simulation": {**simulation, "probes": [_probe(probe, system) for probe in probes]},
@@ -35,7 +36,16 @@ def scenario_toml(system: System, probes: Sequence[Probe], simulation: dict[str,
 def _plain(record: Any, *skipped: str) -> dict[str, Any]:
     """Return the plain fields of a dataclass that hold a value."""
     pairs = ((f.name, getattr(record, f.name)) for f in fields(record) if f.name not in skipped)
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in pairs if value is not None}
+    return {name: _value(value) for name, value in pairs if value is not None}
+
+
+def _value(value: Any) -> Any:
+    """Return a value that TOML can write: NumPy's numbers as Python's."""
+    if isinstance(value, tuple):
+        return [_value(entry) for entry in value]
+    if isinstance(value, Integral):
+        return int(value)
+    return float(value) if isinstance(value, Real) else value
 
 
 def _body(body: Any) -> dict[str, Any]:
@@ -48,7 +58,7 @@ def _body(body: Any) -> dict[str, Any]:
 def _point(point: BodyPoint) -> str | float:
     body: Any = point.body
     named = {"tip": 0.0, "root": body.length} if isinstance(body, FiniteElementBeam) else {"centre": body.length / 2.0}
-    return next((name for name, position in named.items() if position == point.position), point.position)
+    return next((name for name, position in named.items() if position == point.position), _value(point.position))
 
 
 def _body_name(body: object, system: System) -> str:

@@ -1,0 +1,46 @@
+# Everything runs in .venv, made on first use; nothing but Python 3.11 or later, its venv module and make is needed.
+PYTHON ?= python3
+BIN := .venv/bin
+
+.PHONY: help paper test lint docs bench convergence clean
+
+help:
+	@echo "make paper        run every case of the paper into results/paper (sets itself up)"
+	@echo "make test         lint, types, layers and tests (sets itself up)"
+	@echo "make docs         build the documentation into docs/_build/html, warnings are errors"
+	@echo "make bench        speed and memory, as ratios measured side by side"
+	@echo "make convergence  the table of docs/convergence.rst, in about ten minutes"
+	@echo "make clean        remove .venv and everything built"
+
+.venv/installed: pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	@touch $@
+
+.venv/installed-%: .venv/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .[$*]
+	@touch $@
+
+paper: .venv/installed
+	$(BIN)/stridula paper
+
+lint: .venv/installed-dev
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
+
+test: lint
+	$(BIN)/python -m pytest --numprocesses 2
+
+docs: .venv/installed-docs
+	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
+
+bench: .venv/installed
+	$(BIN)/python benchmarks/speed_and_memory.py
+
+convergence: .venv/installed
+	$(BIN)/python examples/papers/laulagnet_2011/convergence.py
+
+clean:
+	rm -rf .venv docs/_build results .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

@@ -1,0 +1,309 @@
+"""Sphinx settings, and what is written before each build: the API page, tables, and the paper from end to end.
+
+Everything written lies in ``_generated`` or is ``api.rst``; neither is kept under version control.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterable, Sequence
+from importlib import import_module
+from pathlib import Path
+from types import UnionType
+from typing import Annotated, Any, Union, get_args, get_origin
+
+from sphinx.application import Sphinx
+from sphinx.util import logging
+
+HERE = Path(__file__).resolve().parent
+SOURCES = HERE.parent / "src"
+GENERATED = HERE / "_generated"
+PAPER = GENERATED / "paper"
+sys.path.insert(0, str(SOURCES))
+
+import stridula  # noqa: E402
+
+project = "stridula"
+author = "The stridula developers"
+copyright = "the stridula developers, BSD-3-Clause"
+release = version = stridula.__version__
+
+extensions = [
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.mathjax",
+    "numpydoc",
+]
+templates_path = ["_templates"]
+exclude_patterns = [
+    "_build",
+    "_generated/*.rst",
+    "paper-search.rst",
+    "convergence-table.rst",
+]
+highlight_language = "python"
+nitpicky = False
+
+autosummary_generate = True
+autosummary_imported_members = False
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"
+numpydoc_show_class_members = False
+numpydoc_class_members_toctree = False
+# Every public docstring is there, begins with one line that ends with a full stop, and names no argument that is not
+# there, each with its type and in order. Not PR01: where names and units say it all, one line is enough.
+numpydoc_validation_checks = {"GL03", "GL08", "PR02", "PR03", "PR04", "PR10", "SS03", "SS06"}
+
+html_theme = "pydata_sphinx_theme"
+html_title = f"stridula {version}"
+html_static_path = ["_static"]
+html_css_files = ["stridula.css"]
+html_show_sourcelink = False
+html_copy_source = False
+html_theme_options = {
+    "navbar_end": ["theme-switcher"],
+    "secondary_sidebar_items": ["page-toc"],
+    "footer_start": ["copyright"],
+    "footer_end": [],
+    "show_toc_level": 2,
+    "show_prev_next": False,
+    "header_links_before_dropdown": 10,
+}
+html_sidebars = {"**": []}
+
+logger = logging.getLogger(__name__)
+
+# The public names that do not live in the package root: module, title, names unless they are its ``__all__``.
+MODULES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
+    ("stridula.analysis", "What a record means", ()),
+    ("stridula.plot", "Figures", ("overview", "timeline", "save")),
+    ("stridula.records.files", "Records in files", ("save", "load")),
+    ("stridula.scenarios", "Ready cases", ()),
+    ("stridula.papers.laulagnet_2011", "Laulagnet 2011", ()),
+)
+HOMES = {
+    "bodies": "What vibrates",
+    "contact": "Where bodies touch",
+    "drives": "What pushes",
+    "histories": "How a drive goes in time",
+    "system": "The system",
+    "records": "Probes: what else to record",
+    "integration": "How time goes on",
+}
+
+
+def write(path: Path, text: str) -> None:
+    """Write a text unless it is already there, so that unchanged pages are not built again."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if not path.exists() or path.read_text(encoding="utf-8") != text:
+        path.write_text(text, encoding="utf-8")
+
+
+def list_table(head: Sequence[str], rows: Iterable[Sequence[str]], widths: Sequence[int]) -> str:
+    """Return a table in reStructuredText."""
+    lines = [".. list-table::", "   :header-rows: 1", f"   :widths: {' '.join(map(str, widths))}", ""]
+    for row in (head, *rows):
+        lines += [f"   * - {row[0]}", *(f"     - {cell}" for cell in row[1:])]
+    return "\n".join(lines) + "\n"
+
+
+def plain(text: str) -> str:
+    """Return a text with the signs that reStructuredText reads as markup made harmless."""
+    for sign in "\\*`|_":
+        text = text.replace(sign, f"\\{sign}")
+    return text
+
+
+# The API page
+
+
+def api_page() -> str:
+    """Return the page of all public names, grouped like the folders."""
+    parts = [
+        "API",
+        "===",
+        "",
+        "All public names, grouped like the folders of the package. Those of the first groups are attributes of",
+        "``stridula`` itself.",
+        "",
+    ]
+    for home, names in stridula._HOME.items():
+        parts += api_group(HOMES.get(home, home), f"stridula.{home}", "stridula", names)
+    for module, title, names in MODULES:
+        parts += api_group(title, module, module, names or import_module(module).__all__)
+    return "\n".join(parts)
+
+
+def drop_stale_stubs(page: str) -> None:
+    """Delete the pages of names that are public no longer."""
+    listed, module = set(), ""
+    for line in page.splitlines():
+        if line.startswith(".. currentmodule::"):
+            module = line.split()[-1]
+        elif line.startswith("   ") and line.strip().isidentifier():
+            listed.add(f"{module}.{line.strip()}.rst")
+    for stub in (GENERATED / "api").glob("*.rst"):
+        if stub.name not in listed:
+            stub.unlink()
+
+
+def api_group(title: str, home: str, module: str, names: Iterable[str]) -> list[str]:
+    """Return one group of the page."""
+    listed = [name for name in names if documented(getattr(import_module(module), name))]
+    return [
+        title,
+        "-" * len(title),
+        "",
+        f"``{home}``",
+        "",
+        f".. currentmodule:: {module}",
+        "",
+        ".. autosummary::",
+        "   :toctree: _generated/api",
+        "   :nosignatures:",
+        "",
+        *(f"   {name}" for name in listed),
+        "",
+    ]
+
+
+def documented(value: Any) -> bool:
+    """Return whether autosummary has a page for a value: a class or a function, not a constant."""
+    return callable(value)
+
+
+# Tables from the sources
+
+
+def variables_table() -> str:
+    """Return the table of recorded variables."""
+    from stridula.records.variables import CONTACT, ENERGY, PROBES, STATUS, STATUS_SHARE
+
+    groups = ((*CONTACT, STATUS, STATUS_SHARE), ENERGY, PROBES.values())
+    rows = [
+        [f"``{v.name}``", v.units.replace("m/s2", "m/s²"), plain(v.long_name), v.cell_methods]
+        for group in groups
+        for v in group
+    ]
+    return list_table(["variable", "unit", "meaning", "over the interval"], rows, [24, 8, 52, 16])
+
+
+def scenario_tables() -> str:
+    """Return a table of keys for every table of a scenario file."""
+    from stridula.scenarios.schema import ScenarioTable
+
+    seen: dict[type, str] = {}
+    collect(ScenarioTable, "", seen)
+    parts = []
+    for model, path in seen.items():
+        rows = [[f"``{key}``", default(field), plain(field.description or "")] for key, field in fields(model).items()]
+        title = f"``[{path}]``" if path else "Top of the file"
+        parts += [title, "^" * len(title), "", list_table(["key", "default", "meaning"], rows, [22, 18, 60])]
+    return "\n".join(parts)
+
+
+def fields(model: type) -> dict[str, Any]:
+    """Return the keys of a table."""
+    return model.model_fields  # type: ignore[attr-defined, no-any-return]
+
+
+def collect(model: type, path: str, seen: dict[type, str]) -> None:
+    """Note the path of a table and of those inside it, each once."""
+    seen[model] = path
+    for key, field in fields(model).items():
+        inner = list(tables_in(field.annotation))
+        for table in inner:
+            if table in seen:
+                continue
+            word = kind_of(table) if len(inner) > 1 else ""
+            collect(table, ".".join(filter(None, [path, key])) + (f" {word}" if word else ""), seen)
+
+
+def kind_of(table: type) -> str:
+    """Return what tells a table from its alternatives, such as ``kind = "ramp"``."""
+    for key in ("kind", "shape", "quantity"):
+        if key in fields(table):
+            words = get_args(fields(table)[key].annotation)
+            return f"{key} = " + " or ".join(f'"{word}"' for word in words)
+    return ""
+
+
+def tables_in(annotation: Any) -> Iterable[type]:
+    """Yield the tables that an annotation allows."""
+    if hasattr(annotation, "model_fields"):
+        yield annotation
+    elif get_origin(annotation) in (Union, UnionType, Annotated, list):
+        for argument in get_args(annotation):
+            yield from tables_in(argument)
+
+
+def default(field: Any) -> str:
+    """Return the default of a key in words."""
+    if field.is_required():
+        return "needed"
+    if field.default is None or field.default in ("", []):
+        return "none"
+    value = field.default
+    return f"``{value:.6g}``" if isinstance(value, float) else f"``{value}``"
+
+
+# The paper
+
+
+def reproduce_paper() -> None:
+    """Run every case of the paper into ``_generated/paper`` unless what is there is newer than the sources."""
+    from stridula.papers.laulagnet_2011 import reproduce
+
+    written = PAPER / "claims.json"
+    newest = max(path.stat().st_mtime for path in SOURCES.rglob("*") if path.suffix in (".py", ".toml"))
+    if not written.exists() or written.stat().st_mtime < newest:
+        logger.info("the paper from end to end (about two minutes)")
+        reproduce(PAPER, lambda name: logger.info("  %s", name))
+
+
+def claims_page() -> str:
+    """Return the table of claims and what lies behind some of them."""
+    rows = json.loads((PAPER / "claims.json").read_text(encoding="utf-8"))
+    held = sum(row["holds"] for row in rows)
+    cells = []
+    for row in rows:
+        unit = "" if row["units"] == "1" else f" {row['units']}"
+        measured = "none" if row["measured"] is None else f"{row['measured']:.4g}{unit}"
+        holds = "yes" if row["holds"] else "**no**"
+        first = [row["section"], row["claim"], row["printed"], measured, row["tolerance"]]
+        cells.append([*map(plain, first), holds, row["basis"]])
+    head = ["section", "claim", "printed", "measured", "holds when", "holds", "basis"]
+    words = [f"{row['section']} {row['claim']}: {row['detail']}" for row in rows if "detail" in row]
+    details = [f"- {plain(word)}" for word in words]
+    table = list_table(head, cells, [7, 28, 15, 13, 17, 8, 12])
+    return "\n".join([f"{held} of {len(rows)} hold.", "", table, *details, ""])
+
+
+def figures_page() -> str:
+    """Return the figures, case by case."""
+    from stridula.papers.laulagnet_2011.figures import FIGURES
+
+    lines: list[str] = []
+    for figure in FIGURES:
+        lines += [
+            f".. figure:: /_generated/paper/{figure.file_name}",
+            f"   :alt: {plain(figure.caption)}",
+            "   :width: 100%",
+            "",
+            f"   Figure {figure.number} of the paper, case ``{figure.case}``: {plain(figure.caption)}.",
+            "",
+        ]
+    return "\n".join(lines)
+
+
+def setup(app: Sphinx) -> None:
+    """Write what is generated, before Sphinx looks for pages."""
+    page = api_page()
+    drop_stale_stubs(page)
+    write(HERE / "api.rst", page)
+    write(GENERATED / "variables.rst", variables_table())
+    write(GENERATED / "scenario-keys.rst", scenario_tables())
+    reproduce_paper()
+    write(GENERATED / "claims.rst", claims_page())
+    write(GENERATED / "figures.rst", figures_page())

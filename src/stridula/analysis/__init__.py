@@ -1,0 +1,24 @@
+"""What a record means: phases, frequencies, levels."""
+
+from .levels import largest_jump, peak_level, swing
+from .phases import advance, bursts, complete, longest_unchanged, phases, settling_time, status_share, stops
+from .spectra import dominant_frequency, envelope, envelope_correlation, frequency_resolution, spectrum
+
+__all__ = [
+    "advance",
+    "bursts",
+    "complete",
+    "dominant_frequency",
+    "envelope",
+    "envelope_correlation",
+    "frequency_resolution",
+    "largest_jump",
+    "longest_unchanged",
+    "peak_level",
+    "phases",
+    "settling_time",
+    "spectrum",
+    "status_share",
+    "stops",
+    "swing",
+]

@@ -1,0 +1,122 @@
+"""When the contact sticks, slides or separates: phases, stops, bursts and settling."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from scipy.ndimage import uniform_filter1d
+
+from ..bodies.modes import Array
+from ..checks import choice, positive
+from ..records.variables import STATUS_WORDS
+
+SMOOTHING = 5e-3
+SHORTEST_STOP = 20e-3
+
+
+def phases(run: xr.Dataset, status: str, smoothing: float = SMOOTHING) -> Array:
+    """Return the intervals in which one status prevails.
+
+    The share of the status is averaged over a centred window; it prevails where that exceeds one half, so that
+    interruptions shorter than half the window do not end a phase and its ends stay where they are.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A record of `simulate`.
+    status : {"separated", "sticking", "sliding"}
+        Which one.
+    smoothing : float, optional
+        Length of the window [s].
+
+    Returns
+    -------
+    ndarray, shape (phases, 2)
+        Starts and ends [s].
+    """
+    choice("status", status, STATUS_WORDS)
+    positive("smoothing", smoothing)
+    share = run["status_share"].values[:, STATUS_WORDS.index(status)]
+    time, interval = _clock(run)
+    width = max(1, 2 * round(smoothing / interval / 2.0) + 1)
+    prevails = uniform_filter1d(share, width, mode="nearest") > 0.5
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], prevails, [False]])))
+    return np.asarray(time[0] + interval * (edges.reshape(-1, 2) - 1.0))
+
+
+def stops(run: xr.Dataset, shortest: float = SHORTEST_STOP) -> Array:
+    """Return the intervals in which the tip sticks for at least `shortest` seconds, shape (stops, 2) [s].
+
+    An interruption shorter than 2.5 ms does not end a stop (see `phases`).
+    """
+    positive("shortest", shortest)
+    found = phases(run, "sticking")
+    return found[found[:, 1] - found[:, 0] >= shortest]
+
+
+def bursts(run: xr.Dataset, shortest_stop: float = SHORTEST_STOP) -> Array:
+    """Return the intervals from the end of a stop to the start of the next one, shape (bursts, 2) [s]."""
+    found = stops(run, shortest_stop)
+    return np.stack([found[:-1, 1], found[1:, 0]], axis=1) if len(found) > 1 else np.empty((0, 2))
+
+
+def complete(intervals: Array, run: xr.Dataset) -> Array:
+    """Return the intervals that neither end of the record cuts, shape (intervals, 2) [s]."""
+    time, interval = _clock(run)
+    inside = (intervals[:, 0] > time[0] - interval / 2.0) & (intervals[:, 1] < time[-1] - interval / 2.0)
+    return intervals[inside]
+
+
+def status_share(run: xr.Dataset, status: str, intervals: Array | None = None) -> float:
+    """Return the share of the time [1] in which the contact has a status, in the intervals or the whole run."""
+    choice("status", status, STATUS_WORDS)
+    share = run["status_share"].values[:, STATUS_WORDS.index(status)]
+    chosen = share if intervals is None else share[inside(run, intervals)]
+    return float(np.mean(chosen)) if chosen.size else float("nan")
+
+
+def settling_time(run: xr.Dataset) -> float:
+    """Return the time [s] from which the contact slides at every step to the end; NaN if it does not end sliding."""
+    slides = run["status_share"].values[:, STATUS_WORDS.index("sliding")] == 1.0
+    if not slides[-1]:
+        return float("nan")
+    time, interval = _clock(run)
+    others = np.flatnonzero(~slides)
+    return float(time[others[-1]]) if others.size else float(time[0] - interval)
+
+
+def longest_unchanged(run: xr.Dataset) -> float:
+    """Return the longest time [s] during which the status does not change."""
+    share = run["status_share"].values
+    pure = np.where(share.max(axis=1) == 1.0, share.argmax(axis=1), -1)
+    changes = np.flatnonzero(np.diff(pure)) + 1
+    starts = np.concatenate([[0], changes])
+    lengths = np.diff(np.concatenate([starts, [pure.size]]))[pure[starts] >= 0]
+    return float(lengths.max(initial=0) * _clock(run)[1])
+
+
+def advance(run: xr.Dataset, intervals: Array | None = None) -> float:
+    """Return how far the contact point has moved along the track [m], net, in the intervals or the whole run."""
+    position, (time, _) = run["contact_position"].values, _clock(run)
+    if intervals is None:
+        return float(position[-1] - position[0])
+    ends = np.interp(np.asarray(intervals), time, position)
+    return float(np.sum(ends[:, 1] - ends[:, 0]))
+
+
+def inside(run: xr.Dataset, intervals: Array) -> Array:
+    """Return which samples lie in one of the intervals, shape (time,) of bool."""
+    time, interval = _clock(run)
+    middle = time - interval / 2.0
+    chosen = np.zeros(time.size, dtype=bool)
+    for first, last in intervals:
+        chosen |= (middle > first) & (middle < last)
+    return chosen
+
+
+def _clock(run: xr.Dataset) -> tuple[Array, float]:
+    """Return the times of the samples and the interval between them [s]."""
+    time = run["time"].values
+    if time.size < 2:
+        raise ValueError(f"run must have at least 2 samples, got {time.size}")
+    return time, float((time[-1] - time[0]) / (time.size - 1))

@@ -1,0 +1,127 @@
+"""Frequencies of recorded signals."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.signal
+import xarray as xr
+
+from ..bodies.modes import Array
+from ..checks import positive
+
+PERIODS = 10.0
+FINEST = 2.0
+
+
+def spectrum(signal: xr.DataArray, intervals: Array | None = None) -> tuple[Array, Array]:
+    """Return the energy spectrum of a signal over intervals of time, added up.
+
+    Each interval is taken without its mean, under a Hann window, padded to a common grid of 2 Hz or finer.
+
+    Parameters
+    ----------
+    signal : xarray.DataArray, shape (time,)
+        A recorded signal, such as ``run.normal_force``.
+    intervals : ndarray, shape (intervals, 2), optional
+        Starts and ends [s]; the whole signal if left out.
+
+    Returns
+    -------
+    frequency : ndarray, shape (frequencies,)
+        Frequencies [Hz].
+    energy : ndarray, shape (frequencies,)
+        Energy spectral density, in units of the signal squared times s².
+    """
+    values, interval = _samples(signal)
+    pieces = _pieces(signal, values, intervals)
+    longest = max((piece.size for piece in pieces), default=0)
+    size = 2 ** int(np.ceil(np.log2(max(longest, 1.0 / (FINEST * interval), 2))))
+    energy = np.zeros(size // 2 + 1)
+    for piece in pieces:
+        window = scipy.signal.windows.hann(piece.size, sym=False)
+        mean = np.sum(window * piece) / max(np.sum(window), 1e-300)
+        energy += np.abs(np.fft.rfft((piece - mean) * window, size)) ** 2
+    return np.fft.rfftfreq(size, interval), energy * interval**2
+
+
+def dominant_frequency(signal: xr.DataArray, intervals: Array | None = None, lowest: float | None = None) -> float:
+    """Return the frequency [Hz] at which a signal carries most energy.
+
+    The largest local peak of `spectrum`, refined by a parabola through its logarithm.
+
+    Parameters
+    ----------
+    signal : xarray.DataArray, shape (time,)
+        A recorded signal.
+    intervals : ndarray, shape (intervals, 2), optional
+        Starts and ends [s]; the whole signal if left out.
+    lowest : float, optional
+        Frequencies below are left aside [Hz]: ten periods in the median interval if left out.
+
+    Returns
+    -------
+    float
+        NaN if there is no peak, as in a constant signal or no interval at all.
+    """
+    frequency, energy = spectrum(signal, intervals)
+    if lowest is None:
+        lowest = PERIODS / _median_length(signal, intervals)
+    positive("lowest", lowest)
+    peaks, _ = scipy.signal.find_peaks(energy)
+    peaks = peaks[frequency[peaks] >= lowest]
+    if peaks.size == 0:
+        return float("nan")
+    top = peaks[np.argmax(energy[peaks])]
+    left, middle, right = np.log(energy[top - 1 : top + 2] + 1e-300)
+    curvature = left - 2.0 * middle + right
+    shift = 0.5 * (left - right) / curvature if curvature < 0.0 else 0.0
+    return float(frequency[top] + shift * frequency[1])
+
+
+def frequency_resolution(signal: xr.DataArray, intervals: Array | None = None) -> float:
+    """Return the frequency step [Hz] that the median interval can tell apart, one over its length."""
+    return 1.0 / _median_length(signal, intervals)
+
+
+def envelope(signal: xr.DataArray, window: float = 5e-3) -> Array:
+    """Return the root mean square of a signal less its mean over successive windows of `window` s, shape (windows,)."""
+    values, interval = _samples(signal)
+    blocks = _blocks(values - values.mean(), positive("window", window), interval)
+    return np.sqrt(np.mean(blocks**2, axis=1))
+
+
+def envelope_correlation(first: xr.DataArray, second: xr.DataArray, window: float = 5e-3) -> float:
+    """Return the correlation coefficient [1] of the envelopes of two signals on one time axis."""
+    return float(np.corrcoef(envelope(first, window), envelope(second, window))[0, 1])
+
+
+def _samples(signal: xr.DataArray) -> tuple[Array, float]:
+    """Return the values of a signal over time and their interval [s]."""
+    if signal.dims != ("time",) or signal.size < 2:
+        raise ValueError(f"signal must have the one dimension time and at least 2 samples, got {dict(signal.sizes)}")
+    time = signal["time"].values
+    return signal.values.astype(float), float((time[-1] - time[0]) / (time.size - 1))
+
+
+def _pieces(signal: xr.DataArray, values: Array, intervals: Array | None) -> list[Array]:
+    if intervals is None:
+        return [values]
+    time = signal["time"].values
+    bounds = np.searchsorted(time, np.asarray(intervals))
+    return [values[first:last] for first, last in bounds if last - first >= 8]
+
+
+def _median_length(signal: xr.DataArray, intervals: Array | None) -> float:
+    if intervals is None:
+        values, interval = _samples(signal)
+        return values.size * interval
+    lengths = np.diff(np.asarray(intervals), axis=1)
+    return float(np.median(lengths)) if lengths.size else 1.0
+
+
+def _blocks(values: Array, window: float, interval: float) -> Array:
+    """Return the values in successive blocks of a window, shape (blocks, samples)."""
+    size = max(1, round(window / interval))
+    if values.size < size:
+        raise ValueError(f"window must be at most the signal's {values.size * interval:.6g} s, got {window!r}")
+    return values[: values.size // size * size].reshape(-1, size)

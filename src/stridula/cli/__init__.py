@@ -1,0 +1,32 @@
+"""The command line: thin verbs over the public API."""
+
+from __future__ import annotations
+
+import sys
+
+from .commands import app
+from .exits import GOOD, INTERRUPTED, failed, say
+
+
+def main() -> None:
+    """Run `stridula` and exit: 0 good, 1 a failed run or a full disk, 2 bad input, 130 interrupted."""
+    code = _run()
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except OSError as error:
+        code = failed(error)
+    raise SystemExit(code)
+
+
+def _run() -> int:
+    try:
+        result = app(standalone_mode=False)
+    except SystemExit as stop:
+        # Rich leaves this way when its output is closed.
+        return GOOD if stop.code == 1 else int(stop.code or GOOD)
+    except KeyboardInterrupt:
+        result = INTERRUPTED
+    except Exception as error:
+        return failed(error)
+    return say("interrupted; nothing was kept", INTERRUPTED) if result == INTERRUPTED else int(result or GOOD)

@@ -1,0 +1,66 @@
+"""The closing card of a run."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from ..analysis import dominant_frequency
+from ..records.variables import ENERGY, STATUS_WORDS
+
+ENDINGS = {
+    "finished": "finished",
+    "off the track": "the tip ran off the end of its track",
+    "not finite": "failed: the state is no longer finite",
+    "interrupted": "interrupted",
+}
+
+
+def print_card(record: xr.Dataset, title: str, files: list[str]) -> None:
+    """Print what came of a run."""
+    table = Table(title=escape(title), show_header=False, title_justify="left")
+    for name, words in card(record).items():
+        table.add_row(name, escape(words))
+    if files:
+        table.add_row("written", escape("\n".join(files)))
+    Console().print(table)
+
+
+def card(record: xr.Dataset) -> dict[str, str]:
+    """Return what came of a run, in words."""
+    interval, samples = record.attrs["sample_interval"], record.sizes["time"]
+    end = float(record["time"][-1]) if samples else 0.0
+    lines = {"ended": f"{ENDINGS[record.attrs['ended']]} at t = {end:.6g} s"}
+    if samples:
+        lines |= _contact(record) | _energy(record)
+    wall_time = record.attrs["wall_time"]
+    lines["took"] = f"{wall_time:.3g} s, {samples * interval / max(wall_time, 1e-9):.2f} x real time"
+    lines["step"] = f"{record.attrs['step']:.4g} s, {record.attrs['scheme']}, {record.attrs['modes']} modes"
+    return lines
+
+
+def _contact(record: xr.Dataset) -> dict[str, str]:
+    shares = record["status_share"].mean("time").values
+    force, place = record["normal_force"].values, record["contact_position"].values
+    frequency = dominant_frequency(record["normal_force"]) if force.size > 1 else math.nan
+    jammed = int(record["jammed_steps"].sum())
+    lines = {
+        "status": ", ".join(f"{word} {100 * share:.1f} %" for word, share in zip(STATUS_WORDS, shares, strict=True)),
+        "tip": f"from {place[0]:.4g} m to {place[-1]:.4g} m along the track",
+        "normal force": f"mean {force.mean():.4g} N, peak {force.max():.4g} N",
+        "dominant frequency": "none" if math.isnan(frequency) else f"{frequency:.4g} Hz",
+    }
+    return lines | ({"jammed": f"{jammed} steps in which sliding would have jammed"} if jammed else {})
+
+
+def _energy(record: xr.Dataset) -> dict[str, str]:
+    largest = {variable.name: float(np.abs(record[variable.name]).max()) for variable in ENERGY}
+    residual = largest.pop("ledger_residual")
+    term = max(largest, key=largest.__getitem__)
+    share = residual / largest[term] if largest[term] else 0.0
+    return {"energy ledger": f"residual {share:.1e} of the largest term, {term} {largest[term]:.3g} J"}

@@ -1,0 +1,109 @@
+"""The verbs; each imports what it needs when called, so that help comes at once."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from ..version import __version__
+from .exits import FAILED, INTERRUPTED, Stopped
+
+app = typer.Typer(
+    help="Friction noise in the time domain: squeal, squeak and judder of elastic bodies in exact contact.",
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+NameOrFile = Annotated[str, typer.Argument(metavar="NAME-OR-FILE", help="A shipped scenario, a TOML file or a record.")]
+
+
+@app.callback(invoke_without_command=True)
+def start(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version and leave.")] = False,
+) -> None:
+    """Friction noise in the time domain: squeal, squeak and judder of elastic bodies in exact contact."""
+    if version:
+        print(f"stridula {__version__}")
+        raise typer.Exit
+    if context.invoked_subcommand is None:
+        print(context.get_help())
+
+
+@app.command("list")
+def list_() -> None:
+    """List the shipped scenarios."""
+    from ..scenarios.show import list_scenarios
+
+    cases = list_scenarios()
+    names, titles = (max(len(getattr(case, word)) for case in cases) for word in ("name", "title"))
+    for case in cases:
+        print(f"{case.name:<{names}}  {case.title:<{titles}}  {case.source}")
+
+
+@app.command()
+def show(name: NameOrFile) -> None:
+    """Print a scenario as TOML, to copy and edit."""
+    from ..scenarios.show import scenario_text
+
+    sys.stdout.write(scenario_text(name))
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON schema of scenario files, for editors."""
+    import json
+
+    from ..scenarios.show import scenario_schema
+
+    print(json.dumps(scenario_schema(), indent=2, ensure_ascii=False))
+
+
+@app.command()
+def run(
+    name: NameOrFile,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change a value: its full key or any unique ending of one."),
+    ] = None,
+    duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
+    out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the record, as NetCDF.")] = None,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw the record; the name's end is the format.")
+    ] = None,
+) -> None:
+    """Run a scenario and say what came of it."""
+    from .running import run_scenario
+
+    overrides = dict(_pair(text) for text in set_ or [])
+    if duration is not None:
+        overrides["simulation.duration"] = duration
+    run_scenario(name, overrides, out, plot)
+
+
+@app.command()
+def paper(
+    out: Annotated[str, typer.Option(metavar="DIR", help="Folder to write to.")] = "results/paper",
+) -> None:
+    """Reproduce Laulagnet et al. 2011: every figure, every record, every claim."""
+    from pathlib import Path
+
+    from ..integration import Diverged
+    from ..papers.laulagnet_2011.reproduce import closing_line, reproduce
+
+    try:
+        rows = reproduce(Path(out), report=lambda line: print(line, file=sys.stderr, flush=True))
+    except KeyboardInterrupt:
+        raise Stopped(f"interrupted; what was finished is in {out}", INTERRUPTED) from None
+    except Diverged as error:
+        raise Stopped(f"{error}; what was finished is in {out}", FAILED) from None
+    print(closing_line(rows))
+
+
+def _pair(text: str) -> tuple[str, str]:
+    key, equals, value = text.partition("=")
+    if not equals or not key.strip():
+        raise ValueError(f"--set must be KEY=VALUE, got {text!r}")
+    return key.strip(), value.strip()

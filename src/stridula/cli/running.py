@@ -1,0 +1,110 @@
+"""`stridula run`: check the outputs, march under a progress bar, write, and close with a card."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn
+
+from ..integration import Diverged, Interrupted
+from ..integration.watchers import Progress as Report
+from ..integration.watchers import Watcher
+from ..records.files import check_writable, save, write
+from ..scenarios import load_scenario
+from .card import print_card
+from .exits import FAILED, INTERRUPTED, Stopped
+
+
+def run_scenario(name: str, overrides: dict[str, Any], out: str | None, plot: str | None) -> None:
+    """Run a scenario, write what was asked for, and print the card.
+
+    Raises
+    ------
+    ValueError
+        If the scenario, an override or an output is not usable; nothing is written then.
+    OSError
+        If an output cannot be written.
+    Stopped
+        On Ctrl-C, or if the run failed, once what was recorded is written.
+    """
+    _check_outputs(out, plot)
+    scenario = load_scenario(name, overrides)
+    try:
+        with _progress(scenario.title or name) as watcher:
+            record = scenario.simulate(watchers=[watcher])
+    except (Interrupted, Diverged) as stop:
+        kept = _finish(stop.record, scenario.title or name, out, None)
+        where = f"the record so far is in {', '.join(kept)}" if kept else "nothing was asked to be kept (no --out)"
+        message = str(stop).replace("; see .record", "")
+        raise Stopped(f"{message}; {where}", INTERRUPTED if isinstance(stop, Interrupted) else FAILED) from None
+    _finish(record, scenario.title or name, out, plot)
+
+
+def _check_outputs(out: str | None, plot: str | None) -> None:
+    if out is not None and plot is not None and Path(out).resolve() == Path(plot).resolve():
+        raise ValueError(f"--plot must be another file than --out, got {plot!r} for both")
+    if plot is not None:
+        from matplotlib.figure import Figure
+
+        formats = sorted(Figure().canvas.get_supported_filetypes())
+        if _format(plot) not in formats:
+            raise ValueError(f"--plot must end in one of {', '.join(f'.{word}' for word in formats)}, got {plot!r}")
+    for path in (out, plot):
+        if path is not None:
+            check_writable(path)
+
+
+def _format(path: str) -> str:
+    return Path(path).suffix.lower().removeprefix(".")
+
+
+def _finish(record: xr.Dataset, title: str, out: str | None, plot: str | None) -> list[str]:
+    """Write the outputs and print the card, which also comes when one of them fails; return the files written."""
+    written: list[str] = []
+    try:
+        if out is not None:
+            save(record, out)
+            written.append(out)
+        if plot is not None and record.sizes["time"] > 1:
+            _draw(record, plot)
+            written.append(plot)
+    finally:
+        print_card(record, title, written)
+    return written
+
+
+def _draw(record: xr.Dataset, path: str) -> None:
+    from ..plot import overview
+
+    image = io.BytesIO()
+    overview(record).savefig(image, format=_format(path))
+    write(path, image.getvalue())
+
+
+@contextmanager
+def _progress(title: str) -> Iterator[Watcher]:
+    """Show a bar on standard error with simulated time and speed against real time."""
+    console = Console(stderr=True)
+    bar = Progress(
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TextColumn("{task.fields[words]}", markup=False),
+        console=console,
+        transient=True,
+        disable=not console.is_terminal,
+    )
+    with bar:
+        task = bar.add_task(title, total=None, words="preparing (the first run compiles)")
+
+        def watch(report: Report) -> None:
+            speed = report.time / max(report.wall_time, 1e-9)
+            words = f"{report.time:.3f} of {report.duration:.3f} s, {speed:.2f} x real time"
+            bar.update(task, completed=report.time, total=report.duration, words=words)
+
+        yield watch

@@ -1,0 +1,82 @@
+"""The paper's figures 2 to 21: the same quantities over the same axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ... import analysis
+from ...plot import timeline
+from .runs import Runs
+
+
+@dataclass(frozen=True)
+class PaperFigure:
+    """One figure of the paper.
+
+    Attributes
+    ----------
+    number : int
+        Its number.
+    case : str
+        The case it shows.
+    variable : str
+        What is drawn over time.
+    caption : str
+        What one sees.
+    zoomed : bool
+        Whether it shows one burst only.
+    """
+
+    number: int
+    case: str
+    variable: str
+    caption: str
+    zoomed: bool = False
+
+    @property
+    def file_name(self) -> str:
+        """Name of its file."""
+        return f"figure-{self.number:02d}.png"
+
+    def draw(self, runs: Runs) -> Figure:
+        """Draw it from the case's run."""
+        run = runs.record(self.case)
+        title = f"Figure {self.number}. {self.caption}"
+        names = [self.variable, "status"] if self.zoomed else [self.variable]
+        return timeline(run, names, span=_one_burst(run) if self.zoomed else None, title=title)
+
+
+def _one_burst(run: xr.Dataset) -> tuple[float, float]:
+    """Return a span around the first complete burst after 0.2 s, or around 0.2 s if there is none."""
+    found = analysis.bursts(run)
+    late = found[found[:, 0] > 0.2]
+    first, last = late[0] if len(late) else (0.2, 0.25)
+    margin = 0.5 * (last - first)
+    return float(first - margin), float(last + margin)
+
+
+FIGURES = (
+    PaperFigure(2, "stable-sliding", "contact_position", "Trajectory of the contact point, stable case"),
+    PaperFigure(3, "stable-sliding", "status", "Status of the contact point, stable case"),
+    PaperFigure(4, "stable-sliding", "normal_force", "Normal contact force, stable case"),
+    PaperFigure(5, "stable-sliding", "tangential_force", "Tangential contact force, stable case"),
+    PaperFigure(6, "squeal", "contact_position", "Trajectory of the contact point, squealing case"),
+    PaperFigure(7, "squeal", "status", "Status of the contact point, squealing case"),
+    PaperFigure(8, "squeal", "normal_force", "Normal contact force, squealing case"),
+    PaperFigure(9, "squeal", "tangential_force", "Tangential contact force, squealing case"),
+    PaperFigure(10, "squeal", "normal_force", "The squeal appears and disappears", zoomed=True),
+    PaperFigure(11, "judder", "contact_position", "Trajectory of the contact point, juddering case"),
+    PaperFigure(12, "judder", "status", "Status of the contact point, juddering case"),
+    PaperFigure(13, "judder", "normal_force", "Normal contact force, juddering case"),
+    PaperFigure(14, "judder", "tangential_force", "Tangential contact force, juddering case"),
+    PaperFigure(15, "weak-pressure", "normal_force", "Normal contact force, 1 cm/s under 2 N"),
+    PaperFigure(16, "weak-pressure", "contact_position", "Trajectory of the contact point, 1 cm/s under 2 N"),
+    PaperFigure(17, "weak-pressure", "acceleration", "Acceleration of the track's centre, 1 cm/s under 2 N"),
+    PaperFigure(18, "strong-pressure", "normal_force", "Normal contact force, 1 cm/s under 50 N"),
+    PaperFigure(19, "strong-pressure", "contact_position", "Trajectory of the contact point, 1 cm/s under 50 N"),
+    PaperFigure(20, "strong-pressure", "acceleration", "Acceleration of the track's centre, 1 cm/s under 50 N"),
+    PaperFigure(21, "strong-pressure", "status", "Status of the contact point, 1 cm/s under 50 N"),
+)

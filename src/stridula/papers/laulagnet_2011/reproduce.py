@@ -1,0 +1,89 @@
+"""The paper from end to end: runs, figures, records and claims in one folder."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from ...plot import save as save_figure
+from ...records.files import save as save_record
+from ...version import __version__
+from .claims import CLAIMS
+from .figures import FIGURES
+from .runs import CASES, Runs
+
+
+def reproduce(folder: str | Path, report: Callable[[str], None] = lambda name: None) -> list[dict[str, Any]]:
+    """Run every case of the paper and write figures, records, `claims.json` and `claims.md` into a folder.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Where to write; made if it is not there.
+    report : callable, optional
+        Told each thing before it is made.
+
+    Returns
+    -------
+    list of dict
+        The rows of `claims.json`.
+
+    Raises
+    ------
+    OSError
+        If the folder cannot be written.
+    """
+    target = Path(folder)
+    target.mkdir(parents=True, exist_ok=True)
+    runs = Runs(report=report)
+    for case in CASES:
+        save_record(runs.record(case), target / f"{case}.nc")
+    for figure in FIGURES:
+        report(figure.file_name)
+        save_figure(figure.draw(runs), target / figure.file_name)
+    rows = [claim.check(runs) for claim in CLAIMS]
+    write_text(target / "claims.json", json.dumps(rows, indent=2, ensure_ascii=False) + "\n")
+    write_text(target / "claims.md", claims_table(rows))
+    return rows
+
+
+def closing_line(rows: Sequence[dict[str, Any]]) -> str:
+    """Return how many claims hold, in one line."""
+    missed = [f"{row['section']} {row['claim']}" for row in rows if not row["holds"]]
+    line = f"{len(rows) - len(missed)} of {len(rows)} claims of the paper hold"
+    return f"{line}; not: {'; '.join(missed)}" if missed else line
+
+
+def claims_table(rows: Sequence[dict[str, Any]]) -> str:
+    """Return the claims as a Markdown page."""
+    lines = [
+        "# Laulagnet 2011, claim by claim",
+        "",
+        f"stridula {__version__}. {closing_line(rows)}.",
+        "",
+        "| section | claim | printed | measured | holds when | holds | basis |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for row in rows:
+        claim = row["claim"].replace("|", "\\|")
+        printed = row["printed"].replace("|", "\\|")
+        unit = "" if row["units"] == "1" else f" {row['units']}"
+        measured = "none" if row["measured"] is None else f"{row['measured']:.4g}{unit}"
+        holds = "yes" if row["holds"] else "**no**"
+        lines.append(
+            f"| {row['section']} | {claim} | {printed} | {measured} | {row['tolerance']} | {holds} | {row['basis']} |"
+        )
+    details = [f"- {row['section']} {row['claim']}: {row['detail']}" for row in rows if "detail" in row]
+    return "\n".join([*lines, "", *details, ""])
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text beside its final name first, so that nothing half-written is ever left under it."""
+    beside = path.with_name(f".{path.name}.part")
+    try:
+        beside.write_text(text, encoding="utf-8")
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)

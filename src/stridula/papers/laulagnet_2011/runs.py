@@ -1,0 +1,73 @@
+"""The runs behind the paper's claims, each made once and only when a claim asks for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ...analysis import settling_time
+from ...scenarios import Scenario, load_scenario
+
+CASES = ("stable-sliding", "squeal", "axial-sliding", "judder", "weak-pressure", "strong-pressure")
+LOADS = (20.0, 40.0, 80.0, 150.0)
+LADDER = tuple(np.round(np.arange(0.5, 1.501, 0.05), 2))
+LAST = 0.3
+
+
+@dataclass
+class Runs:
+    """Runs of the paper's cases under one set of parameters.
+
+    Parameters
+    ----------
+    overrides : mapping, optional
+        Scenario keys and values that replace the shipped ones in every case, such as ``{"damping": 0.01}``.
+    report : callable, optional
+        Told the name of each run before it starts.
+    """
+
+    overrides: Mapping[str, Any] = field(default_factory=dict)
+    report: Callable[[str], None] = lambda name: None
+    _records: dict[str, xr.Dataset] = field(default_factory=dict, repr=False)
+    _onsets: dict[str, dict[float, str]] = field(default_factory=dict, repr=False)
+
+    def scenario(self, case: str, **overrides: Any) -> Scenario:
+        """Return a case of the paper under these parameters, with further overrides."""
+        return load_scenario(case, {**self.overrides, **overrides})
+
+    def record(self, case: str) -> xr.Dataset:
+        """Return the record of one of `CASES`."""
+        return self._kept(case, case)
+
+    def under_load(self, load: float) -> xr.Dataset:
+        """Return the record of section 3.4 under a normal load [N]."""
+        return self._kept(f"pressure-{load:g}", "strong-pressure", normal_load=load)
+
+    def ladder(self, case: str) -> dict[float, str]:
+        """Return how a case ends at each coefficient of friction of `LADDER`: sliding, stuck or vibrating."""
+        if case not in self._onsets:
+            self._onsets[case] = {}
+            for friction in LADDER:
+                self.report(f"{case} at friction {friction:g}")
+                run = self.scenario(case, coefficient=float(friction)).simulate()
+                self._onsets[case][float(friction)] = ending(run)
+        return self._onsets[case]
+
+    def _kept(self, key: str, case: str, **overrides: Any) -> xr.Dataset:
+        if key not in self._records:
+            self.report(key)
+            self._records[key] = self.scenario(case, **overrides).simulate()
+        return self._records[key]
+
+
+def ending(run: xr.Dataset) -> str:
+    """Return what the last 0.3 s of a run are: ``sliding`` at every step, ``stuck`` at every step, or ``vibrating``."""
+    begins = float(run["time"][-1]) - LAST
+    if settling_time(run) <= begins:
+        return "sliding"
+    sticking = run["status_share"].sel(time=slice(begins, None), contact_status="sticking")
+    return "stuck" if bool((sticking == 1.0).all()) else "vibrating"

@@ -1,0 +1,146 @@
+"""Records in NetCDF files, written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import xarray as xr
+
+MAGIC = b"\x89HDF\r\n\x1a\n"
+
+
+def save(run: xr.Dataset, path: str | Path) -> None:
+    """Write a record to a NetCDF file, compressed without loss.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A record of `simulate`.
+    path : str or Path
+        The file; one that is there is replaced once the new one is complete.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; nothing half-written is left under its name.
+    """
+    check_writable(path)
+    plain = run.drop_encoding()
+    numbers = [name for name, values in plain.variables.items() if values.dtype.kind in "fi" and values.size]
+    encoding = {name: {"zlib": True, "shuffle": True, "complevel": 1} for name in numbers if plain[name].ndim}
+    # Built in memory: on a full disk the HDF5 library brings the process down instead of raising.
+    write(path, plain.to_netcdf(engine="h5netcdf", encoding=encoding))
+
+
+def load(path: str | Path) -> xr.Dataset:
+    """Read a record back into memory.
+
+    Parameters
+    ----------
+    path : str or Path
+        A file that `save` wrote.
+
+    Returns
+    -------
+    xarray.Dataset
+        The record, equal to the one saved.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    ValueError
+        If it is not a record.
+    """
+    scenario_of(path)
+    with _readable(path):
+        run = xr.load_dataset(path, engine="h5netcdf", decode_times=False)
+    run.attrs = {name: value.item() if isinstance(value, np.generic) else value for name, value in run.attrs.items()}
+    return run.drop_encoding()
+
+
+def scenario_of(path: str | Path) -> tuple[str, str]:
+    """Return the title and the scenario, as TOML, that a record file carries."""
+    attributes: dict[str, Any] = {}
+    if is_record(path):
+        with _readable(path), h5py.File(path, "r") as file:
+            attributes = {name: file.attrs[name] for name in ("title", "scenario") if name in file.attrs}
+    if not isinstance(attributes.get("scenario"), str):
+        raise ValueError(f"path must be a record that stridula wrote, got {str(path)!r}")
+    title = attributes.get("title")
+    return (title if isinstance(title, str) else ""), attributes["scenario"]
+
+
+def is_record(path: str | Path) -> bool:
+    """Return whether a file is of the kind that records are kept in."""
+    return read(path, len(MAGIC)) == MAGIC
+
+
+def read(path: str | Path, size: int = -1) -> bytes:
+    """Return what a file holds, its first `size` bytes if given."""
+    with _one_line(f"cannot read {str(path)!r}"), open(path, "rb") as file:
+        return file.read(size)
+
+
+def check_writable(path: str | Path) -> None:
+    """Raise OSError if no file can be written at `path`; leave everything as it is."""
+    target = Path(path).resolve()
+    cannot = f"cannot write {str(path)!r}"
+    if target.is_dir():
+        raise IsADirectoryError(f"{cannot}: it is a directory")
+    if not target.parent.is_dir():
+        raise FileNotFoundError(f"{cannot}: there is no folder {str(Path(path).parent)!r}")
+    if target.exists() and not os.access(target, os.W_OK):
+        raise PermissionError(f"{cannot}: permission denied")
+    if target.is_file() or not target.exists():
+        with _one_line(cannot), open(_beside(target), "xb"):
+            pass
+        _beside(target).unlink()
+
+
+def write(path: str | Path, content: bytes | memoryview) -> None:
+    """Write a file beside its place under a temporary name, then move it there; a device is written directly."""
+    target = Path(path).resolve()
+    is_device = target.exists() and not target.is_file()
+    written = target if is_device else _beside(target)
+    try:
+        with _one_line(f"cannot write {str(path)!r}"):
+            with open(written, "wb") as file:
+                file.write(content)
+                file.flush()
+                if not is_device:
+                    os.fsync(file.fileno())
+            if not is_device:
+                os.replace(written, target)
+    finally:
+        if not is_device:
+            written.unlink(missing_ok=True)
+
+
+def _beside(target: Path) -> Path:
+    return target.parent / f".stridula-{os.getpid()}-{abs(hash(target.name)) % 10**8}.part"
+
+
+@contextmanager
+def _one_line(doing: str) -> Iterator[None]:
+    """Turn an OSError into one of the same kind that says in one line what failed and why."""
+    try:
+        yield
+    except OSError as error:
+        clear = type(error)(f"{doing}: {(error.strerror or str(error)).lower()}")
+        clear.errno = error.errno
+        raise clear from error
+
+
+@contextmanager
+def _readable(path: str | Path) -> Iterator[None]:
+    try:
+        yield
+    except (OSError, RuntimeError, KeyError, ValueError) as error:
+        raise ValueError(f"path must be a whole record, got the damaged {str(path)!r}: {error}") from error

@@ -1,0 +1,78 @@
+"""What is wrong with a scenario, in words that name the key, the value and what is allowed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from difflib import get_close_matches
+from typing import Any
+
+from pydantic import ValidationError
+
+from ..checks import suggestion
+from . import outline
+from .outline import Path
+
+
+class ScenarioError(ValueError):
+    """A scenario that cannot be used; every problem found is in `problems`, one line each."""
+
+    def __init__(self, problems: Sequence[str]) -> None:
+        self.problems = tuple(dict.fromkeys(" ".join(problem.split()) for problem in problems))
+        super().__init__("; ".join(self.problems))
+
+
+def explain(error: ValidationError, tables: dict[str, Any], written: dict[str, Any]) -> ScenarioError:
+    """Return the errors of validated `tables` in words, with the keys as they were `written` before sharing."""
+    return ScenarioError([_line(dict(details), tables, written) for details in error.errors()])
+
+
+def as_written(path: Path, written: dict[str, Any]) -> str:
+    """Return a key as text; one that a body takes from the shared tables at the top loses the body's name."""
+    own, shared = path, path[1:]
+    is_shared = path[0] in ("slider", "track") and len(path) > 1 and shared[0] in outline.SHARED
+    # A key that is not there belongs to the table in which it is missed.
+    for length in range(len(shared), 0, -1) if is_shared else ():
+        if outline.look_up(written, own[: length + 1]) is not None:
+            break
+        if outline.look_up(written, shared[:length]) is not None:
+            return ".".join(map(str, shared))
+    return ".".join(map(str, path))
+
+
+def shown(value: Any) -> str:
+    """Return a value as it goes into a message, cut if it is long."""
+    text = repr(value)
+    return text if len(text) <= 80 else f"{text[:77]}..."
+
+
+def _line(error: dict[str, Any], tables: dict[str, Any], written: dict[str, Any]) -> str:
+    path = outline.plain(error["loc"], tables)
+    context = error.get("ctx", {})
+    kind, value = error["type"], error["input"]
+    if kind.startswith("union_tag"):
+        tag = context["discriminator"].strip("'")
+        path, value = (*path, tag), value.get(tag)
+        kind = "missing" if kind == "union_tag_not_found" else "literal_error"
+    key = as_written(path, written)
+    node = outline.node_at(path, tables)
+    if kind == "missing":
+        return f"{key} must be given: {(node or {}).get('description', 'it is needed')}"
+    if kind == "extra_forbidden":
+        known = list(outline.properties(outline.node_at(path[:-1], tables), outline.look_up(tables, path[:-1])))
+        return (
+            f"{key} must be one of the known keys {', '.join(known)}, got {path[-1]} = {shown(value)}"
+            f"{suggestion(path[-1], known) or _elsewhere(path[-1], tables)}"
+        )
+    if kind == "literal_error":
+        allowed = outline.words(node)
+        return f"{key} must be one of {', '.join(allowed)}, got {shown(value)}{suggestion(value, allowed)}"
+    words = {"list_type": "must be a list", "string_type": "must be a text"}
+    words |= dict.fromkeys(("model_type", "model_attributes_type", "dict_type"), "must be a table")
+    return f"{key} {context.get('words') or words.get(kind, error['msg'])}, got {shown(value)}"
+
+
+def _elsewhere(name: str | int, tables: dict[str, Any]) -> str:
+    """Return the nearest key of any table."""
+    places = {str(place[-1]): ".".join(map(str, place)) for place, _ in outline.paths(tables)}
+    near = get_close_matches(str(name), places, n=1, cutoff=0.6)
+    return f"; did you mean {places[near[0]]!r}?" if near else ""

@@ -1,0 +1,117 @@
+"""Changes to a scenario by key: a full path into its tables, or any unique ending of one."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from collections.abc import Mapping
+from difflib import get_close_matches
+from typing import Any
+
+from . import outline
+from .errors import ScenarioError
+from .outline import Path
+
+
+def overridden(tables: dict[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the tables with values set by key.
+
+    Parameters
+    ----------
+    tables : dict
+        The tables of a scenario, as in its file.
+    overrides : mapping
+        From keys such as ``contact.friction.coefficient`` or ``coefficient`` to values; a text is read as TOML if it
+        can be.
+
+    Raises
+    ------
+    ScenarioError
+        If a key is not known or fits several places.
+    """
+    changed = copy.deepcopy(tables)
+    problems: list[str] = []
+    for key, value in overrides.items():
+        value = _value(value) if isinstance(value, str) else value
+        try:
+            _set(changed, find(key, changed, is_table=isinstance(value, dict)), value)
+        except ScenarioError as error:
+            problems += error.problems
+    if problems:
+        raise ScenarioError(problems)
+    return changed
+
+
+def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
+    """Return the path that a key means; a table's key means its only number unless `is_table`."""
+    asked = tuple(part.strip() for part in str(key).split("."))
+    known = dict(outline.paths(tables))
+    full = [path for path in known if _text(path) == asked]
+    ending = [path for path in known if _text(path)[-len(asked) :] == asked]
+    present = [path for path in ending if outline.look_up(tables, path) is not None]
+    # Of keys left out, those of tables that are there come first.
+    beside = [path for path in ending if outline.look_up(tables, path[:-1]) is not None]
+    candidates = full or present or beside or ending
+    if not candidates:
+        raise ScenarioError([f"key must be one of the scenario's, got {key!r}{_nearest(asked, list(known))}"])
+    if len(candidates) > 1:
+        listed = ", ".join(".".join(_text(path)) for path in candidates)
+        raise ScenarioError([f"key must mean one place, got {key!r}, which fits {listed}"])
+    path = candidates[0]
+    return path if is_table else _only_number(key, path, tables)
+
+
+def _only_number(key: str, path: Path, tables: dict[str, Any]) -> Path:
+    below = outline.properties(outline.node_at(path, tables), outline.look_up(tables, path))
+    if not below:
+        return path
+    numbers = [name for name, node in below.items() if outline.is_number(node)]
+    given = [name for name in numbers if outline.look_up(tables, (*path, name)) is not None]
+    if len(given or numbers) == 1:
+        return (*path, (given or numbers)[0])
+    raise ScenarioError([f"key must mean one value, got {key!r}, a table: set one of its keys {', '.join(below)}"])
+
+
+def _set(tables: dict[str, Any], path: Path, value: Any) -> None:
+    _make_shared(tables, path)
+    table: Any = tables
+    for part in path[:-1]:
+        if isinstance(table, dict) and not isinstance(table.get(part), (dict, list)):
+            table[part] = {}
+        table = table[part]
+    if path[-1] in outline.TAGS and table.get(path[-1]) != value:
+        # A table of another kind starts afresh: the keys of the old kind mean nothing in it.
+        table.clear()
+    table[path[-1]] = value
+
+
+def _make_shared(tables: dict[str, Any], path: Path) -> None:
+    """Take a value that is set for both bodies out of each of them."""
+    if path[0] not in outline.SHARED:
+        return
+    own = path[:-1] if path[-1] in outline.TAGS else path
+    for body in ("slider", "track"):
+        table = outline.look_up(tables, (body, *own[:-1]))
+        if isinstance(table, dict):
+            table.pop(own[-1], None)
+
+
+def _value(text: str) -> Any:
+    """Return a text as the TOML value it stands for, or as itself."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
+    except (ValueError, RecursionError):
+        return text
+
+
+def _text(path: Path) -> tuple[str, ...]:
+    return tuple(map(str, path))
+
+
+def _nearest(asked: tuple[str, ...], known: list[Path]) -> str:
+    full = [".".join(_text(path)) for path in known]
+    endings = [".".join(_text(path)[-len(asked) :]) for path in known]
+    near = get_close_matches(".".join(asked), dict.fromkeys([*endings, *full]), n=1, cutoff=0.6)
+    return (
+        f"; did you mean {near[0]!r}?" if near else f"; the tables are {', '.join(outline.properties(outline.SCHEMA))}"
+    )

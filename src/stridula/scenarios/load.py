@@ -1,0 +1,119 @@
+"""Scenarios by name or from files, ready to simulate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+from pydantic import ValidationError
+
+from ..integration import SCHEMES, CentralDifference, ExactModal, simulate
+from ..records import Probe
+from ..system import System
+from .build import Builder
+from .errors import ScenarioError, as_written, explain
+from .inheritance import shared_out
+from .keys import overridden
+from .read import read_tables
+from .schema import ScenarioTable
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A system, and how to simulate it.
+
+    Attributes
+    ----------
+    title, description : str
+        What it is.
+    system : System
+        What to simulate.
+    duration : float
+        Time to simulate [s].
+    scheme : ExactModal or CentralDifference
+        Time scheme.
+    step : float or None
+        Time step [s]; the scheme's default if None.
+    sample_rate : float
+        Samples recorded per second [Hz].
+    probes : tuple of probes or None
+        What else to record; the acceleration of the track's centre if None.
+    """
+
+    title: str
+    description: str
+    system: System
+    duration: float
+    scheme: ExactModal | CentralDifference
+    step: float | None
+    sample_rate: float
+    probes: tuple[Probe, ...] | None
+
+    def simulate(self, **kwargs: Any) -> xr.Dataset:
+        """March the system in time and return its record.
+
+        Parameters
+        ----------
+        **kwargs
+            Arguments of `simulate` to use instead of, or beside, the scenario's.
+
+        Raises
+        ------
+        ScenarioError
+            If the scenario's step, duration or sample rate is out of its range.
+        """
+        names = ("duration", "scheme", "step", "sample_rate", "probes", "title")
+        own = {name: getattr(self, name) for name in names}
+        try:
+            return simulate(self.system, **(own | kwargs))
+        except ValueError as error:
+            word = str(error).partition(" ")[0]
+            if word not in own or word in kwargs:
+                raise
+            raise ScenarioError([f"simulation.{error}"]) from error
+
+
+def load_scenario(name_or_path: str | Path, overrides: Mapping[str, Any] | None = None) -> Scenario:
+    """Read a scenario and check it.
+
+    Parameters
+    ----------
+    name_or_path : str or Path
+        Name of a shipped case, a TOML file, or a record that `save` wrote, to be run again.
+    overrides : mapping, optional
+        Values to set by key: a full path such as ``contact.friction.coefficient``, or any unique ending of one.
+
+    Returns
+    -------
+    Scenario
+
+    Raises
+    ------
+    ScenarioError
+        With every problem found: each names the key, the value and what is allowed.
+    OSError
+        If the file cannot be read.
+    """
+    written = overridden(read_tables(name_or_path), overrides or {})
+    tables = shared_out(written)
+    try:
+        checked = ScenarioTable.model_validate(tables)
+    except ValidationError as error:
+        raise explain(error, tables, written) from None
+    builder = Builder({"drives": []} | checked.model_dump(exclude_unset=True), partial(as_written, written=written))
+    system = builder.system()
+    simulation = checked.simulation
+    return Scenario(
+        title=checked.title,
+        description=checked.description,
+        system=system,
+        duration=simulation.duration,
+        scheme=SCHEMES[simulation.scheme](),
+        step=simulation.step,
+        sample_rate=simulation.sample_rate,
+        probes=builder.probes(system),
+    )

@@ -1,0 +1,109 @@
+"""The outline of a scenario file: which keys there can be, read from its JSON schema."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from .schema import SCHEMA
+
+Node = dict[str, Any]
+Path = tuple[str | int, ...]
+SHARED = ("material", "section", "damping", "cutoff")
+TAGS = ("shape", "law", "kind", "quantity")
+
+
+def properties(node: Node | None, table: Any = None) -> dict[str, Node]:
+    """Return the keys known in a table: those of its own kind if it says which, else of all kinds."""
+    kinds = [variant.get("properties", {}) for variant in _variants(node)]
+    known: dict[str, Node] = {}
+    for kind in [kind for kind in kinds if not _differs(kind, table)] or kinds:
+        for name, child in kind.items():
+            known[name] = _joined(known[name], child) if name in known else child
+    return known
+
+
+def items(node: Node | None) -> Node | None:
+    """Return the node of a list's entries, if it is a list."""
+    return next((variant["items"] for variant in _variants(node) if "items" in variant), None)
+
+
+def is_number(node: Node) -> bool:
+    """Return whether a key holds a number."""
+    return any(variant.get("type") in ("number", "integer") for variant in _variants(node))
+
+
+def words(node: Node | None) -> list[str]:
+    """Return the words that a key allows, none if it is not a choice."""
+    chosen = [variant.get("enum", [variant["const"]] if "const" in variant else []) for variant in _variants(node)]
+    return list(dict.fromkeys(word for group in chosen for word in group))
+
+
+def node_at(path: Path, tables: Any) -> Node | None:
+    """Return the node at a path, or None if there is no such key."""
+    node: Node | None = SCHEMA
+    for part in path:
+        node = items(node) if isinstance(part, int) else properties(node, tables).get(part)
+        tables = look_up(tables, (part,))
+    return node
+
+
+def paths(tables: Any, node: Node = SCHEMA, path: Path = ()) -> Iterator[tuple[Path, Node]]:
+    """Go through every key that can be set: those there and those left out."""
+    for name, child in properties(node, tables).items():
+        below = look_up(tables, (name,))
+        yield (*path, name), child
+        yield from paths(below, child, (*path, name))
+        entry = items(child)
+        for number, element in enumerate(below if entry and isinstance(below, list) else ()):
+            yield from paths(element, entry or {}, (*path, name, number))
+
+
+def look_up(tables: Any, path: Sequence[str | int]) -> Any:
+    """Return the value at a path, or None if there is none."""
+    for part in path:
+        if isinstance(tables, dict):
+            tables = tables.get(part)
+        elif isinstance(tables, list) and isinstance(part, int) and part < len(tables):
+            tables = tables[part]
+        else:
+            return None
+    return tables
+
+
+def plain(location: Sequence[str | int], tables: Any) -> Path:
+    """Return the path of an error's location, less the kinds that pydantic puts after tables of several kinds."""
+    path: list[str | int] = []
+    tag: Any = None
+    for part in location:
+        if tag is not None and part == tag:
+            tag = None
+            continue
+        path.append(part)
+        table = look_up(tables, path)
+        tag = next((table[name] for name in TAGS if name in table), None) if isinstance(table, dict) else None
+    return tuple(path)
+
+
+def _variants(node: Node | None) -> list[Node]:
+    if node is None:
+        return []
+    if "$ref" in node:
+        node = SCHEMA["$defs"][node["$ref"].rpartition("/")[2]]
+    choices = node.get("oneOf", node.get("anyOf"))
+    return [node] if choices is None else [variant for choice in choices for variant in _variants(choice)]
+
+
+def _differs(known: dict[str, Node], table: Any) -> bool:
+    """Return whether a table says that it is of another kind than the one with these keys."""
+    if not isinstance(table, dict):
+        return False
+    return any(tag in known and tag in table and table[tag] not in words(known[tag]) for tag in TAGS)
+
+
+def _joined(one: Node, other: Node) -> Node:
+    return one if one == other else {**one, "anyOf": [_bare(one), _bare(other)]}
+
+
+def _bare(node: Node) -> Node:
+    return {name: value for name, value in node.items() if name != "description"}

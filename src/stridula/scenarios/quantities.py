@@ -1,0 +1,71 @@
+"""Numbers with units in scenario files: "45 deg", "1 cm/s", "15 kHz" become SI."""
+
+from __future__ import annotations
+
+import math
+import re
+from decimal import Decimal
+from numbers import Real
+from typing import Any
+
+DEGREE = "0.01745329251994329576923690768"
+# For each SI unit, the spellings that are read and their factors; decimal, so that "9.8 mm" is exactly 0.0098.
+UNITS: dict[str, dict[str, str]] = {
+    "1": {"%": "0.01"},
+    "m": {"m": "1", "cm": "0.01", "mm": "1e-3", "um": "1e-6", "µm": "1e-6"},
+    "m2": {"m2": "1", "cm2": "1e-4", "mm2": "1e-6"},
+    "m4": {"m4": "1", "cm4": "1e-8", "mm4": "1e-12"},
+    "s": {"s": "1", "ms": "1e-3", "us": "1e-6", "µs": "1e-6"},
+    "Hz": {"Hz": "1", "kHz": "1e3", "MHz": "1e6"},
+    "rad": {"rad": "1", "deg": DEGREE, "°": DEGREE},
+    "m/s": {"m/s": "1", "cm/s": "0.01", "mm/s": "1e-3"},
+    "m/s2": {"m/s2": "1"},
+    "N": {"N": "1", "mN": "1e-3", "kN": "1e3"},
+    "Pa": {"Pa": "1", "MPa": "1e6", "GPa": "1e9"},
+    "kg/m3": {"kg/m3": "1", "g/cm3": "1e3"},
+}
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?|[+-]?inf|nan)\s*(.*?)\s*")
+
+
+def quantity(value: Any, unit: str) -> float:
+    """Return a number in SI from a number or a text such as ``"20 mm"``.
+
+    Parameters
+    ----------
+    value : float or str
+        A number in `unit`, or a text with a number and a unit of the same dimension.
+    unit : str
+        SI unit, a key of `UNITS`; ``"1"`` for a ratio.
+
+    Raises
+    ------
+    ValueError
+        If it is not a finite number, or its unit is of another dimension.
+    """
+    if isinstance(value, bool) or not isinstance(value, (Real, str)):
+        raise ValueError(f"must be a number{_units(unit)}")
+    if not isinstance(value, str):
+        return _finite(value)
+    match = _NUMBER.fullmatch(value)
+    if match is None:
+        raise ValueError(f"must be a number{_units(unit)}")
+    number, spelling = match.groups()
+    _finite(float(number))
+    factor = UNITS[unit].get(spelling.replace("²", "2").replace("³", "3"), "1" if not spelling else None)
+    if factor is None:
+        raise ValueError(f"must be a number{_units(unit)}")
+    return float(Decimal(number) * Decimal(factor))
+
+
+def _finite(number: Real | float) -> float:
+    try:
+        if math.isfinite(number):
+            return float(number)
+    except OverflowError:
+        pass
+    raise ValueError("must be finite")
+
+
+def _units(unit: str) -> str:
+    spellings = [word for word in UNITS[unit] if word.isascii()]
+    return "" if unit == "1" else f" in {' or '.join(filter(None, [', '.join(spellings[:-1]), spellings[-1]]))}"

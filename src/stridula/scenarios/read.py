@@ -1,0 +1,92 @@
+"""Scenario files: where they are, what they hold, what they build on."""
+
+from __future__ import annotations
+
+import tomllib
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from ..checks import suggestion
+from ..records.files import MAGIC, read, scenario_of
+from .errors import ScenarioError
+from .inheritance import merged, spelled_out
+
+SHIPPED = files(__package__)
+
+
+def shipped(folder: str) -> dict[str, str]:
+    """Return the texts of the shipped ``cases`` or ``bases`` by name."""
+    found = SHIPPED.joinpath(folder).iterdir()
+    texts = {entry.name.removesuffix(".toml"): entry for entry in found if entry.name.endswith(".toml")}
+    return {name: texts[name].read_text(encoding="utf-8") for name in sorted(texts)}
+
+
+def read_tables(name_or_path: str | Path) -> dict[str, Any]:
+    """Return the tables of a shipped case, a scenario file or a record, with those of its base.
+
+    Raises
+    ------
+    ScenarioError
+        If it is not there, or is not TOML.
+    OSError
+        If the file cannot be read.
+    """
+    cases = shipped("cases")
+    if str(name_or_path) in cases:
+        return _with_base(_parsed(cases[str(name_or_path)], str(name_or_path)), Path(), ())
+    path = Path(name_or_path)
+    if not path.exists():
+        raise ScenarioError(
+            [
+                f"scenario must be a file or one of {', '.join(cases)}, got {str(name_or_path)!r}"
+                f"{suggestion(name_or_path, list(cases))}"
+            ]
+        )
+    return _with_base(_file_tables(path), path.parent, (path.resolve(),))
+
+
+def _file_tables(path: Path) -> dict[str, Any]:
+    if path.is_dir() or path.is_char_device() or path.is_block_device():
+        raise ScenarioError(
+            [f"scenario must be a file, got {str(path)!r}, a {'directory' if path.is_dir() else 'device'}"]
+        )
+    content = read(path)
+    if content.startswith(MAGIC):
+        title, text = scenario_of(path)
+        return {"title": title} | _parsed(text, str(path))
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise ScenarioError([f"scenario must be a text file in UTF-8, got {str(path)!r}"]) from None
+    tables = _parsed(text, str(path))
+    if not tables:
+        raise ScenarioError(
+            [f"scenario must not be empty, got {str(path)!r}: `stridula show squeal` prints one to edit"]
+        )
+    return tables
+
+
+def _parsed(text: str, name: str) -> dict[str, Any]:
+    try:
+        return spelled_out(tomllib.loads(text))
+    except (ValueError, RecursionError) as error:
+        where = str(error).replace("at end of document", f"at its end, line {text.count(chr(10))}")
+        raise ScenarioError([f"scenario must be TOML, got {name!r}: {where}"]) from None
+
+
+def _with_base(tables: dict[str, Any], folder: Path, above: tuple[Path, ...]) -> dict[str, Any]:
+    """Return the tables merged onto those of their base, found among the shipped ones or from `folder`."""
+    if "base" not in tables:
+        return tables
+    base, own = tables["base"], {key: value for key, value in tables.items() if key != "base"}
+    bases = shipped("bases") | shipped("cases")
+    if isinstance(base, str) and base in bases:
+        return merged(_with_base(_parsed(bases[base], base), folder, above), own)
+    path = folder / base if isinstance(base, str) else None
+    if path is None or not path.is_file():
+        allowed = f"base must be a scenario file or one of {', '.join(bases)}"
+        raise ScenarioError([f"{allowed}, got {base!r}{suggestion(base, list(bases))}"])
+    if path.resolve() in above:
+        raise ScenarioError([f"base must not lead back to itself, got {base!r}"])
+    return merged(_with_base(_file_tables(path), path.parent, (*above, path.resolve())), own)

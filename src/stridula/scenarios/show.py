@@ -1,0 +1,94 @@
+"""Scenarios as text: the list of cases, one case in full, the schema for editors."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import Any
+
+import tomli_w
+
+from .outline import Path, node_at, properties
+from .read import read_tables, shipped
+from .schema import SCHEMA
+
+COMMENT_COLUMN = 32
+
+
+@dataclass(frozen=True)
+class Case:
+    """A shipped scenario.
+
+    Attributes
+    ----------
+    name, title, source : str
+        What to call it, what it is, and where it comes from.
+    """
+
+    name: str
+    title: str
+    source: str
+
+
+def list_scenarios() -> list[Case]:
+    """Return the shipped scenarios, in the order of their sources."""
+    tables = {name: read_tables(name) for name in shipped("cases")}
+    cases = [Case(name, table["title"], table["source"]) for name, table in tables.items()]
+    return sorted(cases, key=lambda case: case.source)
+
+
+def scenario_text(name_or_path: str | FilePath) -> str:
+    """Return a scenario as complete TOML, its base merged in and every key explained, to copy and edit."""
+    tables = read_tables(name_or_path)
+    return "\n".join(_lines(tables, (), tables)).strip() + "\n"
+
+
+def scenario_schema() -> dict[str, Any]:
+    """Return the JSON schema of scenario files, for editors; a key may be left out where a base can give it."""
+    schema: dict[str, Any] = _relaxed(copy.deepcopy(SCHEMA))
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "stridula scenario"}
+
+
+def _lines(table: dict[str, Any], path: Path, tables: dict[str, Any]) -> list[str]:
+    """Return the lines of a table: its values first, then the tables and lists of tables in it."""
+    order = list(properties(node_at(path, tables), table))
+    ordered = sorted(table.items(), key=lambda item: order.index(item[0]) if item[0] in order else len(order))
+    lines = []
+    for key, value in ordered:
+        if not _has_header(value):
+            lines += _value_lines(key, value, (*path, key), tables)
+    for key, value in ordered:
+        if isinstance(value, dict):
+            lines += ["", f"[{_header((*path, key))}]", *_lines(value, (*path, key), tables)]
+        elif _has_header(value):
+            for number, entry in enumerate(value):
+                lines += ["", f"[[{_header((*path, key))}]]", *_lines(entry, (*path, key, number), tables)]
+    return lines
+
+
+def _value_lines(key: str, value: Any, path: Path, tables: dict[str, Any]) -> list[str]:
+    lines = tomli_w.dumps({key: value}, multiline_strings="\n" in str(value)).rstrip("\n").split("\n")
+    comment = (node_at(path, tables) or {}).get("description")
+    if comment and len(path) > 1 and len(lines) == 1:
+        lines = [f"{lines[0]:<{COMMENT_COLUMN}}  # {comment}"]
+    return lines
+
+
+def _has_header(value: Any) -> bool:
+    return isinstance(value, dict) or (
+        isinstance(value, list) and bool(value) and all(isinstance(entry, dict) for entry in value)
+    )
+
+
+def _header(path: Path) -> str:
+    return ".".join(part for part in path if isinstance(part, str))
+
+
+def _relaxed(node: Any) -> Any:
+    if isinstance(node, list):
+        return [_relaxed(entry) for entry in node]
+    if not isinstance(node, dict):
+        return node
+    kept = {key: value for key, value in node.items() if key not in ("required", "discriminator")}
+    return {"anyOf" if key == "oneOf" else key: _relaxed(value) for key, value in kept.items()}

@@ -1,0 +1,162 @@
+"""Bodies, sections and materials: what they say of themselves, and what they refuse."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stridula as st
+
+STEEL = st.Material(2.1e11, 7800.0)
+STRIP = st.Rectangle(0.020, 0.004)
+NAN, INF = float("nan"), float("inf")
+
+
+def beam(**changes):
+    words = {"material": STEEL, "section": STRIP, "length": 0.5, "elements": 4} | changes
+    return st.FiniteElementBeam(**words)
+
+
+def bar(**changes):
+    words = {"material": STEEL, "section": STRIP, "length": 0.8, "bending_modes": 5, "axial_modes": 3} | changes
+    return st.ModalBeam(**words)
+
+
+POSITIVE = [NAN, INF, -INF, -1.0, 0.0, True, "1", None, [1.0], 1j]
+MAKERS = {
+    "Material.young": (lambda v: st.Material(v, 7800.0), "young", POSITIVE),
+    "Material.density": (lambda v: st.Material(2.1e11, v), "density", POSITIVE),
+    "Section.area": (lambda v: st.Section(v, 1e-9), "area", POSITIVE),
+    "Section.second_moment": (lambda v: st.Section(1e-4, v), "second_moment", POSITIVE),
+    "Rectangle.width": (lambda v: st.Rectangle(v, 0.01), "width", POSITIVE),
+    "Rectangle.height": (lambda v: st.Rectangle(0.01, v), "height", POSITIVE),
+    "Circle.diameter": (lambda v: st.Circle(v), "diameter", POSITIVE),
+    "FiniteElementBeam.material": (lambda v: beam(material=v), "material", [None, 1.0, "steel", STRIP]),
+    "FiniteElementBeam.section": (lambda v: beam(section=v), "section", [None, 1.0, "round", STEEL]),
+    "FiniteElementBeam.length": (lambda v: beam(length=v), "length", POSITIVE),
+    "FiniteElementBeam.angle": (
+        lambda v: beam(angle=v),
+        "angle",
+        [NAN, INF, np.pi / 2, -np.pi / 2, 45.0, True, "45 deg", None],
+    ),
+    "FiniteElementBeam.elements": (lambda v: beam(elements=v), "elements", [0, -1, 1.0, 2.5, NAN, True, "4", None]),
+    "FiniteElementBeam.damping": (lambda v: beam(damping=v), "damping", [NAN, INF, -0.01, 1.0, 2.0, True, "0", None]),
+    "FiniteElementBeam.root_support": (lambda v: beam(root_support=v), "root_support", ["fixed", "", None, 1, "Guided"]),
+    "FiniteElementBeam.tip_support": (lambda v: beam(tip_support=v), "tip_support", ["fixed", "", None, 1]),
+    "FiniteElementBeam.mass": (lambda v: beam(mass=v), "mass", ["full", None, 0.3]),
+    "FiniteElementBeam.cutoff": (lambda v: beam(cutoff=v), "cutoff", [v for v in POSITIVE if v is not None]),
+    "FiniteElementBeam.at": (lambda v: beam().at(v), "position", [NAN, INF, -1e-9, 0.5001, True, "tip", None]),
+    "FiniteElementBeam.trace": (lambda v: beam().trace(v), "position", [NAN, INF, -1e-9, 0.5001, True, "tip", None]),
+    "ModalBeam.material": (lambda v: bar(material=v), "material", [None, 1.0, "steel", STRIP]),
+    "ModalBeam.section": (lambda v: bar(section=v), "section", [None, 1.0, "round", STEEL]),
+    "ModalBeam.length": (lambda v: bar(length=v), "length", POSITIVE),
+    "ModalBeam.bending_modes": (lambda v: bar(bending_modes=v), "bending_modes", [0, -1, 1.0, NAN, True, "4", None]),
+    "ModalBeam.axial_modes": (lambda v: bar(axial_modes=v), "axial_modes", [-1, 1.0, NAN, True, "4", None]),
+    "ModalBeam.damping": (lambda v: bar(damping=v), "damping", [NAN, INF, -0.01, 1.0, 2.0, True, "0", None]),
+    "ModalBeam.cutoff": (lambda v: bar(cutoff=v), "cutoff", [*(v for v in POSITIVE if v is not None), 1.0]),
+    "ModalBeam.at": (lambda v: bar().at(v), "position", [NAN, INF, -1e-9, 0.8001, True, "centre", None]),
+    "ModalBeam.trace": (lambda v: bar().trace(v), "position", [NAN, INF, -1e-9, 0.8001, True, "centre", None]),
+    "BodyPoint.position": (lambda v: st.BodyPoint(beam(), v), "position", [NAN, INF, -1e-9, 0.5001, True, "tip", None]),
+    "BodyPoint.body": (lambda v: st.BodyPoint(v, 0.0), "body", [None, 1.0, "slider", STEEL]),
+}
+CASES = [pytest.param(*rest[:2], v, id=f"{k}={v!r}"[:60]) for k, rest in MAKERS.items() for v in rest[2]]
+
+
+@pytest.mark.parametrize(("make", "name", "value"), CASES)
+def test_bad_arguments_are_named_with_value_and_range(make, name, value):
+    with pytest.raises(ValueError, match=rf"^{name} must ") as caught:
+        make(value)
+    message = str(caught.value)
+    assert repr(value) in message
+    assert "\n" not in message
+
+
+def test_no_mode_left_says_so_when_modes_are_asked_for():
+    with pytest.raises(ValueError, match="cutoff must leave at least one mode"):
+        beam(root_support="clamped", cutoff=1.0).modes()
+
+
+def test_misspelt_support_suggests_the_nearest():
+    with pytest.raises(ValueError, match="did you mean 'clamped'"):
+        beam(root_support="clampd")
+
+
+def test_sections():
+    assert STRIP.area == pytest.approx(8e-5)
+    assert STRIP.second_moment == pytest.approx(0.020 * 0.004**3 / 12)
+    assert st.Circle(0.01).area == pytest.approx(np.pi * 0.005**2)
+    assert st.Circle(0.01).second_moment == pytest.approx(np.pi * 0.005**4 / 4)
+
+
+def test_descriptions_are_frozen_hashable_and_equal_by_value():
+    for thing in (STEEL, STRIP, beam(), bar(), beam().tip, st.Coulomb(0.3)):
+        assert hash(thing) == hash(replace(thing))
+        assert thing == replace(thing)
+        with pytest.raises(AttributeError):
+            thing.anything = 1
+        field = next(iter(thing.__dataclass_fields__))
+        with pytest.raises(AttributeError):
+            setattr(thing, field, getattr(thing, field))
+
+
+@pytest.mark.parametrize("angle", [-1.2, 0.0, 0.5])
+def test_axes_follow_the_convention(angle):
+    """e1 = (sin a, cos a) from tip to root, t1 = (cos a, -sin a)."""
+    along, across = beam(angle=angle).axes
+    np.testing.assert_allclose(along, [np.sin(angle), np.cos(angle)])
+    np.testing.assert_allclose(across, [np.cos(angle), -np.sin(angle)])
+    np.testing.assert_array_equal(bar().axes, [[1, 0], [0, 1]])
+
+
+@pytest.mark.parametrize("angle", [-1.2, 0.0, 0.5])
+def test_rigid_motions_of_a_free_beam_have_the_right_signs(angle):
+    """All modes together resolve a translation along x, one along y and a turn: each is reproduced at every point.
+
+    Least squares on traces at the ends finds the modal coordinates of a rigid motion, which must then hold inside.
+    """
+    body = beam(angle=angle, root_support="free")
+    rigid = body.modes().frequency == 0
+    assert rigid.sum() == 3
+    inside = [0.0, 0.11, 0.3, 0.5]
+    rows = np.vstack([body.trace(s)[:, rigid] for s in inside])
+    motions = {
+        "x": np.tile([1.0, 0.0], 4),
+        "y": np.tile([0.0, 1.0], 4),
+        "turn": np.concatenate([(s - 0.25) * body.axes[1] for s in inside]),
+    }
+    for name, wanted in motions.items():
+        found = rows @ np.linalg.lstsq(rows, wanted, rcond=None)[0]
+        np.testing.assert_allclose(found, wanted, atol=1e-10, err_msg=name)
+
+
+def test_total_mass_and_points():
+    body, track = beam(), bar()
+    assert body.total_mass == pytest.approx(7800 * 8e-5 * 0.5)
+    assert (body.tip.position, body.root.position, track.centre.position) == (0.0, 0.5, 0.4)
+    assert body.at(0.5) == body.root
+    assert track.amplitude == pytest.approx(np.sqrt(2 / track.total_mass))
+
+
+def test_supports_hold_what_they_say():
+    """The traces at a pinned or clamped end vanish, at a guided or free one they do not."""
+    for support, held in (("pinned", True), ("clamped", True), ("guided", False), ("free", False)):
+        body = beam(root_support=support, angle=0.4)
+        assert (np.abs(body.trace(0.5)).max() < 1e-9) == held
+    x_held = beam(angle=0.4).trace(0.5, held_x=True)
+    assert np.abs(x_held[0]).max() < 1e-9
+    assert np.abs(x_held[1]).max() > 0.1
+
+
+def test_a_cutoff_of_a_modal_beam_keeps_the_modes_up_to_it():
+    whole = bar(bending_modes=60, axial_modes=30)
+    cut = bar(cutoff=9e3)
+    assert cut.harmonics == tuple(np.sum(np.array(f) <= 9e3) for f in np.split(whole.modes().frequency, [60]))
+    exactly = bar(cutoff=float(whole.modes().frequency[3]))
+    assert exactly.harmonics[0] == 4
+
+
+def test_modal_beam_cannot_be_held():
+    with pytest.raises(ValueError, match="^held_x must be False"):
+        bar().modes(held_x=True)

@@ -1,0 +1,390 @@
+"""The time loop: ends, extension, low-pass, sampling, interruption, and refusals."""
+
+from __future__ import annotations
+
+import signal
+from dataclasses import replace
+from importlib import import_module
+
+import numpy as np
+import pytest
+from physics.cases import CASES, SCHEME_NAMES, SCHEMES, STEP, dragged, every_step, pair, shaken, slider, track, transverse
+
+import stridula as st
+from stridula.integration.decimation import Decimator
+
+loop = import_module("stridula.integration.simulate")
+BOTH = pytest.mark.parametrize("scheme", SCHEMES, ids=SCHEME_NAMES)
+
+
+def probed(system):
+    """Probes of each kind on both bodies."""
+    rod, bar = system.slider, system.track
+    return [
+        st.Displacement(rod.tip, "y"),
+        st.Velocity(rod.root, "x"),
+        st.Acceleration(bar.centre, "y"),
+        st.Displacement(bar.at(0.3), "x"),
+        st.Reaction(rod, "moment"),
+    ]
+
+
+def assert_same(pieces, whole):
+    """The records of the pieces, one after the other, are the record of the whole, bit for bit."""
+    for name in whole.data_vars:
+        if "time" in whole[name].dims:
+            joined = np.concatenate([piece[name].values for piece in pieces])
+            np.testing.assert_array_equal(joined, whole[name].values, err_msg=name)
+    np.testing.assert_allclose(np.concatenate([piece.time for piece in pieces]), whole.time, rtol=1e-15)
+    np.testing.assert_array_equal(pieces[-1].state_modal, whole.state_modal)
+    np.testing.assert_array_equal(pieces[-1].state_carried, whole.state_carried)
+
+
+@BOTH
+@pytest.mark.parametrize("ratio", [1, 2, 7])
+@pytest.mark.parametrize("name", CASES)
+def test_two_halves_are_the_whole(name, ratio, scheme):
+    system = CASES[name]()
+    words = {"scheme": scheme, "step": STEP, "sample_rate": 1 / (ratio * STEP), "probes": probed(system)}
+    half = 1000 * ratio * STEP if ratio == 1 else 140 * 7 * STEP
+    whole = st.simulate(system, 2 * half, **words)
+    first = st.simulate(system, half, **words)
+    second = st.simulate(system, half, start=first, **words)
+    assert_same([first, second], whole)
+
+
+def test_a_run_goes_on_from_a_saved_file(tmp_path):
+    system = CASES["squeal"]()
+    words = {"step": STEP, "sample_rate": 50e3, "probes": probed(system)}
+    whole = st.simulate(system, 0.01, **words)
+    first = st.simulate(system, 0.005, **words)
+    import xarray as xr
+
+    first.to_netcdf(tmp_path / "first.nc", engine="h5netcdf")
+    with xr.open_dataset(tmp_path / "first.nc", engine="h5netcdf") as reopened:
+        second = st.simulate(system, 0.005, start=reopened.load(), **words)
+    assert_same([first, second], whole)
+
+
+def test_short_pieces_are_the_whole():
+    """Pieces shorter than the memory of the low-pass, 7 samples: it must be handed on whole."""
+    system = pair(shaken, mu=0.7)
+    words = {"step": STEP, "sample_rate": 1 / (4 * STEP), "probes": probed(system)}
+    whole = st.simulate(system, 20 * 4 * STEP, **words)
+    pieces = [st.simulate(system, 3 * 4 * STEP, **words)]
+    for samples in (2, 5, 1, 9):
+        pieces.append(st.simulate(system, samples * 4 * STEP, start=pieces[-1], **words))
+    assert_same(pieces, whole)
+
+
+def test_chunks_do_not_show(monkeypatch):
+    """A run in small chunks is the run in one: memory stays that of the record."""
+    system = CASES["squeal"]()
+    words = {"step": STEP, "sample_rate": 1 / (4 * STEP), "probes": probed(system)}
+    whole = st.simulate(system, 0.02, **words)
+    monkeypatch.setattr(loop, "STEPS_PER_CHUNK", 12)
+    assert_same([st.simulate(system, 0.02, **words)], whole)
+
+
+@pytest.mark.parametrize("ratio", [1, 2, 5])
+def test_samples_are_means_sums_and_ends_of_the_steps(ratio):
+    """Forces and slip velocity are means of the steps, energies and positions the value at the last, shares count."""
+    system = CASES["squeal"]()
+    fine = every_step(system, 10_000, SCHEMES[1])
+    coarse = st.simulate(system, 10_000 * STEP, scheme=SCHEMES[1], step=STEP, sample_rate=1 / (ratio * STEP))
+    for name in ("normal_force", "tangential_force", "slip_velocity"):
+        means = fine[name].values.reshape(-1, ratio).mean(axis=1)
+        # The mean slip velocity is a difference of two abscissae of 0.2 m.
+        np.testing.assert_allclose(coarse[name], means, rtol=1e-12, atol=1e-15 / STEP if "slip" in name else 1e-14)
+    for name in ("contact_position", "contact_height", "gap", "kinetic_and_elastic", "friction_loss", "drive_work"):
+        np.testing.assert_array_equal(coarse[name], fine[name].values[ratio - 1 :: ratio])
+    shares = fine.status_share.values.reshape(-1, ratio, 3).mean(axis=1)
+    np.testing.assert_allclose(coarse.status_share, shares, atol=1e-15)
+    np.testing.assert_allclose(coarse.time, fine.time.values[ratio - 1 :: ratio], rtol=1e-12)
+    impulse = fine.normal_force.values.sum() * STEP
+    assert coarse.normal_force.values.sum() * ratio * STEP == pytest.approx(impulse, rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [2, 5, 20])
+def test_low_pass_stops_tones_above_half_the_rate_and_passes_those_below_a_quarter(ratio):
+    """Tones fed at every step: over 40 dB down from half the sample rate on, within 1 % up to a quarter of it."""
+    steps = 400 * ratio
+    n = np.arange(steps)
+    centres = np.arange(1, 400) * ratio
+    for cycles in (0.5, 0.55, 0.7, 0.93, 1.3, 0.5 * ratio):
+        if cycles > 0.5 * ratio:
+            continue
+        tone = np.exp(2j * np.pi * cycles / ratio * n)
+        kept = np.hypot(*(Decimator(ratio).feed(part[:, None])[20:-20, 0] for part in (tone.real, tone.imag)))
+        assert kept.max() < 10 ** (-40 / 20), cycles
+    for cycles in (0.0, 0.01, 0.1, 0.2, 0.25):
+        tone = np.cos(2 * np.pi * cycles / ratio * n + 0.4)
+        kept = Decimator(ratio).feed(tone[:, None])[:, 0]
+        # No delay: sample k is the value at step (k + 1) ratio.
+        expected = tone[centres[: kept.size]]
+        assert np.abs(kept - expected)[20:].max() < 0.01, cycles
+
+
+def test_low_pass_harness_rejects_plain_picking():
+    """Negative control: every fifth value as it is lets a tone above half the sample rate through whole."""
+    tone = np.cos(2 * np.pi * 0.7 / 5 * np.arange(2000))
+    assert np.abs(tone[::5]).max() > 0.9
+
+
+@pytest.mark.parametrize("pieces", [[1] * 40, [3, 37], [17, 1, 2, 20], [40]])
+def test_low_pass_does_not_depend_on_the_pieces_fed(pieces):
+    random = np.random.default_rng(3).normal(size=(40 * 6, 2))
+    whole = Decimator(6).feed(random)
+    decimator, start, kept = Decimator(6), 0, []
+    for piece in pieces:
+        kept.append(decimator.feed(random[start : start + piece * 6]))
+        start += piece * 6
+    np.testing.assert_allclose(np.concatenate(kept), whole, atol=1e-14)
+
+
+@BOTH
+def test_decimated_probes_are_the_probes_of_every_step(scheme):
+    """Smooth motion far below a quarter of the rate: the low-pass gives the values at the same instants to 1e-3."""
+    bar, rod = track(damping=0.02, cutoff=500.0), slider(cutoff=500.0)
+    system = pair(
+        lambda _: [st.Force(bar.at(0.3), y=1.0, history=st.Harmonic(150.0))], 0.5, rod=rod, bar=bar, gap=1.0
+    )
+    probes = [kind(bar.at(0.3), "y") for kind in (st.Displacement, st.Velocity, st.Acceleration)]
+    fine = every_step(system, 20_000, scheme, probes=probes)
+    coarse = st.simulate(system, 0.1, scheme=scheme, step=STEP, sample_rate=10e3, probes=probes)
+    for kind in ("displacement", "velocity", "acceleration"):
+        expected = fine[kind].values[19::20]
+        off = np.abs(coarse[kind].values - expected)[10:].max()
+        assert off < 1e-3 * np.abs(expected).max(), kind
+
+
+@BOTH
+def test_probes_are_derivatives_of_each_other(scheme):
+    """Velocity and acceleration are the centred differences of the displacement, exactly."""
+    system = CASES["dragged to and fro"]()
+    kinds = (st.Displacement, st.Velocity, st.Acceleration)
+    for point in (system.track.at(0.2), system.slider.at(0.1)):
+        run = every_step(system, 2000, scheme, probes=[kind(point, "x") for kind in kinds])
+        u, v, a = (run[kind.__name__.lower()].values[:, 0] for kind in kinds)
+        scale = np.abs(u).max()
+        # The root's own velocity is that of its history, of which the centred difference is within (w h)²/6 = 1.06e-6.
+        tolerance = 1e-15 + (1.1e-6 * 0.02 * STEP if point.body is system.slider else 0)
+        np.testing.assert_allclose((u[2:] - u[:-2]) / 2, v[1:-1] * STEP, atol=1e-12 * scale + tolerance)
+        np.testing.assert_allclose(u[2:] - 2 * u[1:-1] + u[:-2], a[1:-1] * STEP**2, atol=1e-12 * scale + tolerance)
+
+
+@BOTH
+@pytest.mark.parametrize("ratio", [1, 2, 10])
+def test_a_tip_that_leaves_its_track_ends_the_run_there(ratio, scheme):
+    """Dragged at 1 m/s from 5 mm before the end: 5 ms recorded of 20, the last abscissa within a sample of the end."""
+    system = pair(dragged(1.0, 0.5), mu=0.1, at=0.795)
+    probes = [st.Displacement(system.slider.root, "x"), st.Acceleration(system.track.centre)]
+    run = st.simulate(system, 0.02, scheme=scheme, step=STEP, sample_rate=1 / (ratio * STEP), probes=probes)
+    assert run.attrs["ended"] == "off the track"
+    assert 0.004 < run.time.values[-1] < 0.006
+    assert run.sizes["time"] * ratio == run.attrs["last_step"]
+    assert 0.8 - 2.5 * ratio * STEP < run.contact_position.values[-1] < 0.8
+    for name in run.data_vars:
+        if "time" in run[name].dims:
+            assert np.all(np.isfinite(run[name])), name
+    with pytest.raises(ValueError, match="start must be a run that can go on"):
+        st.simulate(system, 0.01, scheme=scheme, step=STEP, sample_rate=1 / (ratio * STEP), probes=probes, start=run)
+
+
+@pytest.mark.parametrize("ratio", [1, 2, 10])
+def test_the_last_probe_sample_before_the_end_of_the_track_is_no_jump(ratio):
+    """What the low-pass lacks beyond the end is the last value, never zero: a root at 1 m/s stays on its line."""
+    system = pair(dragged(1.0, 0.5), mu=0.1, at=0.795)
+    probes = [st.Displacement(system.slider.root, "x")]
+    run = st.simulate(system, 0.02, step=STEP, sample_rate=1 / (ratio * STEP), probes=probes)
+    root = run.displacement.values[:, 0]
+    assert np.abs(root - run.time.values).max() < 8 * ratio * STEP
+
+
+@BOTH
+def test_off_the_track_at_the_left_end_too(scheme):
+    run = st.simulate(pair(dragged(-1.0, 0.5), mu=0.1, at=0.005), 0.02, scheme=scheme, step=STEP)
+    assert run.attrs["ended"] == "off the track"
+    assert 0 < run.contact_position.values[-1] < 1e-4
+
+
+def test_interruption_keeps_what_was_recorded_and_can_go_on():
+    """A Ctrl-C between chunks: the record so far, and its extension is the run that was not interrupted."""
+    system = CASES["squeal"]()
+    words = {"step": STEP, "sample_rate": 50e3, "probes": probed(system)}
+    whole = st.simulate(system, 0.4, **words)
+
+    def stop(progress):
+        if progress.time > 0.15:
+            raise KeyboardInterrupt
+
+    with pytest.raises(st.Interrupted) as caught:
+        st.simulate(system, 0.4, watchers=[stop], **words)
+    first = caught.value.record
+    assert first.attrs["ended"] == "interrupted"
+    assert 0.15 < first.time.values[-1] < 0.4
+    second = st.simulate(system, 0.4 - first.time.values[-1], start=first, **words)
+    assert_same([first, second], whole)
+
+
+@pytest.fixture
+def ctrl_c():
+    """Python's own handler of SIGINT, whatever runs the tests."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield lambda: signal.raise_signal(signal.SIGINT)
+    signal.signal(signal.SIGINT, before)
+
+
+def test_ctrl_c_during_the_march_leaves_state_and_record_together(monkeypatch, ctrl_c):
+    """Python delivers a Ctrl-C as the compiled march returns: state and record kept must be those of one instant."""
+    system = CASES["squeal"]()
+    words = {"step": STEP, "sample_rate": 50e3, "probes": probed(system)}
+    whole = st.simulate(system, 0.4, **words)
+    march, calls = loop.march, []
+
+    def struck(*arguments):
+        result = march(*arguments)
+        calls.append(1)
+        if len(calls) == 2:
+            ctrl_c()
+        return result
+
+    monkeypatch.setattr(loop, "march", struck)
+    with pytest.raises(st.Interrupted) as caught:
+        st.simulate(system, 0.4, **words)
+    monkeypatch.setattr(loop, "march", march)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    first = caught.value.record
+    second = st.simulate(system, 0.4 - first.sizes["time"] * first.attrs["sample_interval"], start=first, **words)
+    assert_same([first, second], whole)
+
+
+def test_a_state_that_is_no_longer_finite_is_said_with_the_record_kept(monkeypatch):
+    """A step past the limit, which `simulate` refuses, makes the march blow up: it must end, not return NaN."""
+    system = CASES["stable"]()
+    monkeypatch.setattr(st.CentralDifference, "limit", lambda *_: np.inf)
+    with pytest.raises(st.Diverged, match="no longer finite") as caught:
+        st.simulate(system, 0.5, scheme=st.CentralDifference(), step=3e-5)
+    record = caught.value.record
+    assert record.attrs["ended"] == "not finite"
+    assert np.all(np.isfinite(record.kinetic_and_elastic))
+
+
+def test_watchers_see_the_time_go_on():
+    seen = []
+    st.simulate(CASES["squeal"](), 0.5, step=STEP, watchers=[seen.append])
+    times = [progress.time for progress in seen]
+    assert times == sorted(times)
+    assert len(times) >= 5
+    assert times[-1] == pytest.approx(0.5)
+    assert {progress.duration for progress in seen} == {seen[0].duration}
+
+
+@BOTH
+def test_step_at_or_above_the_limit_is_refused_with_the_limit(scheme):
+    system = CASES["squeal"]()
+    arrays = loop.assemble(system)
+    limit = scheme.limit(arrays.angular_frequency, arrays.damping)
+    highest = arrays.angular_frequency.max()
+    expected = 2 / highest if scheme.name == "central difference" else np.pi / (highest * np.sqrt(1 - 0.02**2))
+    assert limit == pytest.approx(expected, rel=1e-12)
+    for step in (limit, 1.001 * limit, 1.0):
+        with pytest.raises(ValueError, match=r"^step must be below .*limit of [0-9.e-]+ s, got") as caught:
+            st.simulate(system, 0.01, scheme=scheme, step=step)
+        assert f"{limit:.6g}" in str(caught.value)
+    run = st.simulate(system, 0.005, scheme=scheme, step=limit * (1 - 1e-9))
+    assert np.all(np.isfinite(run.kinetic_and_elastic))
+
+
+@BOTH
+@pytest.mark.parametrize("sample_rate", [44_100.0, 1e5, 3e6])
+def test_default_step_divides_the_sample_and_stays_below_its_share_of_the_limit(sample_rate, scheme):
+    system = CASES["squeal"]()
+    run = st.simulate(system, 1e-3, scheme=scheme, sample_rate=sample_rate)
+    arrays = loop.assemble(system)
+    limit = scheme.limit(arrays.angular_frequency, arrays.damping)
+    assert run.attrs["step"] <= scheme.default_fraction * limit * (1 + 1e-9)
+    assert run.attrs["sample_interval"] == pytest.approx(1 / sample_rate, rel=1e-12)
+    assert run.attrs["step"] * run.attrs["steps_per_sample"] == pytest.approx(1 / sample_rate, rel=1e-12)
+
+
+SYSTEM = pair(transverse(), mu=0.5)
+BAD = [
+    ("duration", float("nan"), "finite"),
+    ("duration", float("inf"), "finite"),
+    ("duration", 0.0, "above 0"),
+    ("duration", -1.0, "above 0"),
+    ("duration", True, "number"),
+    ("duration", "1", "number"),
+    ("duration", None, "number"),
+    ("duration", 1e9, "GB"),
+    ("step", float("nan"), "finite"),
+    ("step", 0.0, "above 0"),
+    ("step", -1e-6, "above 0"),
+    ("step", True, "number"),
+    ("step", "1e-6", "number"),
+    ("sample_rate", float("nan"), "finite"),
+    ("sample_rate", float("inf"), "finite"),
+    ("sample_rate", 0.0, "above 0"),
+    ("sample_rate", -1.0, "above 0"),
+    ("sample_rate", False, "number"),
+    ("sample_rate", "fast", "number"),
+    ("scheme", "exact modal", "CentralDifference or ExactModal"),
+    ("scheme", 3, "CentralDifference or ExactModal"),
+    ("system", None, "System"),
+    ("system", "squeal", "System"),
+    ("probes", [st.Coulomb(1.0)], "Displacement"),
+    ("probes", ["tip"], "Displacement"),
+    ("probes", 5, "probes"),
+    ("start", "run.nc", "Dataset"),
+]
+
+
+@pytest.mark.parametrize(("name", "value", "allowed"), BAD, ids=[f"{n}={v!r}"[:30] for n, v, _ in BAD])
+def test_bad_arguments_are_named_with_value_and_range(name, value, allowed):
+    words = {"system": SYSTEM, "duration": 1e-3} | {name: value}
+    with pytest.raises(ValueError, match=allowed) as caught:
+        st.simulate(words.pop("system"), words.pop("duration"), **words)
+    message = str(caught.value)
+    assert message.startswith(name)
+    assert "\n" not in message
+    if name != "probes":
+        assert repr(value) in message
+
+
+@pytest.mark.parametrize("change", ["scheme", "step", "sample_rate", "modes", "probes", "variables"])
+def test_a_start_of_another_run_is_refused(change):
+    words = {"step": STEP, "sample_rate": 50e3}
+    first = st.simulate(SYSTEM, 1e-3, **words)
+    system = SYSTEM
+    if change == "scheme":
+        words["scheme"] = st.CentralDifference()
+    elif change == "step":
+        words["step"] = STEP / 2
+    elif change == "sample_rate":
+        words["sample_rate"] = 100e3
+    elif change == "modes":
+        system = pair(transverse(), mu=0.5, bar=track(cutoff=10e3))
+    elif change == "probes":
+        words["probes"] = []
+    else:
+        first = first.drop_vars("state_modal")
+    with pytest.raises(ValueError, match="^start must") as caught:
+        st.simulate(system, 1e-3, start=first, **words)
+    assert "\n" not in str(caught.value)
+
+
+def test_no_probes_and_no_drives_are_allowed():
+    quiet = replace(SYSTEM, drives=())
+    run = st.simulate(quiet, 1e-3, step=STEP, probes=[])
+    assert np.all(run.kinetic_and_elastic == 0)
+    assert np.all(run.status == 0)
+    assert "acceleration" not in run
+
+
+def test_probe_on_another_body_is_refused():
+    other = replace(SYSTEM.track, length=0.7)
+    with pytest.raises(ValueError, match=r"^probe.* must be on the slider or the track of this system"):
+        st.simulate(SYSTEM, 1e-3, probes=[st.Acceleration(other.centre)])
+    with pytest.raises(ValueError, match=r"^probe.* must be on the slider of this system"):
+        st.simulate(SYSTEM, 1e-3, probes=[st.Reaction(replace(SYSTEM.slider, length=0.4))])
