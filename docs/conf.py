@@ -63,10 +63,12 @@ html_show_sourcelink = False
 html_copy_source = False
 html_theme_options = {
     "navbar_end": ["theme-switcher"],
+    "navbar_persistent": ["search-button"],
+    "navbar_align": "left",
     "secondary_sidebar_items": ["page-toc"],
     "footer_start": ["copyright"],
     "footer_end": [],
-    "show_toc_level": 2,
+    "show_toc_level": 1,
     "show_prev_next": False,
     "header_links_before_dropdown": 10,
 }
@@ -78,8 +80,7 @@ logger = logging.getLogger(__name__)
 MODULES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("stridula.analysis", "What a record means", ()),
     ("stridula.plot", "Figures", ("overview", "timeline", "save")),
-    ("stridula.records.files", "Records in files", ("save", "load")),
-    ("stridula.scenarios", "Ready cases", ()),
+    ("stridula.scenarios", "More on scenarios", ()),
     ("stridula.papers.laulagnet_2011", "Laulagnet 2011", ()),
 )
 HOMES = {
@@ -89,7 +90,9 @@ HOMES = {
     "histories": "How a drive goes in time",
     "system": "The system",
     "records": "Probes: what else to record",
+    "records.files": "Records in files",
     "integration": "How time goes on",
+    "scenarios": "Ready cases",
 }
 
 
@@ -131,7 +134,9 @@ def api_page() -> str:
     for home, names in stridula._HOME.items():
         parts += api_group(HOMES.get(home, home), f"stridula.{home}", "stridula", names)
     for module, title, names in MODULES:
-        parts += api_group(title, module, module, names or import_module(module).__all__)
+        own = [name for name in names or import_module(module).__all__ if name not in stridula.__all__]
+        if own:
+            parts += api_group(title, module, module, own)
     return "\n".join(parts)
 
 
@@ -198,7 +203,7 @@ def scenario_tables() -> str:
     parts = []
     for model, path in seen.items():
         rows = [[f"``{key}``", default(field), plain(field.description or "")] for key, field in fields(model).items()]
-        title = f"``[{path}]``" if path else "Top of the file"
+        title = path or "Top of the file"
         parts += [title, "^" * len(title), "", list_table(["key", "default", "meaning"], rows, [22, 18, 60])]
     return "\n".join(parts)
 
@@ -209,24 +214,20 @@ def fields(model: type) -> dict[str, Any]:
 
 
 def collect(model: type, path: str, seen: dict[type, str]) -> None:
-    """Note the path of a table and of those inside it, each once."""
+    """Note the title of a table and of those inside it, each once."""
     seen[model] = path
     for key, field in fields(model).items():
         inner = list(tables_in(field.annotation))
         for table in inner:
-            if table in seen:
-                continue
-            word = kind_of(table) if len(inner) > 1 else ""
-            collect(table, ".".join(filter(None, [path, key])) + (f" {word}" if word else ""), seen)
+            if table not in seen:
+                word = kind_of(table) if len(inner) > 1 else ""
+                collect(table, f"{key}: {word}" if word else key, seen)
 
 
 def kind_of(table: type) -> str:
-    """Return what tells a table from its alternatives, such as ``kind = "ramp"``."""
-    for key in ("kind", "shape", "quantity"):
-        if key in fields(table):
-            words = get_args(fields(table)[key].annotation)
-            return f"{key} = " + " or ".join(f'"{word}"' for word in words)
-    return ""
+    """Return what tells a table from its alternatives, such as ``ramp``."""
+    tag = next((key for key in ("kind", "shape", "quantity") if key in fields(table)), None)
+    return " or ".join(get_args(fields(table)[tag].annotation)) if tag else ""
 
 
 def tables_in(annotation: Any) -> Iterable[type]:
@@ -242,10 +243,29 @@ def default(field: Any) -> str:
     """Return the default of a key in words."""
     if field.is_required():
         return "needed"
-    if field.default is None or field.default in ("", []):
+    value = field.get_default(call_default_factory=True)
+    if value is None or value in ("", []):
         return "none"
-    value = field.default
     return f"``{value:.6g}``" if isinstance(value, float) else f"``{value}``"
+
+
+def shipped_table() -> str:
+    """Return the table of shipped scenarios."""
+    from stridula.scenarios import list_scenarios, load_scenario
+
+    cases = [(case, load_scenario(case.name).description) for case in list_scenarios()]
+    rows = [[f"``{case.name}``", plain(words), plain(case.source)] for case, words in cases]
+    return list_table(["name", "what happens", "source"], rows, [20, 52, 28])
+
+
+def check_measures() -> None:
+    """Warn if a measure is missing on its page."""
+    from stridula import analysis
+
+    page = (HERE / "measures.rst").read_text(encoding="utf-8")
+    for name in analysis.__all__:
+        if f":func:`{name}`" not in page:
+            logger.warning("measures.rst does not say what %s is", name)
 
 
 # The paper
@@ -304,6 +324,8 @@ def setup(app: Sphinx) -> None:
     write(HERE / "api.rst", page)
     write(GENERATED / "variables.rst", variables_table())
     write(GENERATED / "scenario-keys.rst", scenario_tables())
+    write(GENERATED / "shipped.rst", shipped_table())
+    check_measures()
     reproduce_paper()
     write(GENERATED / "claims.rst", claims_page())
     write(GENERATED / "figures.rst", figures_page())

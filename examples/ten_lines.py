@@ -3,13 +3,13 @@ from math import radians
 import stridula as st
 from stridula import analysis, plot
 
-steel, strip = st.Material(young=2.1e11, density=7800.0), st.Rectangle(width=0.020, height=0.0098)
-rod = st.FiniteElementBeam(steel, strip, length=0.556, angle=radians(45.0), damping=0.00755, cutoff=15e3)
-track = st.ModalBeam(steel, strip, length=1.377, damping=0.00755, cutoff=15e3)
-contact = st.PointContact(rod.tip, track, at=0.358, friction=st.Coulomb(1.5), gap=1e-6)
-system = st.System(contact, drives=[st.Force(rod.root, transverse=3.29)])
+steel, strip = st.Material(young=2.1e11, density=7800.0), st.Rectangle(width=0.020, height=0.0092)
+rod = st.FiniteElementBeam(steel, strip, length=0.572, angle=radians(-45), damping=0.0075, cutoff=15e3)
+track = st.ModalBeam(steel, strip, length=1.386, damping=0.0075, cutoff=15e3)
+contact = st.PointContact(rod.tip, track, at=0.369, friction=st.Coulomb(1.1))
+system = st.System(contact, [st.ImposedVelocity(rod.root, velocity=0.01, normal_load=50.0)])
 run = st.simulate(system, duration=1.0)
 print(run.status_share.mean("time").to_series())
 squeal = analysis.dominant_frequency(run.normal_force, analysis.bursts(run))
-print(f"squeals at {squeal:.0f} Hz under a mean normal force of {run.normal_force.mean():.3f} N")
+print(f"squeals at {squeal:.0f} Hz under a mean normal force of {run.normal_force.mean():.2f} N")
 plot.save(plot.overview(run), "squeal.png")

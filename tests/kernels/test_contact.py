@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as some
-from kernels.twin import contact_states
 
+from kernels.twin import contact_states
 from stridula._kernels.contact import solve_contact
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
@@ -92,7 +92,7 @@ def test_laws_hold(gap, slip, turn, flat, mu):
 @given(lengths, lengths, turns, flats, frictions)
 @settings(max_examples=300, deadline=None)
 def test_mirror_image(gap, slip, turn, flat, mu):
-    """Turning x round changes the sign of the slip, of W_NT and of the tangential force, and nothing else: bit for bit."""
+    """Turning x round changes the sign of slip, W_NT and tangential force, and nothing else: bit for bit."""
     w = compliance(turn, flat)
     mirrored = w * np.array([[1, -1], [-1, 1]])
     one, other = solve(gap, slip, w, mu), solve(gap, -slip, mirrored, mu)

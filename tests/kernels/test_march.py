@@ -2,9 +2,9 @@
 
 Both follow the same equations by different arithmetic: increments against two positions, closed contact solve against
 trial of every state. The two-position form with ``1 - a + b`` computed by cancellation has a relative error of
-``eps / (w h)² ~ 2e-16 / (2 pi 50 x 5e-6)² = 1e-10`` on the lowest bending mode, and a contact force follows from a gap that
-is a difference of positions some 10 to 1000 times larger: 1e-8 holds for positions and energies, 1e-6 of the peak for
-forces. A start perturbed by 1e-9 of the gap moves the forces by 1e-9 to 3e-8 over the same steps: no chaos yet.
+``eps / (w h)² ~ 2e-16 / (2 pi 50 x 5e-6)² = 1e-10`` on the lowest bending mode, and a contact force follows from a gap
+that is a difference of positions some 10 to 1000 times larger: 1e-8 holds for positions and energies, 1e-6 of the
+peak for forces. A start perturbed by 1e-9 of the gap moves the forces by 1e-9 to 3e-8 over the same steps: no chaos yet.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from kernels import twin
 from physics.cases import CASES, SCHEMES, STEP, every_step
 
 import stridula as st
+from kernels import twin
 from stridula._kernels.march import stored_energy
 from stridula._kernels.traces import harmonics
 
@@ -104,7 +104,7 @@ def test_energy_identity_holds_at_each_step(name, scheme):
 
 
 def test_stored_energy_is_the_energy_of_an_oscillation():
-    """Exact scheme, undamped: q = A sin(w t) has the same energy at every step, A² w² / 2 in the limit of small ones."""
+    """Exact scheme, undamped: q = A sin(w t) has the same energy at every step, A² w² / 2 for small ones."""
     angular, amplitude = np.array([2 * np.pi * 440.0]), 1e-3
     for step, tolerance in ((1e-4, 2e-2), (1e-5, 2e-4), (1e-6, 2e-6)):
         k = st.ExactModal().coefficients(angular, 0 * angular, step)

@@ -14,7 +14,7 @@ import stridula as st
 
 
 def central(w, z, h):
-    """Coefficients a, b, c of ``q'' + 2 z w q' + w² q = p/h`` with centred differences, and the impulse of a unit force."""
+    """Coefficients a, b, c of ``q'' + 2 z w q' + w² q = p/h`` with centred differences; impulse of a unit force."""
     return (2 - w**2 * h**2) / (1 + z * w * h), (1 - z * w * h) / (1 + z * w * h), h / (1 + z * w * h), h + 0 * w
 
 

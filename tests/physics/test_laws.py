@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from physics.cases import CASES, SCHEME_NAMES, SCHEMES, STEP, every_step, pair, slider, track, transverse
 
 import stridula as st
+from physics.cases import CASES, SCHEME_NAMES, SCHEMES, STEP, every_step, pair, slider, track, transverse
 
 STEPS = 60_000
 EPS = np.finfo(float).eps
@@ -128,7 +128,7 @@ def test_mean_normal_force_of_a_long_stable_run_is_the_load(scheme):
     """0.2 N across at 45 degrees press with 0.2 sin 45 N; it then advances as a rigid body, a = (F_x - mu F_y) / M.
 
     Damping 0.3: at 0.02 the slider still bounces on its own bending at 7.7 Hz, 4 mm/s, after a second, which is 1 % of
-    the load over a second. The mean misses the load by M (change of v_y) / T, v_y at the root bounding that of the rest.
+    the load over a second. The mean misses the load by M (change of v_y) / T; v_y at the root bounds that of the rest.
     """
     system = pair(transverse(0.2), mu=0.5, rod=slider(damping=0.3), bar=track(damping=0.3))
     probes = [st.Velocity(system.slider.root, "y"), st.Velocity(system.slider.root, "x")]
@@ -169,6 +169,7 @@ def test_a_stick_does_not_creep(scheme):
     Round-off of an abscissa of 0.2 m is 3e-17 m a step: a walk of 1e6 steps would still pass; a creep of one part
     in 1e8 of the 1 um/step elastic motion (a penalty's or a drifting anchor's) would not.
     """
+
     def pressed(rod):
         return [
             st.Force(rod.root, y=-5.0, history=st.Ramp(0.05)),
@@ -190,6 +191,7 @@ def test_a_stick_does_not_creep(scheme):
 
 def test_creep_harness_rejects_a_slider_that_slips_now_and_then():
     """Negative control: with less friction the same shaking makes it walk."""
+
     def pressed(rod):
         return [
             st.Force(rod.root, y=-5.0, history=st.Ramp(0.05)),

@@ -10,9 +10,9 @@ from importlib import import_module
 
 import numpy as np
 import pytest
-from physics.cases import CASES, SCHEME_NAMES, SCHEMES, STEP, dragged, pair
 
 import stridula as st
+from physics.cases import CASES, SCHEME_NAMES, SCHEMES, STEP, dragged, pair
 from stridula._kernels import layout
 
 # The module, which its package hides behind the function of the same name.
@@ -33,7 +33,9 @@ def test_ledger_closes_over_two_seconds(name, scheme):
     assert run.attrs["ended"] == "finished"
     assert residual(run) < 1e-10
     # The residual is that of its own definition, and the contact's work splits into its three parts.
-    balance = run.kinetic_and_elastic + run.damping_loss - run.drive_work - run.contact_work - run.attrs["initial_energy"]
+    balance = (
+        run.kinetic_and_elastic + run.damping_loss - run.drive_work - run.contact_work - run.attrs["initial_energy"]
+    )
     np.testing.assert_allclose(run.ledger_residual, balance, atol=1e-14 * float(np.abs(run.drive_work).max()))
     parts = run.convection_work - run.friction_loss - run.impact_loss
     scale = float(np.abs(run.friction_loss).max())

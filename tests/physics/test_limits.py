@@ -6,9 +6,9 @@ from math import cos, radians, sin, tan
 
 import numpy as np
 import pytest
-from physics.cases import SCHEME_NAMES, SCHEMES, STEEL, STEP, STRIP, dragged, every_step, pair, slider, track
 
 import stridula as st
+from physics.cases import SCHEME_NAMES, SCHEMES, STEEL, STEP, STRIP, dragged, every_step, pair, slider, track
 
 STICKING, SLIDING = 1, 2
 BOTH = pytest.mark.parametrize("scheme", SCHEMES, ids=SCHEME_NAMES)
@@ -21,7 +21,12 @@ def pushed(angle: float, mu: float, along: bool, scheme):
     push = {"axial": -0.5} if along else {"transverse": 0.5}
     rod, bar = slider(angle, damping=0.1), track(damping=0.1)
     system = pair(
-        lambda _: [st.Force(rod.root, **push, history=st.Ramp(0.1))], mu, rod=rod, bar=bar, gap=0.0, at=0.6 if along else 0.2
+        lambda _: [st.Force(rod.root, **push, history=st.Ramp(0.1))],
+        mu,
+        rod=rod,
+        bar=bar,
+        gap=0.0,
+        at=0.6 if along else 0.2,
     )
     across, down = (0.5 * sin(a), 0.5 * cos(a)) if along else (0.5 * cos(a), 0.5 * sin(a))
     return every_step(system, 80_000, scheme), (across - mu * down) / rod.total_mass
@@ -61,9 +66,7 @@ def test_limit_harness_tells_the_two_leans_apart():
 @BOTH
 @pytest.mark.parametrize("velocity", [0.01, -0.01])
 def test_dragged_steadily_friction_is_mu_times_load_and_the_root_carries_it(velocity, scheme):
-    """Trailing, mu = 0.3: slides for good; then N = load and T = +-mu load, reaction along x = T, none along y.
-
-    """
+    """Trailing, mu = 0.3: slides for good; then N = load and T = +-mu load, reaction along x = T, none along y."""
     mu, load = 0.3, 2.0
     # All modes: a cutoff leaves out the static share of the modes above it, here twice the reaction itself.
     rod = slider(45.0 if velocity > 0 else -45.0, damping=0.2, cutoff=None, elements=4)
@@ -95,17 +98,15 @@ def test_static_reaction_and_deflection(direction, angle, scheme):
     """A slider pressed on and stuck, its root guided: N and T balance the push, the support gives only a moment.
 
     The tip's force has the component P across the axis, at L from the root. Turning the root so that the slope of w
-    rises by d theta moves the tip by -L d theta: balance of virtual work M d theta - P L d theta = 0, M = P L. The track is bent by N at
-    x to N x² (L - x)² / 3 E I L, and the tip's height is that with the gap closed.
+    rises by d theta moves the tip by -L d theta: virtual work M d theta - P L d theta = 0,
+    M = P L. The track is bent by N at x to N x² (L - x)² / 3 E I L, and the tip's height is that with the gap closed.
     """
     a, force = radians(angle), 2.0
     rod = slider(angle, damping=0.5, cutoff=None, elements=4)
     bar = track(damping=0.5, cutoff=None, bending_modes=40, axial_modes=20)
     size = force * np.sign(angle) if direction == "transverse" else -force
     push = {direction: size}
-    system = pair(
-        lambda _: [st.Force(rod.root, **push, history=st.Ramp(0.05))], 5.0, rod=rod, bar=bar, gap=0.0, at=0.3
-    )
+    system = pair(lambda _: [st.Force(rod.root, **push, history=st.Ramp(0.05))], 5.0, rod=rod, bar=bar, gap=0.0, at=0.3)
     probes = [st.Reaction(rod, c) for c in ("x", "y", "moment")]
     run = st.simulate(system, 1.0, scheme=scheme, probes=probes, sample_rate=1e4)
     assert run.status.values[-1] == STICKING
@@ -126,7 +127,12 @@ def test_reaction_harness_rejects_a_clamped_root_for_a_guided_one(scheme):
     """Negative control: clamped, the root takes the push itself and little reaches the contact."""
     rod = slider(30.0, damping=0.5, root_support="clamped", elements=4, cutoff=None)
     system = pair(
-        lambda _: [st.Force(rod.root, y=-2.0, history=st.Ramp(0.05))], 5.0, rod=rod, bar=track(damping=0.5), gap=0.0, at=0.3
+        lambda _: [st.Force(rod.root, y=-2.0, history=st.Ramp(0.05))],
+        5.0,
+        rod=rod,
+        bar=track(damping=0.5),
+        gap=0.0,
+        at=0.3,
     )
     run = st.simulate(
         system, 0.3, scheme=scheme, probes=[st.Reaction(rod, "y"), st.Reaction(rod, "moment")], sample_rate=1e4
@@ -137,7 +143,7 @@ def test_reaction_harness_rejects_a_clamped_root_for_a_guided_one(scheme):
 
 @BOTH
 def test_steady_acceleration_bends_the_slider_like_its_weight(scheme):
-    """Root dragged with a steady acceleration A, upright: a clamped-free beam under -rho S A per length, whose tip lags by
+    """Root dragged with a steady acceleration A, upright: clamped-free under -rho S A per length, its tip lags by
     rho S A L^4 / 8 E I behind the root."""
     acceleration = 0.8
     rod = slider(0.0, damping=0.4, cutoff=None, elements=4)
@@ -161,8 +167,7 @@ def test_steady_acceleration_bends_the_slider_like_its_weight(scheme):
 
 @BOTH
 def test_weight_of_the_slider_rests_on_the_contact(scheme):
-    """Stuck under gravity: N = M g, and the bending moment at the guided root is that of M g at half the length plus N at
-    the tip."""
+    """Stuck under gravity: N = M g; the moment at the guided root is that of M g at half the length and N at the tip."""
     rod = slider(30.0, damping=0.5, cutoff=None, elements=4)
     system = pair(lambda _: [st.Gravity(9.81)], 5.0, rod=rod, bar=track(damping=0.5), gap=0.0, at=0.3)
     run = st.simulate(system, 1.0, scheme=scheme, probes=[st.Reaction(rod)], sample_rate=1e4)
@@ -175,8 +180,8 @@ def test_weight_of_the_slider_rests_on_the_contact(scheme):
 def impact(scheme, courant, elements=100):
     """An elastic bar dropped on a wall: E = 210e9, rho = 7800, S = 3.14e-4, L = 1, gap 5e-5, v = 0.1.
 
-    The wall is a track a million million times heavier; bending is made slow by a small second moment, so that the bar's
-    modes alone set the step.
+    The wall is a track a million million times heavier; bending is made slow by a small second moment, so that the
+    bar's modes alone set the step.
     """
     steel = st.Material(210e9, 7800.0)
     bar = st.FiniteElementBeam(steel, st.Section(3.14e-4, 1e-16), 1.0, elements=elements, mass="lumped")
@@ -215,6 +220,6 @@ def test_bar_hits_a_wall(scheme):
 
 @pytest.mark.parametrize(("courant", "overshoot"), [(0.9, 0.026), (0.5, 0.079)])
 def test_overshoot_of_the_bar_below_courant_one(courant, overshoot):
-    """Central differences, lumped mass, 100 elements: peak 2.6 % above the plateau at 0.9 and 7.9 % at 0.5 (printed)."""
+    """Central differences, lumped mass, 100 elements: peak 2.6 % above the plateau at 0.9, 7.9 % at 0.5 (printed)."""
     run, force, _ = impact(SCHEMES[0], courant)
     assert float(run.normal_force.max()) / force - 1 == pytest.approx(overshoot, abs=0.005)

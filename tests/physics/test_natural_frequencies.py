@@ -11,8 +11,8 @@ A beam in bending obeys ``EI w'''' = rho S w_tt``. With ``w = A cos + B sin + C 
   rotation at no frequency;
 - clamped-free: cos x cosh x = -1; free-free and clamped-clamped: cos x cosh x = 1.
 
-A rod obeys ``E u'' = rho u_tt``: n c / 2L with both ends held or both free, (n - 1/2) c / 2L with one held. A guided end
-is free in both translations, a pinned one held in both.
+A rod obeys ``E u'' = rho u_tt``: n c / 2L with both ends held or both free, (n - 1/2) c / 2L with one held. A guided
+end is free in both translations, a pinned one held in both.
 
 Orders. Hermite cubics give eigenvalues to order 2 (4 - 2) = 4, linear bars with consistent mass
 ``w² = (c k)² (1 + (k h)²/12)`` and lumped ``(1 - (k h)²/12)``: order 2.
@@ -83,7 +83,7 @@ def rod_form(multiple, length):
 
 
 def families(body: st.FiniteElementBeam):
-    """Frequencies of the bending and of the axial modes, told apart by where their motion points; rigid ones left out."""
+    """Frequencies of the bending and of the axial modes, told apart by where their motion points; no rigid ones."""
     along, across = body.axes
     points = np.linspace(0.0, body.length, 23)
     moved = np.array([body.trace(s) for s in points])

@@ -11,9 +11,9 @@ from math import pi
 
 import numpy as np
 import pytest
-from physics.cases import SCHEME_NAMES, SCHEMES, STEEL, STRIP, pair, slider, track
 
 import stridula as st
+from physics.cases import SCHEME_NAMES, SCHEMES, STEEL, STRIP, pair, slider, track
 
 FREQUENCY, PHASE = 310.0, 0.7
 DURATION = 0.012
@@ -101,7 +101,9 @@ class OneSided(st.CentralDifference):
         )
 
 
-@pytest.mark.parametrize(("wrong", "case"), [(LazyStart, thrown_slider), (LazyStart, forced_track), (OneSided, forced_track)])
+@pytest.mark.parametrize(
+    ("wrong", "case"), [(LazyStart, thrown_slider), (LazyStart, forced_track), (OneSided, forced_track)]
+)
 def test_harness_rejects_a_first_order_scheme(wrong, case):
     """Negative control."""
     assert observed_order(case(), wrong()) < 1.5
@@ -111,8 +113,8 @@ def test_harness_rejects_a_first_order_scheme(wrong, case):
 def test_exact_scheme_is_exact_for_free_damped_motion(fraction):
     """Thrown up with every mode above zero frequency ringing; at any step below the limit, to round-off.
 
-    A free body thrown as a whole does not ring: a pinned root makes it. Error of the exact coefficients: eps a step, and
-    the phase adds up, n eps with n < 1e4 steps.
+    A free body thrown as a whole does not ring: a pinned root makes it. Error of the exact coefficients: eps a step,
+    and the phase adds up, n eps with n < 1e4 steps.
     """
     rod = slider(25.0, root_support="pinned", damping=0.01)
     system = pair(lambda _: [st.InitialVelocity(rod, x=0.1, y=0.4)], 0.5, rod=rod, bar=track(cutoff=500.0), gap=1.0)

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from physics.cases import CASES, SCHEME_NAMES, SCHEMES, STEEL, STEP, STRIP, every_step, pair
 
 import stridula as st
+from physics.cases import CASES, SCHEME_NAMES, SCHEMES, STEEL, STRIP, every_step, pair
 
 STEPS = 3000
 
@@ -91,8 +91,8 @@ def reaction_against_constraint(velocity, factor=1.0):
     """Largest difference of the normal force between a dragged slider and a thrown one that feels the same reaction.
 
     Undamped slider with all its modes and central differences: held or free, its motion solves the same equations
-    ``M (u[n+1] - 2 u[n] + u[n-1]) / h² + K u[n] = f[n]``, so that the reaction recorded under the imposed velocity, put on a
-    slider that nothing holds, keeps its root at v t.
+    ``M (u[n+1] - 2 u[n] + u[n-1]) / h² + K u[n] = f[n]``, so that the reaction recorded under the imposed velocity, put
+    on a slider that nothing holds, keeps its root at v t.
     """
     rod = st.FiniteElementBeam(STEEL, STRIP, 0.5, angle=-0.7, elements=4)
     step, steps = 5e-6, 2000
@@ -106,7 +106,11 @@ def reaction_against_constraint(velocity, factor=1.0):
     first = first_reaction(dragged, rod, step)
     history = st.Sampled((0.0, *times), (factor * first, *(factor * held)))
     thrown = pair(
-        lambda _: [st.InitialVelocity(rod, x=velocity), st.Force(rod.root, y=-20.0), st.Force(rod.root, x=1.0, history=history)],
+        lambda _: [
+            st.InitialVelocity(rod, x=velocity),
+            st.Force(rod.root, y=-20.0),
+            st.Force(rod.root, x=1.0, history=history),
+        ],
         1.2,
         rod=rod,
         gap=1e-7,
@@ -143,8 +147,9 @@ def test_galileo_harness_rejects_a_wrong_reaction():
 
 @pytest.mark.parametrize("power", [3, -2])
 def test_scale_of_forces_and_lengths(power):
-    """Linear bodies and laws without scale, an upright tip that stays where it is: forces and gap times 2^p give motions
-    and contact forces times 2^p, bit for bit but for the last bit of the abscissa, 1e-16 of it, as in the mirror."""
+    """Linear bodies and laws without scale, an upright tip that stays where it is: forces and gap times 2^p give
+    motions and contact forces times 2^p, bit for bit but for the last bit of the abscissa, 1e-16 of it, as in the
+    mirror."""
     factor = 2.0**power
     rod = st.FiniteElementBeam(STEEL, STRIP, 0.5, elements=10, damping=0.02, cutoff=15e3)
 

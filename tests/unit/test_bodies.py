@@ -43,7 +43,11 @@ MAKERS = {
     ),
     "FiniteElementBeam.elements": (lambda v: beam(elements=v), "elements", [0, -1, 1.0, 2.5, NAN, True, "4", None]),
     "FiniteElementBeam.damping": (lambda v: beam(damping=v), "damping", [NAN, INF, -0.01, 1.0, 2.0, True, "0", None]),
-    "FiniteElementBeam.root_support": (lambda v: beam(root_support=v), "root_support", ["fixed", "", None, 1, "Guided"]),
+    "FiniteElementBeam.root_support": (
+        lambda v: beam(root_support=v),
+        "root_support",
+        ["fixed", "", None, 1, "Guided"],
+    ),
     "FiniteElementBeam.tip_support": (lambda v: beam(tip_support=v), "tip_support", ["fixed", "", None, 1]),
     "FiniteElementBeam.mass": (lambda v: beam(mass=v), "mass", ["full", None, 0.3]),
     "FiniteElementBeam.cutoff": (lambda v: beam(cutoff=v), "cutoff", [v for v in POSITIVE if v is not None]),
@@ -158,5 +162,5 @@ def test_a_cutoff_of_a_modal_beam_keeps_the_modes_up_to_it():
 
 
 def test_modal_beam_cannot_be_held():
-    with pytest.raises(ValueError, match="^held_x must be False"):
+    with pytest.raises(ValueError, match=r"^held_x must be False"):
         bar().modes(held_x=True)

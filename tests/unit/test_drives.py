@@ -67,7 +67,7 @@ def test_bad_arguments_are_named_with_value_and_range(make, name, value):
 
 
 def test_imposed_velocity_is_for_the_root_of_a_slider():
-    with pytest.raises(ValueError, match="^point must be the root"):
+    with pytest.raises(ValueError, match=r"^point must be the root"):
         st.ImposedVelocity(ROD.tip, 0.1)
     with pytest.raises(ValueError, match=r"^point\.body must be a FiniteElementBeam"):
         st.ImposedVelocity(BAR.centre, 0.1)

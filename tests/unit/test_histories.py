@@ -23,7 +23,9 @@ IDS = ["constant", "ramp", "harmonic", "sampled", "sampled late"]
 @pytest.mark.parametrize("history", HISTORIES, ids=IDS)
 def test_integral_is_the_area_under_the_factor(history):
     for end in (0.0, 0.1, 0.2, 0.35, 0.77, 1.4):
-        area = quad(lambda t: float(history.factor(np.array([t]))[0]), 0, end, points=KNOTS, limit=200)[0] if end else 0.0
+        area = (
+            quad(lambda t: float(history.factor(np.array([t]))[0]), 0, end, points=KNOTS, limit=200)[0] if end else 0.0
+        )
         assert history.integral(np.array([end]))[0] == pytest.approx(area, abs=1e-7)
 
 
@@ -66,7 +68,11 @@ MAKERS = {
     "Harmonic.amplitude": (lambda v: st.Harmonic(1.0, amplitude=v), "amplitude", FINITE),
     "Harmonic.mean": (lambda v: st.Harmonic(1.0, mean=v), "mean", FINITE),
     "Harmonic.phase": (lambda v: st.Harmonic(1.0, phase=v), "phase", FINITE),
-    "Sampled.time": (lambda v: st.Sampled(v, (0.0, 1.0)), "time", [None, 1.0, "01", (1.0, 0.0), (-1.0, 0.0), (0.0, 0.0)]),
+    "Sampled.time": (
+        lambda v: st.Sampled(v, (0.0, 1.0)),
+        "time",
+        [None, 1.0, "01", (1.0, 0.0), (-1.0, 0.0), (0.0, 0.0)],
+    ),
     "Sampled.value": (lambda v: st.Sampled((0.0, 1.0), v), "value", [None, 1.0, "01"]),
 }
 CASES = [pytest.param(*rest[:2], v, id=f"{k}={v!r}"[:60]) for k, rest in MAKERS.items() for v in rest[2]]
@@ -92,5 +98,5 @@ def test_a_bad_number_in_a_table_is_named_with_its_place(name, value):
 
 @pytest.mark.parametrize(("time", "value"), [((0.0,), (1.0,)), ((), ()), ((0.0, 1.0), (1.0,))])
 def test_tables_of_unequal_or_too_short_length(time, value):
-    with pytest.raises(ValueError, match="^time and value must have the same length, at least 2"):
+    with pytest.raises(ValueError, match=r"^time and value must have the same length, at least 2"):
         st.Sampled(time, value)

@@ -16,7 +16,7 @@ MOTIONS = (st.Displacement, st.Velocity, st.Acceleration)
 @pytest.mark.parametrize("kind", MOTIONS)
 @pytest.mark.parametrize("value", [None, ROD, 0.1, "tip"])
 def test_bad_points(kind, value):
-    with pytest.raises(ValueError, match="^point must be a BodyPoint") as caught:
+    with pytest.raises(ValueError, match=r"^point must be a BodyPoint") as caught:
         kind(value)
     assert repr(value) in str(caught.value)
 
@@ -24,7 +24,7 @@ def test_bad_points(kind, value):
 @pytest.mark.parametrize("kind", MOTIONS)
 @pytest.mark.parametrize("value", [None, 1, "z", "axail", True])
 def test_bad_directions(kind, value):
-    with pytest.raises(ValueError, match="^direction must be one of x, y, axial, transverse, got ") as caught:
+    with pytest.raises(ValueError, match=r"^direction must be one of x, y, axial, transverse, got ") as caught:
         kind(ROD.tip, value)
     assert repr(value) in str(caught.value)
     assert ("did you mean 'axial'" in str(caught.value)) == (value == "axail")
@@ -32,10 +32,10 @@ def test_bad_directions(kind, value):
 
 def test_bad_reactions():
     for value in (None, BAR, ROD.root, "slider"):
-        with pytest.raises(ValueError, match="^body must be a FiniteElementBeam"):
+        with pytest.raises(ValueError, match=r"^body must be a FiniteElementBeam"):
             st.Reaction(value)
     for value in (None, "z", 2):
-        with pytest.raises(ValueError, match="^component must be one of x, y, moment"):
+        with pytest.raises(ValueError, match=r"^component must be one of x, y, moment"):
             st.Reaction(ROD, value)
 
 

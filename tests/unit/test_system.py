@@ -28,12 +28,15 @@ def test_bad_contact(value):
 
 @pytest.mark.parametrize("value", [None, 3, "gravity", st.Gravity(), {st.Gravity()}])
 def test_bad_drives(value):
-    refuse("^drives must be a list of drives, got ", drives=value)
+    refuse(r"^drives must be a list of drives, got ", drives=value)
 
 
 @pytest.mark.parametrize("value", [None, ROD, "gravity", 9.81])
 def test_bad_drive(value):
-    refuse(r"^drives\[1\] must be a Force or ImposedVelocity or Gravity or InitialVelocity, got ", drives=[st.Gravity(), value])
+    refuse(
+        r"^drives\[1\] must be a Force or ImposedVelocity or Gravity or InitialVelocity, got ",
+        drives=[st.Gravity(), value],
+    )
 
 
 @pytest.mark.parametrize(
@@ -60,9 +63,9 @@ def test_imposed_velocity_with_a_throw():
 @pytest.mark.parametrize("support", ["pinned", "clamped"])
 def test_imposed_velocity_needs_a_root_that_can_move(support):
     rod = replace(ROD, root_support=support)
-    with pytest.raises(ValueError, match="^root_support must be guided or free under an imposed velocity"):
+    with pytest.raises(ValueError, match=r"^root_support must be guided or free under an imposed velocity"):
         pair(dragged(), 0.5, rod=rod)
-    with pytest.raises(ValueError, match="^tip_support must be free under an imposed velocity"):
+    with pytest.raises(ValueError, match=r"^tip_support must be free under an imposed velocity"):
         pair(dragged(), 0.5, rod=replace(ROD, tip_support="pinned"))
 
 
@@ -77,7 +80,17 @@ def test_a_system_is_a_value():
 def test_card_names_every_part():
     system = pair(lambda rod: [*shaken(rod), st.Force(rod.root, history=st.Ramp(0.1))], mu=0.7, angle=30.0)
     card = str(system)
-    for words in ("slider", "track", "30 deg", "friction 0.7", "gravity 9.807", "0.5 N", "ramp", "harmonic", "gap 1e-06"):
+    for words in (
+        "slider",
+        "track",
+        "30 deg",
+        "friction 0.7",
+        "gravity 9.807",
+        "0.5 N",
+        "ramp",
+        "harmonic",
+        "gap 1e-06",
+    ):
         assert words in card
     assert str(pair(dragged(), 0.5)).count("imposed velocity 0.01 m/s") == 1
     assert len(card.splitlines()) == 3 + 5

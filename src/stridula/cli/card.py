@@ -63,4 +63,4 @@ def _energy(record: xr.Dataset) -> dict[str, str]:
     residual = largest.pop("ledger_residual")
     term = max(largest, key=largest.__getitem__)
     share = residual / largest[term] if largest[term] else 0.0
-    return {"energy ledger": f"residual {share:.1e} of the largest term, {term} {largest[term]:.3g} J"}
+    return {"energy ledger": f"residual {share:.1e} of the largest term, {term}"}

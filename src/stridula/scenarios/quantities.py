@@ -8,7 +8,7 @@ from decimal import Decimal
 from numbers import Real
 from typing import Any
 
-DEGREE = "0.01745329251994329576923690768"
+DEGREES = "degrees"
 # For each SI unit, the spellings that are read and their factors; decimal, so that "9.8 mm" is exactly 0.0098.
 UNITS: dict[str, dict[str, str]] = {
     "1": {"%": "0.01"},
@@ -17,7 +17,7 @@ UNITS: dict[str, dict[str, str]] = {
     "m4": {"m4": "1", "cm4": "1e-8", "mm4": "1e-12"},
     "s": {"s": "1", "ms": "1e-3", "us": "1e-6", "µs": "1e-6"},
     "Hz": {"Hz": "1", "kHz": "1e3", "MHz": "1e6"},
-    "rad": {"rad": "1", "deg": DEGREE, "°": DEGREE},
+    "rad": {"rad": "1", "deg": DEGREES, "°": DEGREES},
     "m/s": {"m/s": "1", "cm/s": "0.01", "mm/s": "1e-3"},
     "m/s2": {"m/s2": "1"},
     "N": {"N": "1", "mN": "1e-3", "kN": "1e3"},
@@ -54,7 +54,7 @@ def quantity(value: Any, unit: str) -> float:
     factor = UNITS[unit].get(spelling.replace("²", "2").replace("³", "3"), "1" if not spelling else None)
     if factor is None:
         raise ValueError(f"must be a number{_units(unit)}")
-    return float(Decimal(number) * Decimal(factor))
+    return math.radians(float(number)) if factor == DEGREES else float(Decimal(number) * Decimal(factor))
 
 
 def _finite(number: Real | float) -> float:

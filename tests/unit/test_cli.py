@@ -1,0 +1,186 @@
+"""The command line: what it prints, what it writes, how it ends."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tomllib
+
+import pytest
+
+import stridula as st
+from stridula.cli import main, running
+
+SHORT = ("--duration", "2 ms")
+
+
+@pytest.fixture
+def stridula(monkeypatch, capsys, tmp_path):
+    """Run the command line in an empty folder; return exit code, output and error."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["stridula", *arguments])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        captured = capsys.readouterr()
+        return stop.value.code, captured.out, captured.err
+
+    return run
+
+
+def test_version_and_help(stridula):
+    assert stridula("--version") == (0, f"stridula {st.__version__}\n", "")
+    code, out, err = stridula("--help")
+    assert (code, err) == (0, "")
+    assert all(verb in out for verb in ("list", "show", "schema", "run", "paper"))
+    assert stridula()[:1] == (0,)
+
+
+def test_list_names_every_case_with_its_section(stridula):
+    code, out, err = stridula("list")
+    assert (code, err) == (0, "")
+    assert [line.split()[0] for line in out.splitlines()] == [case.name for case in st.list_scenarios()]
+    assert "section 3.2" in next(line for line in out.splitlines() if line.startswith("squeal "))
+
+
+def test_show_prints_toml_and_schema_json(stridula):
+    code, out, _ = stridula("show", "squeal")
+    assert code == 0
+    assert tomllib.loads(out)["contact"]["friction"]["coefficient"] == 1.5
+    code, out, _ = stridula("schema")
+    assert code == 0
+    assert json.loads(out) == st.scenario_schema()
+
+
+def test_run_writes_record_and_figure_and_says_what_came_of_it(stridula, tmp_path):
+    code, out, err = stridula("run", "squeal", *SHORT, "--set", "friction=0.4", "--out", "run.nc", "--plot", "run.png")
+    assert (code, err) == (0, "")
+    for word in ("finished at t = 0.002 s", "separated", "dominant frequency", "peak", "residual", "run.nc", "run.png"):
+        assert word in out
+    assert st.load_scenario("run.nc").system.contact.friction == st.Coulomb(0.4)
+    assert (tmp_path / "run.png").read_bytes().startswith(b"\x89PNG")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["run.nc", "run.png"]
+
+
+def test_a_record_runs_again(stridula):
+    assert stridula("run", "squeal", *SHORT, "--out", "one.nc")[0] == 0
+    assert stridula("run", "one.nc", "--out", "two.nc")[0] == 0
+    assert st.load("one.nc")["normal_force"].equals(st.load("two.nc")["normal_force"])
+
+
+def test_a_tip_off_its_track_is_a_good_end(stridula):
+    end = st.load_scenario("squeal").system.track.length - 1e-4
+    pushed = ("--set", f"contact.at={end}", "--set", "friction=0", "--set", "drives.0.transverse=2000")
+    code, out, err = stridula("run", "squeal", "--duration", "0.1", *pushed, "--out", "off.nc")
+    assert (code, err) == (0, "")
+    assert "ran off the end of its track" in out
+    assert st.load("off.nc").attrs["ended"] == "off the track"
+
+
+BAD = [
+    (("run", "sqeal"), "did you mean 'squeal'?"),
+    (("run", "none.toml"), "must be a file"),
+    (("run", "."), "a directory"),
+    (("run", "empty.toml"), "must not be empty"),
+    (("run", "binary.toml"), "UTF-8"),
+    (("run", "syntax.toml"), "line 2"),
+    (("run", "nan.toml"), "contact.gap must be finite, got nan"),
+    (("run", "squeal", "--set", "friction"), "--set must be KEY=VALUE, got 'friction'"),
+    (("run", "squeal", "--set", "frction=1"), "did you mean 'friction'?"),
+    (("run", "squeal", "--set", "elements=true"), "must be a whole number, got True"),
+    (("run", "squeal", "--set", "contact.at=20"), "contact.at must be strictly between 0 and "),
+    (("run", "squeal", "--set", "gap=-1"), "contact.gap must be 0 or above, got -1"),
+    (("run", "squeal", "--set", "step=1e-3"), "simulation.step must be below"),
+    (("run", "squeal", "--duration", "nan"), "simulation.duration must be finite, got nan"),
+    (("run", "squeal", "--duration", "0"), "simulation.duration must be above 0, got 0"),
+    (("run", "squeal", "--duration", "1e9"), "simulation.duration must give a record below"),
+    (("run", "squeal", "--out", "none/run.nc"), "there is no folder 'none'"),
+    (("run", "squeal", "--out", "."), "it is a directory"),
+    (("run", "squeal", "--plot", "run.xyz"), "--plot must end in one of"),
+    (("run", "squeal", "--out", "a.png", "--plot", "a.png"), "another file"),
+    (("run", "squeal", "--nope"), "No such option"),
+    (("run",), "Missing argument"),
+    (("nope",), "No such command"),
+    (("show", "sqeal"), "did you mean 'squeal'?"),
+]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"), BAD, ids=lambda value: " ".join(value) if value != str(value) else ""
+)
+def test_bad_input_is_one_line_and_writes_nothing(stridula, tmp_path, arguments, message):
+    (tmp_path / "empty.toml").touch()
+    (tmp_path / "binary.toml").write_bytes(b"\xff\x00\x81")
+    (tmp_path / "syntax.toml").write_text("a = 1\nb = ]\n")
+    (tmp_path / "nan.toml").write_text('base = "squeal"\n[contact]\ngap = nan\n')
+    before = sorted(tmp_path.iterdir())
+    keep = ("--out", "kept.nc") if arguments[0] == "run" and len(arguments) > 1 and "--out" not in arguments else ()
+    code, out, err = stridula(*arguments, *keep)
+    assert (code, out) == (2, "")
+    assert err.startswith("stridula: ")
+    assert err.count("\n") == 1
+    assert message in err
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_outputs_are_checked_before_the_run(stridula, monkeypatch):
+    monkeypatch.setattr(st.Scenario, "simulate", lambda self, **kwargs: pytest.fail("it ran"))
+    assert stridula("run", "squeal", "--out", "none/run.nc")[0] == 2
+    assert stridula("run", "squeal", "--plot", "none/run.png")[0] == 2
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
+def test_a_full_disk_is_one_line_and_fails(stridula):
+    code, out, err = stridula("run", "squeal", *SHORT, "--out", "/dev/full")
+    assert (code, err) == (1, "stridula: cannot write '/dev/full': no space left on device\n")
+    assert "finished" in out
+
+
+def interrupt(*arguments, **fields):
+    raise KeyboardInterrupt
+
+
+def test_ctrl_c_keeps_what_was_recorded(stridula, monkeypatch):
+    monkeypatch.setattr(running.Progress, "update", interrupt)
+    code, out, err = stridula("run", "squeal", "--duration", "0.25", "--out", "part.nc")
+    assert code == 130
+    assert err.startswith("stridula: interrupted at t = ")
+    assert "the record so far is in part.nc" in err
+    assert err.count("\n") == 1
+    assert "interrupted" in out
+    part = st.load("part.nc")
+    assert part.attrs["ended"] == "interrupted"
+    assert 0 < part.sizes["time"] < 25_000
+
+
+def test_ctrl_c_before_the_run_keeps_nothing(stridula, monkeypatch, tmp_path):
+    monkeypatch.setattr(running, "load_scenario", interrupt)
+    assert stridula("run", "squeal", "--out", "part.nc") == (130, "", "stridula: interrupted; nothing was kept\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_failed_run_is_one_line_and_keeps_its_record(stridula, monkeypatch):
+    record = st.load_scenario("squeal", {"duration": "1 ms"}).simulate()
+    record.attrs["ended"] = "not finite"
+
+    def fail(self, **kwargs):
+        raise st.Diverged(record)
+
+    monkeypatch.setattr(st.Scenario, "simulate", fail)
+    code, out, err = stridula("run", "squeal", "--out", "part.nc")
+    assert code == 1
+    assert err.startswith("stridula: the state is no longer finite")
+    assert err.count("\n") == 1
+    assert "failed" in out
+    assert st.load("part.nc").attrs["ended"] == "not finite"
+
+
+@pytest.mark.parametrize("shell", ["{0} show squeal | head -1", "{0} list | head -1"])
+def test_a_closed_pipe_is_quiet(shell):
+    command = shell.format(f'"{sys.executable}" -c "from stridula.cli import main; main()"')
+    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=True)
+    assert done.stdout.count("\n") == 1
+    assert done.stderr == ""
