@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .bodies.modes import Array
+from .records.files import write
 from .records.variables import STATUS_WORDS
 
 COLUMNS = 1600
@@ -130,11 +132,16 @@ _PANELS: dict[str, Callable[[Axes, xr.Dataset, str], None]] = {"status": _status
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure, beside its final name first, so that nothing half-written is ever left under it."""
-    target = Path(path)
-    beside = target.with_name(f".{target.stem}.part{target.suffix}")
-    try:
-        figure.savefig(beside)
-        beside.replace(target)
-    finally:
-        beside.unlink(missing_ok=True)
+    """Write a figure in the format that the name's end asks for, whole or not at all.
+
+    Raises
+    ------
+    ValueError
+        If matplotlib does not know the format.
+    OSError
+        If the file cannot be written.
+    """
+    kind = Path(path).suffix.lower().removeprefix(".")
+    image = io.BytesIO()
+    figure.savefig(image, format=kind)
+    write(path, image.getvalue())

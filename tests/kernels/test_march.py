@@ -3,8 +3,9 @@
 Both follow the same equations by different arithmetic: increments against two positions, closed contact solve against
 trial of every state. The two-position form with ``1 - a + b`` computed by cancellation has a relative error of
 ``eps / (w h)² ~ 2e-16 / (2 pi 50 x 5e-6)² = 1e-10`` on the lowest bending mode, and a contact force follows from a gap
-that is a difference of positions some 10 to 1000 times larger: 1e-8 holds for positions and energies, 1e-6 of the
-peak for forces. A start perturbed by 1e-9 of the gap moves the forces by 1e-9 to 3e-8 over the same steps: no chaos yet.
+that is a difference of positions some 10 to 1000 times larger: 1e-8 holds for positions and energies, 1e-6 of
+the peak for forces. A start perturbed by 1e-9 of the gap moves the forces by 1e-9 to 3e-8 over the same steps: no
+chaos yet.
 """
 
 from __future__ import annotations

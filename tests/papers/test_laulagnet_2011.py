@@ -98,5 +98,6 @@ def test_reproduce_writes_figures_records_and_claims(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "FIGURES", FIGURES[:2])
     rows = laulagnet_2011.reproduce(tmp_path / "paper")
     names = {path.name for path in (tmp_path / "paper").iterdir()}
-    assert names == {f"{case}.nc" for case in CASES} | {"figure-02.png", "figure-03.png", "claims.json", "claims.md"}
+    cases = {f"{case}.{kind}" for case in CASES for kind in ("nc", "png")}
+    assert names == cases | {"figure-02.png", "figure-03.png", "claims.json", "claims.md"}
     assert json.loads((tmp_path / "paper" / "claims.json").read_text()) == rows

@@ -167,7 +167,7 @@ def test_steady_acceleration_bends_the_slider_like_its_weight(scheme):
 
 @BOTH
 def test_weight_of_the_slider_rests_on_the_contact(scheme):
-    """Stuck under gravity: N = M g; the moment at the guided root is that of M g at half the length and N at the tip."""
+    """Stuck under gravity: N = M g; the moment at the guided root is that of M g at half-length and N at the tip."""
     rod = slider(30.0, damping=0.5, cutoff=None, elements=4)
     system = pair(lambda _: [st.Gravity(9.81)], 5.0, rod=rod, bar=track(damping=0.5), gap=0.0, at=0.3)
     run = st.simulate(system, 1.0, scheme=scheme, probes=[st.Reaction(rod)], sample_rate=1e4)

@@ -196,6 +196,14 @@ def test_order_of_linear_bar_is_two(supports, mass):
     assert order == pytest.approx(2.0, abs=0.1)
 
 
+def test_order_of_lumped_bending_is_two():
+    """A lumped mass is right to the second order only, whatever the shape functions."""
+    exact = bending_form(2 * np.pi, 0.3)
+    words = {"supports": "simply supported", "mass": "lumped"}
+    order = observed_order(lambda n: families(beam(elements=n, **words))[0][1], exact, (16, 32))
+    assert order == pytest.approx(2.0, abs=0.1)
+
+
 @pytest.mark.parametrize(("mass", "sign"), [("consistent", 1.0), ("lumped", -1.0)])
 def test_dispersion_of_the_bar_is_exact(mass, sign):
     """On a uniform mesh, held at both ends: consistent ``w² = 6 (c/h)² (1 - cos kh)/(2 + cos kh)``, lumped

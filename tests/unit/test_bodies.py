@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import stridula as st
+from stridula.bodies.finite_elements import element_mass
 
 STEEL = st.Material(2.1e11, 7800.0)
 STRIP = st.Rectangle(0.020, 0.004)
@@ -164,3 +165,18 @@ def test_a_cutoff_of_a_modal_beam_keeps_the_modes_up_to_it():
 def test_modal_beam_cannot_be_held():
     with pytest.raises(ValueError, match=r"^held_x must be False"):
         bar().modes(held_x=True)
+
+
+def test_lumped_mass_is_the_scaled_diagonal_of_the_consistent_one():
+    """Hinton, Rock & Zienkiewicz 1976: the consistent diagonal, scaled so that each direction carries the mass."""
+    lumped, consistent = (element_mass(3.0, 0.2, kind) for kind in ("lumped", "consistent"))
+    np.testing.assert_array_equal(lumped, np.diag(np.diag(lumped)))
+    ratio = np.diag(lumped) / np.diag(consistent)
+    np.testing.assert_allclose(ratio[[0, 3]], 0.6 / (2 * 0.6 / 3))
+    np.testing.assert_allclose(ratio[[1, 2, 4, 5]], 0.6 / (2 * 156 / 420 * 0.6))
+    for mass in (lumped, consistent):
+        for motion in ([1, 0, 0, 1, 0, 0], [0, 1, 0, 0, 1, 0]):
+            assert motion @ mass @ motion == pytest.approx(0.6)
+    # A turn about the first end, exact for the consistent mass: rho S le³ / 3.
+    turn = np.array([0.0, 0.0, 1.0, 0.0, 0.2, 1.0])
+    assert turn @ consistent @ turn == pytest.approx(3.0 * 0.2**3 / 3)

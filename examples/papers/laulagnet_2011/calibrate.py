@@ -1,9 +1,9 @@
 """Search for one set of beams, force and start point under which the paper's numbers come out.
 
-The paper prints neither dimensions nor material nor damping. This searches physical ranges with differential evolution
-(scipy) for a steel pair of one section, from a printed seed. The objective adds up, over the claims marked as fitted, how
-far each measure lies outside the middle 70 % of its tolerance, in units of half its width; claims are taken case by case,
-and a candidate that already fails on the first cases is not run on the others.
+The paper prints neither dimensions nor material nor damping. This searches physical ranges with differential
+evolution (scipy) for a steel pair of one section, from a printed seed. The objective adds up, over the claims marked
+as fitted, how far each measure lies outside the middle 70 % of its tolerance, in units of half its width; claims are
+taken case by case, and a candidate that already fails on the first cases is not run on the others.
 
     python examples/papers/laulagnet_2011/calibrate.py [SEED] [GENERATIONS]
 

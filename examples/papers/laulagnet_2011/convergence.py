@@ -1,8 +1,8 @@
 """Convergence of the paper's measures: elements doubled, cut-off doubled, step halved, each alone.
 
-Every measure is averaged over an ensemble of starts whose gap is perturbed by parts in a million. A refinement passes
-where the mean moves by less than 3 % (frequencies, durations, ratios) or 0.03 (shares), or stays within the 95 % interval
-of the unrefined mean. Writes docs/convergence-table.rst; about ten minutes on two cores.
+Every measure is averaged over an ensemble of starts whose gap is perturbed by parts in a million. A refinement
+passes where the mean moves by less than 3 % (frequencies, durations, ratios) or 0.03 (shares), or stays within the
+95 % interval of the unrefined mean. Writes docs/convergence-table.rst; about ten minutes on two cores.
 """
 
 from __future__ import annotations

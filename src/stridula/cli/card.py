@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from ..analysis import dominant_frequency
+from ..analysis import bursts, dominant_frequency
 from ..records.variables import ENERGY, STATUS_WORDS
 
 ENDINGS = {
@@ -47,15 +47,24 @@ def card(record: xr.Dataset) -> dict[str, str]:
 def _contact(record: xr.Dataset) -> dict[str, str]:
     shares = record["status_share"].mean("time").values
     force, place = record["normal_force"].values, record["contact_position"].values
-    frequency = dominant_frequency(record["normal_force"]) if force.size > 1 else math.nan
     jammed = int(record["jammed_steps"].sum())
     lines = {
         "status": ", ".join(f"{word} {100 * share:.1f} %" for word, share in zip(STATUS_WORDS, shares, strict=True)),
         "tip": f"from {place[0]:.4g} m to {place[-1]:.4g} m along the track",
         "normal force": f"mean {force.mean():.4g} N, peak {force.max():.4g} N",
-        "dominant frequency": "none" if math.isnan(frequency) else f"{frequency:.4g} Hz",
+        "dominant frequency": _frequency(record),
     }
     return lines | ({"jammed": f"{jammed} steps in which sliding would have jammed"} if jammed else {})
+
+
+def _frequency(record: xr.Dataset) -> str:
+    """Return the dominant frequency of the normal force, between the stops where there are any."""
+    if record.sizes["time"] < 2:
+        return "none"
+    between = bursts(record)
+    frequency = dominant_frequency(record["normal_force"], between if len(between) else None)
+    where = " of the normal force" + (" between the stops" if len(between) else "")
+    return "none" if math.isnan(frequency) else f"{frequency:.4g} Hz{where}"
 
 
 def _energy(record: xr.Dataset) -> dict[str, str]:

@@ -87,7 +87,7 @@ def run(
 def paper(
     out: Annotated[str, typer.Option(metavar="DIR", help="Folder to write to.")] = "results/paper",
 ) -> None:
-    """Reproduce Laulagnet et al. 2011: every figure, every record, every claim."""
+    """Reproduce Laulagnet 2011: every figure, every record, every claim."""
     from pathlib import Path
 
     from ..integration import Diverged

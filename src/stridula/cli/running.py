@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,7 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from ..integration import Diverged, Interrupted
 from ..integration.watchers import Progress as Report
 from ..integration.watchers import Watcher
-from ..records.files import check_writable, save, write
+from ..records.files import check_writable, save
 from ..scenarios import load_scenario
 from .card import print_card
 from .exits import FAILED, INTERRUPTED, Stopped
@@ -81,10 +80,9 @@ def _finish(record: xr.Dataset, title: str, out: str | None, plot: str | None) -
 
 def _draw(record: xr.Dataset, path: str) -> None:
     from ..plot import overview
+    from ..plot import save as save_figure
 
-    image = io.BytesIO()
-    overview(record).savefig(image, format=_format(path))
-    write(path, image.getvalue())
+    save_figure(overview(record), path)
 
 
 @contextmanager

@@ -25,6 +25,13 @@ class Decimator:
         Steps per sample; nothing is filtered at 1.
     before : ndarray, shape (memory, probes), optional
         Values at the last steps before the first one fed; that one, repeated, if left out.
+
+    Attributes
+    ----------
+    tail : ndarray, shape (memory, probes), or None
+        Values at the last steps fed, from which another decimator can go on.
+    last : ndarray, shape (1, probes), or None
+        Values at the last step fed.
     """
 
     def __init__(self, ratio: int, before: Array | None = None) -> None:
@@ -33,13 +40,19 @@ class Decimator:
         self.memory = max(self.reach - ratio, 0)
         self.lookahead = self.reach + 1
         self.taps = _taps(ratio, self.reach)
+        self.tail = before
+        self.last = None if before is None or not before.size else before[-1:]
         self._pending = before
         self._skip = max(ratio - self.reach, 0)
 
     def feed(self, raw: Array) -> Array:
         """Take values at the next steps and return the samples they complete, shape (samples, probes)."""
-        if self._pending is None:
-            self._pending = np.repeat(raw[:1], self.memory, axis=0)
+        if self.tail is None:
+            self.tail = self._pending = np.repeat(raw[:1], self.memory, axis=0)
+        if raw.shape[0]:
+            self.last = raw[-1:]
+        tail = np.concatenate([self.tail, raw])
+        self.tail = tail[tail.shape[0] - self.memory :]
         raw, self._skip = raw[self._skip :], max(self._skip - raw.shape[0], 0)
         joined = np.concatenate([self._pending, raw])
         count = max(0, (joined.shape[0] - self.taps.size) // self.ratio + 1)

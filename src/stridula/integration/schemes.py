@@ -8,7 +8,7 @@ March of increments d and positions q, for an impulse p at step n::
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
@@ -70,8 +70,8 @@ class CentralDifference:
     Stable below ``2 / w_max``; the step defaults to half of that.
     """
 
-    name: str = "central difference"
-    default_fraction: float = 0.5
+    name: ClassVar[str] = "central difference"
+    default_fraction: ClassVar[float] = 0.5
 
     def coefficients(self, angular: Array, damping: Array, step: float) -> Coefficients:
         """Return the coefficients of ``q'' + 2 zeta w q' + w² q = f`` with all derivatives centred."""
@@ -103,8 +103,8 @@ class ExactModal:
     The step stays below half the period of the highest mode; it defaults to a fifth of that.
     """
 
-    name: str = "exact modal"
-    default_fraction: float = 0.2
+    name: ClassVar[str] = "exact modal"
+    default_fraction: ClassVar[float] = 0.2
 
     def coefficients(self, angular: Array, damping: Array, step: float) -> Coefficients:
         """Return ``a = 2 e^(-zwh) cos(wd h), b = e^(-2zwh), c = e^(-zwh) sin(wd h)/wd`` as increments."""

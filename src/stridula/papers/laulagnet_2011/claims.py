@@ -307,6 +307,7 @@ CLAIMS = (
         INFINITE,
         "1",
         pressure_raises_frequency,
+        fitted=False,
         detail=_frequencies_under_load,
     ),
     Claim(

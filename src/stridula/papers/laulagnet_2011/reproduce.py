@@ -7,8 +7,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from ...plot import overview
 from ...plot import save as save_figure
 from ...records.files import save as save_record
+from ...records.files import write
 from ...version import __version__
 from .claims import CLAIMS
 from .figures import FIGURES
@@ -16,7 +18,7 @@ from .runs import CASES, Runs
 
 
 def reproduce(folder: str | Path, report: Callable[[str], None] = lambda name: None) -> list[dict[str, Any]]:
-    """Run every case of the paper and write figures, records, `claims.json` and `claims.md` into a folder.
+    """Run every case of the paper and write records, figures, `claims.json` and `claims.md` into a folder.
 
     Parameters
     ----------
@@ -40,12 +42,13 @@ def reproduce(folder: str | Path, report: Callable[[str], None] = lambda name: N
     runs = Runs(report=report)
     for case in CASES:
         save_record(runs.record(case), target / f"{case}.nc")
+        save_figure(overview(runs.record(case)), target / f"{case}.png")
     for figure in FIGURES:
         report(figure.file_name)
         save_figure(figure.draw(runs), target / figure.file_name)
     rows = [claim.check(runs) for claim in CLAIMS]
-    write_text(target / "claims.json", json.dumps(rows, indent=2, ensure_ascii=False) + "\n")
-    write_text(target / "claims.md", claims_table(rows))
+    write(target / "claims.json", (json.dumps(rows, indent=2, ensure_ascii=False) + "\n").encode())
+    write(target / "claims.md", claims_table(rows).encode())
     return rows
 
 
@@ -77,13 +80,3 @@ def claims_table(rows: Sequence[dict[str, Any]]) -> str:
         )
     details = [f"- {row['section']} {row['claim']}: {row['detail']}" for row in rows if "detail" in row]
     return "\n".join([*lines, "", *details, ""])
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a text beside its final name first, so that nothing half-written is ever left under it."""
-    beside = path.with_name(f".{path.name}.part")
-    try:
-        beside.write_text(text, encoding="utf-8")
-        beside.replace(path)
-    finally:
-        beside.unlink(missing_ok=True)
