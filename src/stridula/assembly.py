@@ -10,16 +10,16 @@ import numpy as np
 from .bodies import BodyPoint, FiniteElementBeam, ModalBeam
 from .bodies.modes import Array
 from .drives import Force, Gravity, ImposedVelocity, InitialVelocity
-from .histories import Constant
+from .histories import Constant, History
 from .records.probes import Acceleration, Displacement, Probe, Reaction, Velocity
 from .system import System
 
-Signal = Callable[[Array], Array]
+Signal = Callable[[Array, float], Array]
 
 
 @dataclass(frozen=True)
 class ProbeRows:
-    """What gives one probe: rows on modal positions, velocities and accelerations, and shares of the signals.
+    """What gives one probe: rows on modal motion, and shares of the signals and of the contact forces.
 
     Attributes
     ----------
@@ -27,10 +27,13 @@ class ProbeRows:
         Rows on q, q' and q''.
     direct : ndarray, shape (signals,)
         Shares of the signals.
+    contact : ndarray, shape (2,)
+        Shares of the normal and of the tangential force.
     """
 
     rows: Array
     direct: Array
+    contact: Array
 
 
 @dataclass(frozen=True)
@@ -48,9 +51,10 @@ class Assembly:
     loads : ndarray, shape (loads, modes)
         Modal forces of the drives for a unit signal.
     signals : list of callable
-        Time functions: first one for each row of `loads`, then the imposed displacement, velocity and acceleration.
+        Functions of time and step [s]: first one for each row of `loads`, then the imposed displacement, velocity and
+        acceleration.
     imposed : callable
-        Displacement imposed on the slider [m] over time [s].
+        Displacement imposed on the slider [m] over time and step [s].
     velocity : ndarray, shape (modes,)
         Modal velocities at the start.
     probes : list of ProbeRows
@@ -123,17 +127,21 @@ class _Rows:
 
 @dataclass
 class _Load:
-    """Modal forces of one signal, and what of it the slider's root carries at once: x, y [N], moment [N m]."""
+    """Modal forces of one signal, and its balance about the slider's root: along x and y [N], moment [N m]."""
 
     modal: Array
     root: Array
 
 
+def _factor(history: History) -> Signal:
+    return lambda time, step: history.factor(time)
+
+
 def _loads(system: System, rows: _Rows) -> tuple[list[_Load], list[Signal]]:
     """Return the loads, drives of the same history together, and the signals."""
-    by_history: dict[object, _Load] = {}
+    by_history: dict[History, _Load] = {}
 
-    def add(history: object, modal: Array, root: Array) -> None:
+    def add(history: History, modal: Array, root: Array) -> None:
         if history in by_history:
             by_history[history].modal += modal
             by_history[history].root += root
@@ -152,19 +160,20 @@ def _loads(system: System, rows: _Rows) -> tuple[list[_Load], list[Signal]]:
                 add(Constant(), -drive.acceleration * rows.translation(body)[1], own)
     felt = {history: load for history, load in by_history.items() if load.modal.any() or load.root.any()}
     loads = list(felt.values())
-    signals: list[Signal] = [history.factor for history in felt]  # type: ignore[attr-defined]
+    signals = [_factor(history) for history in felt]
 
     imposed = system.imposed_velocity
     history, velocity = (imposed.history, imposed.velocity) if imposed else (Constant(), 0.0)
 
-    def displacement(time: Array) -> Array:
+    def displacement(time: Array, step: float) -> Array:
         return velocity * history.integral(time)
 
-    def speed(time: Array) -> Array:
+    def speed(time: Array, step: float) -> Array:
         return velocity * history.factor(time)
 
-    def acceleration(time: Array) -> Array:
-        return velocity * history.rate(time)
+    def acceleration(time: Array, step: float) -> Array:
+        # A difference, not the rate: its impulses add up to the change of velocity, kinks or not.
+        return velocity * (history.factor(time + step / 2.0) - history.factor(time - step / 2.0)) / step
 
     if imposed and not isinstance(history, Constant):
         loads.append(_Load(-rows.translation(system.slider)[0], -reaction.inertia[:, 0]))
@@ -180,7 +189,7 @@ def _components(force: Force) -> Array:
 
 def _force(point: BodyPoint, components: Array, rows: _Rows) -> tuple[Array, Array]:
     slider = rows.system.slider
-    root = slider.root_share(point.position) @ components if point.body == slider else np.zeros(3)
+    root = slider.root_lever(point.position) @ components if point.body == slider else np.zeros(3)
     return components @ rows.trace(point), root
 
 
@@ -209,14 +218,17 @@ def _probe(probe: Probe, rows: _Rows, loads: list[_Load]) -> ProbeRows:
     matrix[kind] = unit @ rows.trace(probe.point)
     if probe.point.body == rows.system.slider:
         direct[len(loads) + kind] = unit[0]
-    return ProbeRows(matrix, direct)
+    return ProbeRows(matrix, direct, np.zeros(2))
 
 
 def _reaction_rows(probe: Reaction, rows: _Rows, loads: list[_Load], direct: Array) -> ProbeRows:
     component = ("x", "y", "moment").index(probe.component)
+    if probe.body.tip_support != "free":
+        raise ValueError(f"tip_support must be free where a Reaction is recorded, got {probe.body.tip_support!r}")
     reaction = rows.system.slider.root_reaction(rows.held)
     matrix = np.zeros((3, rows.slider_modes + rows.track_modes))
-    matrix[0, : rows.slider_modes] = reaction.stiffness[component]
     matrix[2, : rows.slider_modes] = reaction.mass[component]
     direct[: len(loads)] = [-reaction.held[component] * load.root[component] for load in loads]
-    return ProbeRows(matrix, direct)
+    # The contact pushes the slider with (-tangential, normal).
+    lever = rows.system.slider.root_lever(rows.system.contact.tip.position)[component]
+    return ProbeRows(matrix, direct, reaction.held[component] * np.array([-lever[1], lever[0]]))

@@ -64,7 +64,9 @@ def instance(name: str, value: Any, kinds: type | tuple[type, ...]) -> None:
     """Raise if `value` is not an instance of one of `kinds`."""
     if not isinstance(value, kinds):
         words = " or ".join(kind.__name__ for kind in (kinds if isinstance(kinds, tuple) else (kinds,)))
-        raise ValueError(f"{name} must be a {words}, got {value!r}")
+        text = repr(value)
+        short = text if "\n" not in text else f"a {type(value).__name__}"
+        raise ValueError(f"{name} must be a {words}, got {short}")
 
 
 def suggestion(word: Any, known: Sequence[str]) -> str:

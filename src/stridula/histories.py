@@ -1,4 +1,4 @@
-"""How a drive's amplitude goes in time: a factor on its stated value, with its rate and its integral."""
+"""How a drive's amplitude goes in time: a factor on its stated value, and its integral."""
 
 from __future__ import annotations
 
@@ -19,10 +19,6 @@ class History(Protocol):
         """Return the factor [1]."""
         ...
 
-    def rate(self, time: Array) -> Array:
-        """Return its time derivative [1/s]."""
-        ...
-
     def integral(self, time: Array) -> Array:
         """Return its integral from 0 [s]."""
         ...
@@ -35,10 +31,6 @@ class Constant:
     def factor(self, time: Array) -> Array:
         """Return 1."""
         return np.ones_like(time)
-
-    def rate(self, time: Array) -> Array:
-        """Return 0."""
-        return np.zeros_like(time)
 
     def integral(self, time: Array) -> Array:
         """Return the time."""
@@ -63,10 +55,6 @@ class Ramp:
     def factor(self, time: Array) -> Array:
         """Return ``min(t / duration, 1)``."""
         return np.clip(time / self.duration, 0.0, 1.0)
-
-    def rate(self, time: Array) -> Array:
-        """Return ``1 / duration`` during the rise, then 0."""
-        return np.where(time < self.duration, 1.0 / self.duration, 0.0)
 
     def integral(self, time: Array) -> Array:
         """Return the area under the factor."""
@@ -101,10 +89,6 @@ class Harmonic:
     def factor(self, time: Array) -> Array:
         """Return the mean plus the sine."""
         return self.mean + self.amplitude * np.sin(self._angle(time))
-
-    def rate(self, time: Array) -> Array:
-        """Return the derivative of the sine."""
-        return self.amplitude * 2.0 * np.pi * self.frequency * np.cos(self._angle(time))
 
     def integral(self, time: Array) -> Array:
         """Return the integral of mean and sine."""
@@ -147,11 +131,6 @@ class Sampled:
     def factor(self, time: Array) -> Array:
         """Return the interpolated value."""
         return np.interp(time, self.time, self.value)
-
-    def rate(self, time: Array) -> Array:
-        """Return the slope of the piece that begins at or before t."""
-        slopes = np.concatenate([[0.0], np.diff(self.value) / np.diff(self.time), [0.0]])
-        return slopes[np.searchsorted(self.time, time, side="right")]
 
     def integral(self, time: Array) -> Array:
         """Return the area under the interpolated value from 0."""

@@ -89,7 +89,7 @@ class Trail:
     last: tuple = ()
 
 
-def drives_of(system, slider, track, held):
+def drives_of(system, slider, track, held, h):
     """Return the modal force of all drives as a function of time, and the initial modal velocity."""
     rod, bar = system.slider, system.track
     parts, velocity = [], np.zeros(slider.count + track.count)
@@ -113,7 +113,9 @@ def drives_of(system, slider, track, held):
             row = np.concatenate([-drive.normal_load * rod.trace(rod.length, held)[1], np.zeros(track.count)])
             parts.append((row, np.ones_like))
             inertia = np.concatenate([-drive.velocity * slider.translation[0], np.zeros(track.count)])
-            parts.append((inertia, drive.history.rate))
+            # The impulses of the inertia force add up to the change of velocity.
+            factor = drive.history.factor
+            parts.append((inertia, lambda t, factor=factor: (factor(t + h / 2) - factor(t - h / 2)) / h))
         elif isinstance(drive, st.Gravity):
             row = -drive.acceleration * np.concatenate([slider.translation[1], track.translation[1]])
             parts.append((row, np.ones_like))
@@ -140,7 +142,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> Trail:
     bending, axial = bar.harmonics
     tip = np.hstack([rod.trace(0.0, held), np.zeros((2, track.count))])
     a, b, c, impulse = scheme(w, z, h)
-    force, velocity = drives_of(system, slider, track, held)
+    force, velocity = drives_of(system, slider, track, held, h)
 
     def track_rows(x):
         """Rows of u2 and w2 at abscissa x, and of their slopes."""

@@ -1,4 +1,4 @@
-"""Histories: factor, rate and integral belong together, and what they refuse."""
+"""Histories: factor and integral belong together, and what they refuse."""
 
 from __future__ import annotations
 
@@ -30,17 +30,9 @@ def test_integral_is_the_area_under_the_factor(history):
 
 
 @pytest.mark.parametrize("history", HISTORIES, ids=IDS)
-def test_rate_is_the_slope_of_the_factor(history):
-    """Centred differences over 1e-6 s, off by (2 pi 2.3)³ 1e-12 / 6 < 1e-9 of a smooth factor, 1e-10 by round-off."""
-    t = np.setdiff1d(np.linspace(0.01, 1.3, 61).round(6), KNOTS) + 3e-6
-    slope = (history.factor(t + 1e-6) - history.factor(t - 1e-6)) / 2e-6
-    np.testing.assert_allclose(history.rate(t), slope, atol=1e-7)
-
-
-@pytest.mark.parametrize("history", HISTORIES, ids=IDS)
 def test_vectorised_and_pure(history):
     t = np.linspace(0, 1.2, 7)
-    for function in (history.factor, history.rate, history.integral):
+    for function in (history.factor, history.integral):
         values = function(t)
         assert values.shape == t.shape
         np.testing.assert_array_equal(values, [function(np.array([x]))[0] for x in t])

@@ -34,13 +34,14 @@ def march(
     probe_rows,
     probe_kinds,
     probe_direct,
+    probe_contact,
     record,
     raw,
 ):
     """March through ``record.shape[0]`` samples and return (samples completed, what ended the march).
 
     `sizes` holds the numbers of slider, bending and axial modes. `loads` has a row of load increments for each of the
-    first signals, `signals` a row of amplitudes over the steps, `imposed` the imposed displacement of the slider at
+    first signals, `signals` a row of amplitudes a step, `imposed` the imposed displacement of the slider at
     every step and the one after. `state` and `carried` are updated in place; `record` gets a row a sample and `raw` the
     probes at every step.
     """
@@ -73,14 +74,14 @@ def march(
         for _ in range(steps_per_sample):
             if not steady:
                 if loads.shape[0] == 1:
-                    factor = signals[0, n]
+                    factor = signals[n, 0]
                     for k in range(n_modes):
                         load[k] = factor * loads[0, k]
                 else:
                     for k in range(n_modes):
                         load[k] = 0.0
                     for j in range(loads.shape[0]):
-                        factor = signals[j, n]
+                        factor = signals[n, j]
                         for k in range(n_modes):
                             load[k] += factor * loads[j, k]
 
@@ -97,7 +98,8 @@ def march(
 
             trial = start + imposed[n + 1] + tip_x
             if not 0.0 < trial < length:
-                return sample, (at.OFF_TRACK if math.isfinite(trial) else at.NOT_FINITE)
+                # A tip does not cross the whole track in one step: that is a march that diverges.
+                return sample, (at.OFF_TRACK if abs(trial - abscissa) < length else at.NOT_FINITE)
             harmonics(wavenumber * trial, sines, cosines)
             bend = w_bending = 0.0
             for k in range(n_bending):
@@ -181,9 +183,9 @@ def march(
             damping += lost
 
             for p in range(probe_rows.shape[0]):
-                value = 0.0
-                for j in range(signals.shape[0]):
-                    value += probe_direct[p, j] * signals[j, n]
+                value = probe_contact[p, 0] * normal + probe_contact[p, 1] * tangential
+                for j in range(signals.shape[1]):
+                    value += probe_direct[p, j] * signals[n, j]
                 for kind in range(3):
                     first, last = probe_kinds[p, kind, 0], probe_kinds[p, kind, 1]
                     if kind == at.DISPLACEMENT:

@@ -119,43 +119,41 @@ class FiniteElementBeam:
         return row @ _reduced(self, held_x).shapes
 
     def root_reaction(self, held_x: bool = False) -> RootReaction:
-        """Return what gives the forces that the root's support exerts on the beam."""
+        """Return what gives the force that the root's support exerts, from the balance of the whole beam."""
         reduced = _reduced(self, held_x)
-        root = np.arange(3 * self.elements, 3 * self.elements + 3)
-        held = np.isin(root, reduced.fixed).astype(float)
-        along = np.zeros((3 * (self.elements + 1), 2))
-        along[0::3, 0] = along[1::3, 1] = 1.0
-        return RootReaction(
-            held,
-            held[:, None] * (reduced.stiffness[root] @ reduced.shapes),
-            held[:, None] * (reduced.mass[root] @ reduced.shapes),
-            held[:, None] * (reduced.mass[root] @ along),
-        )
+        held = np.isin(np.arange(3) + 3 * self.elements, reduced.fixed).astype(float)
+        nodes = np.linspace(0.0, self.length, self.elements + 1)
+        motions = np.zeros((3, 3 * (self.elements + 1)))
+        motions[0, 0::3] = motions[1, 1::3] = motions[2, 2::3] = 1.0
+        motions[2, 0::3], motions[2, 1::3] = np.outer(self.axes[1], nodes - self.length)
+        weight = held[:, None] * (motions @ reduced.mass)
+        return RootReaction(held, weight @ reduced.shapes, weight @ motions[:2].T)
 
-    def root_share(self, position: float) -> Array:
-        """Return the share of a world force at `position` that its element hands to the root's node, shape (3, 2)."""
+    def root_lever(self, position: float) -> Array:
+        """Return the force along x and y and the moment about the root of a unit world force at `position`, (3, 2)."""
         within("position", position, 0.0, self.length)
-        return displacement_row(position, self.length, self.angle, self.elements)[:, -3:].T
+        return np.vstack([np.eye(2), (position - self.length) * self.axes[1]])
 
 
 @dataclass(frozen=True)
 class RootReaction:
-    """Rows that give the support's force along world x and y [N] and its moment against the slope [N m].
+    """Force of the root's support along world x and y [N] and its moment [N m], from the balance of the whole beam.
 
-    Zero where the root is free. Damping is modal and has no share in them.
+    Reaction = mass times acceleration - drives - contact force, each with its lever about the root. It needs no
+    stiffness of modes that a cutoff left out; damping is internal and has no share. The moment counts positive when it
+    raises the slope of the transverse displacement along the axis.
 
     Attributes
     ----------
     held : ndarray, shape (3,)
-        1 where the support holds the root, 0 where it is free.
-    stiffness, mass : ndarray, shape (3, modes)
-        Rows on the modal coordinates and on their accelerations.
+        1 where the support holds the root, 0 where it is free and the reaction is zero.
+    mass : ndarray, shape (3, modes)
+        Rows on the modal accelerations.
     inertia : ndarray, shape (3, 2)
         Shares of a uniform acceleration along x and y.
     """
 
     held: Array
-    stiffness: Array
     mass: Array
     inertia: Array
 

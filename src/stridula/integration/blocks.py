@@ -41,27 +41,28 @@ def constants(system: System, arrays: Assembly, block: Array, step: float) -> Ar
     return values
 
 
-def probe_blocks(arrays: Assembly, step: float) -> tuple[Array, Array, Array]:
-    """Return the probes' rows on q, d[n+1] + d[n] and d[n+1] - d[n], their non-zero spans, and direct shares."""
+def probe_blocks(arrays: Assembly, step: float) -> tuple[Array, Array, Array, Array]:
+    """Return the probes' rows on q, d[n+1] + d[n] and d[n+1] - d[n], their spans, shares of signals and contact."""
     count = len(arrays.probes)
     rows = np.zeros((count, 3, arrays.mode_count))
     spans = np.zeros((count, 3, 2), dtype=np.int64)
     direct = np.zeros((count, len(arrays.signals)))
+    contact = np.zeros((count, 2))
     scale = np.array([1.0, 0.5 / step, 1.0 / step**2])
     for p, probe in enumerate(arrays.probes):
         rows[p] = probe.rows * scale[:, None]
-        direct[p] = probe.direct
+        direct[p], contact[p] = probe.direct, probe.contact
         for kind in range(3):
             used = np.flatnonzero(rows[p, kind])
             if used.size:
                 spans[p, kind] = used[0], used[-1] + 1
-    return rows, spans, direct
+    return rows, spans, direct, contact
 
 
 def at_rest(system: System, arrays: Assembly, scheme: Scheme, step: float) -> tuple[Array, Array]:
     """Return the state at the start, whose first increment makes the scheme of second order from the first step on."""
     zero = np.zeros(1)
-    factors = np.array([signal(zero)[0] for signal in arrays.signals[: arrays.loads.shape[0]]])
+    factors = np.array([signal(zero, step)[0] for signal in arrays.signals[: arrays.loads.shape[0]]])
     state = np.zeros((2, arrays.mode_count))
     state[at.D] = scheme.first_increment(
         arrays.angular_frequency, arrays.damping, step, state[at.Q], arrays.velocity, factors @ arrays.loads
@@ -70,5 +71,7 @@ def at_rest(system: System, arrays: Assembly, scheme: Scheme, step: float) -> tu
     start = system.contact.at
     before = arrays.tip[0] @ state[at.D, : arrays.sizes[0]]
     carried[at.MATERIAL] = carried[at.ABSCISSA] = start
-    carried[at.ABSCISSA_BEFORE] = start - before - (arrays.imposed(zero + step)[0] - arrays.imposed(zero)[0])
+    carried[at.ABSCISSA_BEFORE] = (
+        start - before - (arrays.imposed(zero + step, step)[0] - arrays.imposed(zero, step)[0])
+    )
     return state, carried

@@ -101,17 +101,11 @@ class Run:
         start: xr.Dataset | None,
         title: str,
     ) -> None:
-        self.system, self.arrays, self.scheme, self.timing, self.probes = (
-            system,
-            arrays,
-            scheme,
-            timing,
-            probes,
-        )
-        self.title = title
+        self.system, self.arrays, self.scheme = system, arrays, scheme
+        self.timing, self.probes, self.title = timing, probes, title
         self.block, self.loads = coefficient_block(arrays, scheme, timing.step)
         self.constants = constants(system, arrays, self.block, timing.step)
-        self.probe_rows, self.probe_spans, self.probe_direct = probe_blocks(arrays, timing.step)
+        self.probe_blocks = probe_blocks(arrays, timing.step)
         self.first_step = 0
         if start is None:
             self.state, self.carried = at_rest(system, arrays, scheme, timing.step)
@@ -157,7 +151,7 @@ class Run:
         ratio, step = self.timing.ratio, self.timing.step
         first = self.first_step + first_sample * ratio
         times = np.arange(first, first + count * ratio + 1) * step
-        signals = np.array([signal(times[:-1]) for signal in self.arrays.signals])
+        signals = np.stack([signal(times[:-1], step) for signal in self.arrays.signals], axis=1)
         raw = np.empty((count * ratio, len(self.probes)))
         record = np.empty((count, at.COLUMNS))
         completed, ended = march(
@@ -169,10 +163,8 @@ class Run:
             carried,
             self.loads,
             signals,
-            np.ascontiguousarray(self.arrays.imposed(times), dtype=float),
-            self.probe_rows,
-            self.probe_spans,
-            self.probe_direct,
+            np.ascontiguousarray(self.arrays.imposed(times, step), dtype=float),
+            *self.probe_blocks,
             record,
             raw,
         )

@@ -74,7 +74,7 @@ def simulate(
         If the state is no longer finite, with the record so far.
     """
     instance("system", system, System)
-    chosen: Scheme = scheme or ExactModal()
+    chosen: Scheme = ExactModal() if scheme is None else scheme
     instance("scheme", chosen, (CentralDifference, ExactModal))
     if probes is not None and not isinstance(probes, Sequence):
         raise ValueError(f"probes must be a list of probes, got {probes!r}")

@@ -49,7 +49,15 @@ def _in_words(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
 
 @dataclass(frozen=True)
 class Quantity(_Kind):
-    """A number with an SI unit, strictly `above` or from `least` on, and strictly `below`."""
+    """A number with an SI unit, in a range.
+
+    Attributes
+    ----------
+    unit : str
+        SI unit.
+    above, least, below : float or None
+        Strictly above, from here on, strictly below; no bound where None.
+    """
 
     unit: str
     above: float | None = None
@@ -75,7 +83,13 @@ class Quantity(_Kind):
 
 @dataclass(frozen=True)
 class Whole(_Kind):
-    """A whole number of at least `least`."""
+    """A whole number.
+
+    Attributes
+    ----------
+    least : int
+        Smallest one allowed.
+    """
 
     least: int
 
