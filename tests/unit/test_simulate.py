@@ -282,6 +282,13 @@ def test_a_state_that_is_no_longer_finite_is_said_with_the_record_kept():
     assert np.all(np.isfinite(record.kinetic_and_elastic))
 
 
+def test_a_march_that_diverges_does_not_pass_for_a_tip_off_its_track(monkeypatch):
+    """With the limit of the step out of the way the tip leaves [0, L] before anything overflows."""
+    monkeypatch.setattr(st.CentralDifference, "limit", lambda self, angular, damping: np.inf)
+    with pytest.raises(st.Diverged):
+        st.simulate(CASES["squeal"](), 0.2, scheme=st.CentralDifference(), step=2e-4, sample_rate=5e3)
+
+
 def test_watchers_see_the_time_go_on():
     seen = []
     st.simulate(CASES["squeal"](), 0.5, step=STEP, watchers=[seen.append])
