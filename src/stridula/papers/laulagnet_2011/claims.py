@@ -127,6 +127,15 @@ def burst_spacing(runs: Runs) -> float:
     return float(np.median(np.diff(starts))) if starts.size > 1 else float("nan")
 
 
+def burst_irregularity(runs: Runs) -> float:
+    """Return the interquartile range of the times from burst to burst of 3.2 over their median [1]."""
+    spacings = np.diff(analysis.bursts(runs.record("squeal"))[:, 0])
+    if not spacings.size:
+        return float("nan")
+    low, middle, high = np.percentile(spacings, [25.0, 50.0, 75.0])
+    return float((high - low) / middle)
+
+
 def burst_length(runs: Runs) -> float:
     """Return the median length of the bursts of 3.2 [s]."""
     return _median_length(analysis.bursts(runs.record("squeal")))
@@ -280,6 +289,7 @@ CLAIMS = (
     Claim("no jump of the normal force over its mean", "3.1", "no discontinuity", -INFINITE, 0.2, "1", force_jump),
     Claim("length of the stops", "3.2", "0.07 s", *near(0.07, 0.1), "s", stop_length),
     Claim("spacing of the bursts", "3.2", "0.1 s", *near(0.1, 0.1), "s", burst_spacing),
+    Claim("spread of the spacing over its median", "3.2", "periodic", -INFINITE, 0.25, "1", burst_irregularity),
     Claim("length of a burst", "3.2", "0.02 s", *near(0.02, 0.25), "s", burst_length),
     Claim("frequency of the limit cycle", "3.2", "900 Hz", *near(900.0, 0.1), "Hz", squeal_frequency),
     Claim("separated inside a burst", "3.2", "mixed sliding-separate", 0.1, INFINITE, "1", burst_separation),
