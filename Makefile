@@ -9,7 +9,7 @@ help:
 	@echo "make test         lint, types, layers and tests (sets itself up)"
 	@echo "make docs         build the documentation into docs/_build/html, warnings are errors"
 	@echo "make bench        speed and memory, as ratios measured side by side"
-	@echo "make convergence  the table of docs/convergence.rst, in about ten minutes"
+	@echo "make convergence  the table of docs/convergence.rst, in a few minutes"
 	@echo "make clean        remove .venv and everything built"
 
 .venv/installed: pyproject.toml

@@ -2,7 +2,7 @@
 
 Every measure is averaged over an ensemble of starts whose gap is perturbed by parts in a million. A refinement
 passes where the mean moves by less than 3 % (frequencies, durations, ratios) or 0.03 (shares), or stays within the
-95 % interval of the unrefined mean. Writes docs/convergence-table.rst; about ten minutes on two cores.
+95 % interval of the unrefined mean. Writes docs/convergence-table.rst; a few minutes on two cores.
 """
 
 from __future__ import annotations
