@@ -172,14 +172,7 @@ def dataclasses_of_package() -> list[type]:
     return sorted(classes, key=lambda thing: thing.__qualname__)
 
 
-UNDOCUMENTED = pytest.mark.xfail(reason="annotations of the scenario models: fields not documented yet")
-DATACLASSES = [
-    pytest.param(thing, marks=[UNDOCUMENTED] if thing.__qualname__ in ("Quantity", "Whole") else [])
-    for thing in dataclasses_of_package()
-]
-
-
-@pytest.mark.parametrize("thing", DATACLASSES, ids=lambda thing: thing.__qualname__)
+@pytest.mark.parametrize("thing", dataclasses_of_package(), ids=lambda thing: thing.__qualname__)
 def test_each_field_of_a_dataclass_is_documented(thing):
     """A time scheme's fields are the constants of its protocol, documented there."""
     fields = {field.name for field in dataclasses.fields(thing) if not field.name.startswith("_")}
