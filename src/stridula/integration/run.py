@@ -113,7 +113,7 @@ class Run:
             self.initial_energy = float(stored_energy(self.block, self.state))
         else:
             self._go_on_from(start)
-        self.record = np.empty((timing.samples, at.COLUMNS))
+        self.record = np.empty((at.COLUMNS, timing.samples))
         self.values = np.empty((timing.samples, len(probes)))
         self.done = 0
 
@@ -169,7 +169,7 @@ class Run:
             raw,
         )
         kept = min(completed, self.timing.samples - first_sample)
-        self.record[first_sample : first_sample + kept] = record[:kept]
+        self.record[:, first_sample : first_sample + kept] = record[:kept].T
         return raw[: completed * ratio], completed, ended
 
     def _keep(self, samples: Array, filled: int) -> int:
@@ -225,8 +225,8 @@ class Run:
 
     def _dataset(self, ended: str, wall_time: float, tail: Array | None) -> xr.Dataset:
         timing, done = self.timing, self.done
-        record = self.record[:done]
-        columns = {name: record[:, column].copy() for name, column in COLUMN.items()}
+        record = self.record[:, :done]
+        columns = {name: record[column] for name, column in COLUMN.items()}
         columns["impact_loss"] = columns["convection_work"] - columns["friction_loss"] - columns["contact_work"]
         columns["ledger_residual"] = (
             (columns["kinetic_and_elastic"] - self.initial_energy)
@@ -263,7 +263,7 @@ class Run:
         return to_dataset(
             (first_sample + np.arange(1, done + 1)) * timing.interval,
             columns,
-            record[:, [at.SEPARATED, at.STICKING, at.SLIDING]].copy(),
+            record[at.SEPARATED : at.SLIDING + 1].T,
             self.probes,
             self.values[:done],
             State(self.state, self.carried, np.empty((0, len(self.probes))) if tail is None else tail),
