@@ -242,7 +242,7 @@ def test_another_shape_starts_a_section_afresh():
         ({"drives.3.x": 1}, "got 'drives.3.x'; did you mean 'drives.0.x'?"),
         ({"contact": 1}, "set one of its keys at, friction, gap, point"),
         ({"angle": "20 mm"}, "slider.angle must be a number in rad or deg, got '20 mm'"),
-        ({"angle": "95 deg"}, "slider.angle must be strictly between -1.5708 and 1.5708"),
+        ({"angle": "95 deg"}, "slider.angle must be strictly between -pi/2 and pi/2"),
         ({"elements": True}, "slider.elements must be a whole number, got True"),
         ({"elements": "1.5"}, "slider.elements must be a whole number, got 1.5"),
         ({"friction": "true"}, "contact.friction.coefficient must be a number, got True"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -412,3 +413,38 @@ def test_probe_on_another_body_is_refused():
         st.simulate(SYSTEM, 1e-3, probes=[st.Acceleration(other.centre)])
     with pytest.raises(ValueError, match=r"^probe.* must be on the slider of this system"):
         st.simulate(SYSTEM, 1e-3, probes=[st.Reaction(replace(SYSTEM.slider, length=0.4))])
+
+
+def test_a_run_goes_on_only_from_the_same_bodies_and_place():
+    system = CASES["squeal"]()
+    first = st.simulate(system, 1e-3, step=STEP)
+    elsewhere = st.System(
+        st.PointContact(system.slider.tip, system.track, at=0.3, friction=st.Coulomb(1.5), gap=1e-6), system.drives
+    )
+    with pytest.raises(ValueError, match=r"^start must have the same contact.at as this run, 0.3, got 0.2"):
+        st.simulate(elsewhere, 1e-3, step=STEP, start=first)
+    with pytest.raises(ValueError, match=r"^start must have the same simulation.probes as this run"):
+        st.simulate(system, 1e-3, step=STEP, start=first, probes=[st.Velocity(system.track.centre)])
+    rougher = st.PointContact(system.slider.tip, system.track, at=0.2, friction=st.Coulomb(2.0), gap=1e-6)
+    assert st.simulate(st.System(rougher, system.drives), 1e-3, step=STEP, start=first).attrs["ended"] == "finished"
+
+
+def test_the_scenario_of_an_extension_runs_the_whole():
+    system = CASES["squeal"]()
+    first = st.simulate(system, 1e-3, step=STEP)
+    second = st.simulate(system, 2e-3, step=STEP, start=first)
+    assert tomllib.loads(second.attrs["scenario"])["simulation"]["duration"] == pytest.approx(3e-3, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"duration": 1e-6}, r"^duration must be at least half a sample interval of 1e-05 s, got 1e-06"),
+        ({"duration": 1.0, "step": 1e-300}, r"^step must be at least .* s for these modes, got 1e-300"),
+        ({"duration": 1e4, "sample_rate": 1e-3}, r"^sample_rate must be at least .* Hz at a step of .*, got 0.001"),
+        ({"duration": 1.0, "watchers": 5}, r"^watchers must be a list of callables, got 5"),
+    ],
+)
+def test_timing_that_cannot_be(words, message):
+    with pytest.raises(ValueError, match=message):
+        st.simulate(SYSTEM, **words)

@@ -77,22 +77,23 @@ def status_share(run: xr.Dataset, status: str, intervals: Array | None = None) -
 
 def settling_time(run: xr.Dataset) -> float:
     """Return the time [s] from which the contact slides at every step to the end; NaN if it does not end sliding."""
+    time, interval = _clock(run)
     slides = run["status_share"].values[:, STATUS_WORDS.index("sliding")] == 1.0
     if not slides[-1]:
         return float("nan")
-    time, interval = _clock(run)
     others = np.flatnonzero(~slides)
     return float(time[others[-1]]) if others.size else float(time[0] - interval)
 
 
 def longest_unchanged(run: xr.Dataset) -> float:
     """Return the longest time [s] during which the status does not change."""
+    _, interval = _clock(run)
     share = run["status_share"].values
     pure = np.where(share.max(axis=1) == 1.0, share.argmax(axis=1), -1)
     changes = np.flatnonzero(np.diff(pure)) + 1
     starts = np.concatenate([[0], changes])
     lengths = np.diff(np.concatenate([starts, [pure.size]]))[pure[starts] >= 0]
-    return float(lengths.max(initial=0) * _clock(run)[1])
+    return float(lengths.max(initial=0) * interval)
 
 
 def advance(run: xr.Dataset, intervals: Array | None = None) -> float:

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 import scipy.linalg
 
-from ..checks import choice, count, instance, non_negative, positive, within
+from ..checks import choice, count, finite, instance, non_negative, positive, within
 from .finite_elements import (
     FIXED_BY_SUPPORT,
     X,
@@ -19,6 +19,8 @@ from .finite_elements import (
 )
 from .modes import Array, BodyPoint, Modes
 from .sections import Circle, Material, Rectangle, Section
+
+LARGEST_ELEMENTS = 500
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,7 @@ class FiniteElementBeam:
         Angle a of its axis from the track's normal [rad], strictly between -pi/2 and pi/2; above zero the root is
         ahead of the tip in x.
     elements : int, optional
-        Number of equal elements.
+        Number of equal elements, at most 500.
     damping : float, optional
         Modal damping ratio of every mode [1], from 0 to 1 (1 excluded).
     root_support, tip_support : {"free", "guided", "pinned", "clamped"}, optional
@@ -73,8 +75,10 @@ class FiniteElementBeam:
         instance("material", self.material, Material)
         instance("section", self.section, (Rectangle, Circle, Section))
         positive("length", self.length)
-        within("angle", self.angle, -np.pi / 2, np.pi / 2, ends=False)
-        count("elements", self.elements)
+        if abs(finite("angle", self.angle)) >= np.pi / 2:
+            raise ValueError(f"angle must be strictly between -pi/2 and pi/2 rad (90 deg), got {self.angle!r}")
+        if count("elements", self.elements) > LARGEST_ELEMENTS:
+            raise ValueError(f"elements must be at most {LARGEST_ELEMENTS}, got {self.elements!r}")
         if non_negative("damping", self.damping) >= 1.0:
             raise ValueError(f"damping must be below 1 (critical), got {self.damping!r}")
         choice("root_support", self.root_support, tuple(FIXED_BY_SUPPORT))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time as clock
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -27,6 +28,15 @@ from .schemes import Scheme
 from .watchers import Progress, Watcher
 
 STEPS_PER_CHUNK = 20_000
+# What a run that goes on from another must share with it; friction and drives may change.
+FROZEN = (
+    ("slider",),
+    ("track",),
+    ("contact", "at"),
+    ("contact", "gap"),
+    ("contact", "point"),
+    ("simulation", "probes"),
+)
 ENDED = {at.FINISHED: "finished", at.OFF_TRACK: "off the track", at.NOT_FINITE: "not finite"}
 COLUMN = {
     "normal_force": at.NORMAL_FORCE,
@@ -217,6 +227,13 @@ class Run:
             raise ValueError(
                 f"start must have the same number of probes, {len(self.probes)}, got {start['state_raw'].shape[1]}"
             )
+        before, now = (
+            tomllib.loads(text) for text in (attributes["scenario"], scenario_toml(self.system, self.probes, {}))
+        )
+        for path in FROZEN:
+            old, new = (_at(tables, path) for tables in (before, now))
+            if old != new:
+                raise ValueError(f"start must have the same {'.'.join(path)} as this run, {new!r}, got {old!r}")
         self.state = np.array(start["state_modal"].values, dtype=float)
         self.carried = np.array(start["state_carried"].values, dtype=float)
         self.first_step = int(attributes["last_step"])
@@ -237,7 +254,7 @@ class Run:
         first_sample = self.first_step // timing.ratio
         last_step = self.first_step + done * timing.ratio
         simulation = {
-            "duration": timing.samples * timing.interval,
+            "duration": self.first_step * timing.step + timing.samples * timing.interval,
             "scheme": self.scheme.name,
             "step": timing.step,
             "sample_rate": float(f"{1.0 / timing.interval:.12g}"),
@@ -269,3 +286,11 @@ class Run:
             State(self.state, self.carried, np.empty((0, len(self.probes))) if tail is None else tail),
             attributes,
         )
+
+
+def _at(tables: dict[str, Any], path: Sequence[str]) -> Any:
+    """Return the value at a path of nested tables."""
+    value: Any = tables
+    for name in path:
+        value = value[name]
+    return value

@@ -17,6 +17,8 @@ from .schemes import CentralDifference, ExactModal, Scheme
 from .watchers import Watcher
 
 LARGEST_RECORD = 8e9
+LARGEST_RATIO = 1_000_000
+SMALLEST_SHARE = 1e-7
 
 
 def simulate(
@@ -50,7 +52,8 @@ def simulate(
     probes : sequence of Displacement, Velocity, Acceleration or Reaction, optional
         What else to record; the acceleration of the track's centre along y if left out.
     start : xarray.Dataset, optional
-        A record of the same system, scheme and step to go on from; the new record begins where it ended.
+        A record to go on from; the new record begins where it ended. Bodies, contact point, gap, probes, scheme, step
+        and sampling must be the same; friction and drives may change.
     watchers : sequence of callable, optional
         Called with a `Progress` between chunks of the march.
     title : str, optional
@@ -76,6 +79,8 @@ def simulate(
     instance("system", system, System)
     chosen: Scheme = ExactModal() if scheme is None else scheme
     instance("scheme", chosen, (CentralDifference, ExactModal))
+    if not isinstance(watchers, Sequence):
+        raise ValueError(f"watchers must be a list of callables, got {watchers!r}")
     if probes is not None and not isinstance(probes, Sequence):
         raise ValueError(f"probes must be a list of probes, got {probes!r}")
     declared = tuple(probes) if probes is not None else (Acceleration(system.track.centre, "y"),)
@@ -102,6 +107,18 @@ def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float
         step = wanted / ratio
     elif positive("step", step) >= limit:
         raise ValueError(f"step must be below the {scheme.name} scheme's limit of {limit:.6g} s, got {step!r}")
+    elif step < SMALLEST_SHARE * min(limit, 1.0):
+        raise ValueError(
+            f"step must be at least {SMALLEST_SHARE * min(limit, 1.0):.3g} s for these modes, got {step!r}"
+        )
     else:
         ratio = max(1, round(wanted / step))
-    return Timing(step, ratio, max(1, round(duration / (step * ratio))))
+    if ratio > LARGEST_RATIO:
+        raise ValueError(
+            f"sample_rate must be at least {1.0 / (LARGEST_RATIO * step):.3g} Hz at a step of {step:.3g} s, "
+            f"got {sample_rate!r}"
+        )
+    interval = step * ratio
+    if duration < 0.5 * interval:
+        raise ValueError(f"duration must be at least half a sample interval of {interval:.6g} s, got {duration!r}")
+    return Timing(step, ratio, max(1, round(duration / interval)))

@@ -32,6 +32,9 @@ def overridden(tables: dict[str, Any], overrides: Mapping[str, Any]) -> dict[str
     changed = copy.deepcopy(tables)
     problems: list[str] = []
     for key, value in overrides.items():
+        if key == "base":
+            problems.append(f"base must be written in the file, it cannot be set by key, got {value!r}")
+            continue
         value = _value(value) if isinstance(value, str) else value
         try:
             _set(changed, find(key, changed, is_table=isinstance(value, dict)), value)
