@@ -8,6 +8,7 @@ import xarray as xr
 
 from ..bodies.modes import Array
 from ..checks import positive
+from .signals import blocks, pieces, samples
 
 PERIODS = 10.0
 FINEST = 2.0
@@ -32,12 +33,12 @@ def spectrum(signal: xr.DataArray, intervals: Array | None = None) -> tuple[Arra
     energy : ndarray, shape (frequencies,)
         Energy spectral density, in units of the signal squared times s².
     """
-    values, interval = _samples(signal)
-    pieces = _pieces(signal, values, intervals)
-    longest = max((piece.size for piece in pieces), default=0)
+    values, interval = samples(signal)
+    chosen = pieces(signal, values, intervals)
+    longest = max((piece.size for piece in chosen), default=0)
     size = 2 ** int(np.ceil(np.log2(max(longest, 1.0 / (FINEST * interval), 2))))
     energy = np.zeros(size // 2 + 1)
-    for piece in pieces:
+    for piece in chosen:
         window = scipy.signal.windows.hann(piece.size, sym=False)
         mean = np.sum(window * piece) / max(np.sum(window), 1e-300)
         energy += np.abs(np.fft.rfft((piece - mean) * window, size)) ** 2
@@ -85,9 +86,9 @@ def frequency_resolution(signal: xr.DataArray, intervals: Array | None = None) -
 
 def envelope(signal: xr.DataArray, window: float = 5e-3) -> Array:
     """Return the root mean square of a signal less its mean over successive windows of `window` s, shape (windows,)."""
-    values, interval = _samples(signal)
-    blocks = _blocks(values - values.mean(), positive("window", window), interval)
-    return np.sqrt(np.mean(blocks**2, axis=1))
+    values, interval = samples(signal)
+    windows = blocks(values - values.mean(), positive("window", window), interval)
+    return np.sqrt(np.mean(windows**2, axis=1))
 
 
 def envelope_correlation(first: xr.DataArray, second: xr.DataArray, window: float = 5e-3) -> float:
@@ -95,33 +96,9 @@ def envelope_correlation(first: xr.DataArray, second: xr.DataArray, window: floa
     return float(np.corrcoef(envelope(first, window), envelope(second, window))[0, 1])
 
 
-def _samples(signal: xr.DataArray) -> tuple[Array, float]:
-    """Return the values of a signal over time and their interval [s]."""
-    if signal.dims != ("time",) or signal.size < 2:
-        raise ValueError(f"signal must have the one dimension time and at least 2 samples, got {dict(signal.sizes)}")
-    time = signal["time"].values
-    return signal.values.astype(float), float((time[-1] - time[0]) / (time.size - 1))
-
-
-def _pieces(signal: xr.DataArray, values: Array, intervals: Array | None) -> list[Array]:
-    if intervals is None:
-        return [values]
-    time = signal["time"].values
-    bounds = np.searchsorted(time, np.asarray(intervals))
-    return [values[first:last] for first, last in bounds if last - first >= 8]
-
-
 def _median_length(signal: xr.DataArray, intervals: Array | None) -> float:
     if intervals is None:
-        values, interval = _samples(signal)
+        values, interval = samples(signal)
         return values.size * interval
     lengths = np.diff(np.asarray(intervals), axis=1)
     return float(np.median(lengths)) if lengths.size else 1.0
-
-
-def _blocks(values: Array, window: float, interval: float) -> Array:
-    """Return the values in successive blocks of a window, shape (blocks, samples)."""
-    size = max(1, round(window / interval))
-    if values.size < size:
-        raise ValueError(f"window must be at most the signal's {values.size * interval:.6g} s, got {window!r}")
-    return values[: values.size // size * size].reshape(-1, size)

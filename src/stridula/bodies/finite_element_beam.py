@@ -166,7 +166,6 @@ class RootReaction:
 class _Reduced:
     modes: Modes
     shapes: Array
-    stiffness: Array
     mass: Array
     fixed: Array
 
@@ -203,7 +202,7 @@ def _reduced(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
     directions = np.zeros((2, mass.shape[0]))
     directions[0, 0::3] = directions[1, 1::3] = 1.0
     modes = Modes(angular, np.full(angular.size, float(beam.damping)), directions @ mass @ shapes)
-    return _Reduced(modes, shapes, stiffness, mass, fixed)
+    return _Reduced(modes, shapes, mass, fixed)
 
 
 def _fixed(beam: FiniteElementBeam, held_x: bool) -> Array:

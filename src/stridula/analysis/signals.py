@@ -1,0 +1,33 @@
+"""Recorded signals as plain arrays: samples, pieces in intervals of time, successive blocks."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from ..bodies.modes import Array
+
+
+def samples(signal: xr.DataArray) -> tuple[Array, float]:
+    """Return the values of a signal over time and their interval [s]."""
+    if signal.dims != ("time",) or signal.size < 2:
+        raise ValueError(f"signal must have the one dimension time and at least 2 samples, got {dict(signal.sizes)}")
+    time = signal["time"].values
+    return signal.values.astype(float), float((time[-1] - time[0]) / (time.size - 1))
+
+
+def pieces(signal: xr.DataArray, values: Array, intervals: Array | None) -> list[Array]:
+    """Return the values in each interval of at least 8 samples, or all of them without intervals."""
+    if intervals is None:
+        return [values]
+    time = signal["time"].values
+    bounds = np.searchsorted(time, np.asarray(intervals))
+    return [values[first:last] for first, last in bounds if last - first >= 8]
+
+
+def blocks(values: Array, window: float, interval: float) -> Array:
+    """Return the values in successive blocks of a window, shape (blocks, samples)."""
+    size = max(1, round(window / interval))
+    if values.size < size:
+        raise ValueError(f"window must be at most the signal's {values.size * interval:.6g} s, got {window!r}")
+    return values[: values.size // size * size].reshape(-1, size)
