@@ -2,14 +2,16 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: help paper test lint docs bench convergence clean
+.PHONY: help paper verify peers test lint docs bench convergence clean
 
 help:
 	@echo "make paper        run every case of the paper into results/paper (sets itself up)"
+	@echo "make verify       run every case whose answer is known into results/verify; fails if one falls short"
+	@echo "make peers        the same systems in Siconos and here; needs Debian's python3-siconos, skipped without"
 	@echo "make test         lint, types, layers and tests (sets itself up)"
 	@echo "make docs         build the documentation into docs/_build/html, warnings are errors"
 	@echo "make bench        speed and memory, as ratios measured side by side"
-	@echo "make convergence  the table of docs/convergence.rst, in a few minutes"
+	@echo "make convergence  the table of docs/convergence.rst and the figure of docs/trust.rst, in a few minutes"
 	@echo "make clean        remove .venv and everything built"
 
 .venv/installed: pyproject.toml
@@ -23,6 +25,12 @@ help:
 
 paper: .venv/installed
 	$(BIN)/stridula paper
+
+verify: .venv/installed
+	$(BIN)/stridula verify
+
+peers: .venv/installed
+	$(BIN)/python benchmarks/peers/against_siconos.py
 
 lint: .venv/installed-dev
 	$(BIN)/ruff format --check .
@@ -41,6 +49,7 @@ bench: .venv/installed
 
 convergence: .venv/installed
 	$(BIN)/python examples/papers/laulagnet_2011/convergence.py
+	$(BIN)/python examples/papers/laulagnet_2011/convergence_of_statistics.py
 
 clean:
 	rm -rf .venv docs/_build results .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

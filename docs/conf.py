@@ -20,6 +20,7 @@ HERE = Path(__file__).resolve().parent
 SOURCES = HERE.parent / "src"
 GENERATED = HERE / "_generated"
 PAPER = GENERATED / "paper"
+VERIFICATION = GENERATED / "verification"
 sys.path.insert(0, str(SOURCES))
 
 import stridula  # noqa: E402
@@ -41,6 +42,7 @@ exclude_patterns = [
     "_generated/*.rst",
     "paper-search.rst",
     "convergence-table.rst",
+    "peers.rst",
 ]
 highlight_language = "python"
 nitpicky = False
@@ -79,20 +81,25 @@ logger = logging.getLogger(__name__)
 # The public names that do not live in the package root: module, title, names unless they are its ``__all__``.
 MODULES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("stridula.analysis", "What a record means", ()),
-    ("stridula.plot", "Figures", ("overview", "timeline", "save")),
+    ("stridula.plot", "Figures", ("overview", "timeline", "friction", "save")),
     ("stridula.scenarios", "More on scenarios", ()),
+    ("stridula.studies", "More on ensembles", ()),
     ("stridula.papers.laulagnet_2011", "Laulagnet 2011", ()),
 )
 HOMES = {
     "bodies": "What vibrates",
     "contact": "Where bodies touch",
+    "connections": "What joins bodies",
     "drives": "What pushes",
     "histories": "How a drive goes in time",
     "system": "The system",
     "records": "Probes: what else to record",
     "records.files": "Records in files",
+    "records.export": "Records for other programs",
+    "records.compare": "Two records side by side",
     "integration": "How time goes on",
     "scenarios": "Ready cases",
+    "studies": "Many runs",
 }
 
 
@@ -226,7 +233,7 @@ def collect(model: type, path: str, seen: dict[type, str]) -> None:
 
 def kind_of(table: type) -> str:
     """Return what tells a table from its alternatives, such as ``ramp``."""
-    tag = next((key for key in ("kind", "shape", "quantity") if key in fields(table)), None)
+    tag = next((key for key in ("kind", "shape", "law", "quantity") if key in fields(table)), None)
     return " or ".join(get_args(fields(table)[tag].annotation)) if tag else ""
 
 
@@ -234,7 +241,7 @@ def tables_in(annotation: Any) -> Iterable[type]:
     """Yield the tables that an annotation allows."""
     if hasattr(annotation, "model_fields"):
         yield annotation
-    elif get_origin(annotation) in (Union, UnionType, Annotated, list):
+    elif get_origin(annotation) in (Union, UnionType, Annotated, list, dict):
         for argument in get_args(annotation):
             yield from tables_in(argument)
 
@@ -271,13 +278,17 @@ def check_measures() -> None:
 # The paper
 
 
+def is_stale(written: Path) -> bool:
+    """Return whether what was written is missing or older than the sources."""
+    newest = max(path.stat().st_mtime for path in SOURCES.rglob("*") if path.suffix in (".py", ".toml"))
+    return not written.exists() or written.stat().st_mtime < newest
+
+
 def reproduce_paper() -> None:
     """Run every case of the paper into ``_generated/paper`` unless what is there is newer than the sources."""
     from stridula.papers.laulagnet_2011 import reproduce
 
-    written = PAPER / "claims.json"
-    newest = max(path.stat().st_mtime for path in SOURCES.rglob("*") if path.suffix in (".py", ".toml"))
-    if not written.exists() or written.stat().st_mtime < newest:
+    if is_stale(PAPER / "claims.json"):
         logger.info("the paper from end to end (about two minutes)")
         reproduce(PAPER, lambda name: logger.info("  %s", name))
 
@@ -317,6 +328,45 @@ def figures_page() -> str:
     return "\n".join(lines)
 
 
+# The verification
+
+
+def run_verification() -> None:
+    """Run every verification case into ``_generated/verification`` unless that is newer than the sources."""
+    from stridula.verification import verify
+
+    if is_stale(VERIFICATION / "verification.json"):
+        logger.info("the verification (about two minutes)")
+        verify(VERIFICATION, report=lambda line: logger.info("  %s", line))
+
+
+def verification_page() -> str:
+    """Return every case with its figure and its rows."""
+    from stridula.verification.cases import CASES
+
+    rows = json.loads((VERIFICATION / "verification.json").read_text(encoding="utf-8"))
+    good = sum(row["holds"] for row in rows)
+    lines = [f"{good} of {len(rows)} quantities are within their tolerance.", ""]
+    for case in CASES:
+        lines += [case.title, "^" * len(case.title), "", f"Source: {plain(case.source)}.", ""]
+        lines += [f".. figure:: /_generated/verification/{case.name}.png", f"   :alt: {plain(case.title)}", ""]
+        cells = [verification_cells(row) for row in rows if row["case"] == case.name]
+        head = ["quantity", "scheme", "expected", "obtained", "error", "tolerance", "within", "tolerance from"]
+        lines += [list_table(head, cells, [17, 10, 12, 12, 9, 9, 6, 25])]
+    return "\n".join(lines)
+
+
+def verification_cells(row: dict[str, Any]) -> list[str]:
+    """Return the cells of one quantity."""
+    unit = "" if row["units"] == "1" else f" {row['units']}"
+    numbers = [
+        "none" if row[name] is None else f"{row[name]:.{digits}g}{unit}"
+        for name, digits in (("expected", 7), ("obtained", 7), ("error", 2), ("tolerance", 2))
+    ]
+    words = map(plain, (row["quantity"], row["scheme"] or "-", *numbers))
+    return [*words, "yes" if row["holds"] else "**no**", plain(row["reason"])]
+
+
 def setup(app: Sphinx) -> None:
     """Write what is generated, before Sphinx looks for pages."""
     page = api_page()
@@ -329,3 +379,5 @@ def setup(app: Sphinx) -> None:
     reproduce_paper()
     write(GENERATED / "claims.rst", claims_page())
     write(GENERATED / "figures.rst", figures_page())
+    run_verification()
+    write(GENERATED / "verification.rst", verification_page())

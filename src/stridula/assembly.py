@@ -4,17 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from .bodies import BodyPoint, FiniteElementBeam, ModalBeam
-from .bodies.modes import Array
-from .drives import Force, Gravity, ImposedVelocity, InitialVelocity
+from .bodies import BodyPoint, FiniteElementBeam
+from .bodies.modes import Array, Modes
+from .connections import Spring, ends, unit
+from .contact import PointContact, RigidTrack
+from .drives import Force, Gravity, ImposedVelocity, InitialState, InitialVelocity
 from .histories import Constant, History
 from .records.probes import Acceleration, Displacement, Probe, Reaction, Velocity
 from .system import System
 
 Signal = Callable[[Array, float], Array]
+# Off-diagonal terms, relative to the diagonal ones, below which modes are not coupled.
+UNCOUPLED = 1e-13
 
 
 @dataclass(frozen=True)
@@ -27,8 +33,8 @@ class ProbeRows:
         Rows on q, q' and q''.
     direct : ndarray, shape (signals,)
         Shares of the signals.
-    contact : ndarray, shape (2,)
-        Shares of the normal and of the tangential force.
+    contact : ndarray, shape (contacts, 2)
+        Shares of the normal and of the tangential force of each contact.
     """
 
     rows: Array
@@ -37,37 +43,60 @@ class ProbeRows:
 
 
 @dataclass(frozen=True)
-class Assembly:
-    """A system as flat arrays: the slider's modes first, then the track's bending modes, then its axial ones.
+class ContactRows:
+    """One contact as rows on the modes.
 
     Attributes
     ----------
-    sizes : tuple of int
-        Numbers of slider modes, bending and axial modes of the track.
+    contact : PointContact
+        The contact.
+    fixed : ndarray, shape (2, modes)
+        Displacement of the tip, less that of a frozen track, along normal and tangent.
+    bending, axial : tuple of int
+        First mode and the one after the last of the harmonics of a beam that the tip moves along.
+    """
+
+    contact: PointContact
+    fixed: Array
+    bending: tuple[int, int] = (0, 0)
+    axial: tuple[int, int] = (0, 0)
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """A system as flat arrays, body by body, those whose modes are coupled first.
+
+    Attributes
+    ----------
     angular_frequency, damping : ndarray, shape (modes,)
-        Undamped angular frequencies [rad/s] and damping ratios.
-    tip : ndarray, shape (2, slider modes)
-        World displacement of the tip.
+        Undamped angular frequencies [rad/s] and damping ratios; zero for coupled modes.
+    stiffness, dissipation : ndarray, shape (coupled, coupled)
+        Stiffness [1/s²] and damping matrix [1/s] of the coupled modes, which come first.
+    contacts : list of ContactRows
+        One for each contact.
+    motion : callable
+        Motions imposed on the contacts [m] over time and step: of the tip and of the track along the tangent, of the
+        gap; shape (times, contacts, 3).
     loads : ndarray, shape (loads, modes)
         Modal forces of the drives for a unit signal.
     signals : list of callable
         Functions of time and step [s]: first one for each row of `loads`, then the imposed displacement, velocity and
         acceleration.
-    imposed : callable
-        Displacement imposed on the slider [m] over time and step [s].
-    velocity : ndarray, shape (modes,)
-        Modal velocities at the start.
+    position, velocity : ndarray, shape (modes,)
+        Modal positions and velocities at the start.
     probes : list of ProbeRows
         One for each probe.
     """
 
-    sizes: tuple[int, int, int]
     angular_frequency: Array
     damping: Array
-    tip: Array
+    stiffness: Array
+    dissipation: Array
+    contacts: list[ContactRows]
+    motion: Signal
     loads: Array
     signals: list[Signal]
-    imposed: Signal
+    position: Array
     velocity: Array
     probes: list[ProbeRows]
 
@@ -76,53 +105,161 @@ class Assembly:
         """Number of modes in all."""
         return int(self.angular_frequency.size)
 
+    @property
+    def coupled(self) -> int:
+        """Number of coupled modes."""
+        return len(self.stiffness)
+
 
 def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
     """Turn a system and its probes into flat arrays."""
-    held = system.imposed_velocity is not None
-    slider, track = system.slider.modes(held), system.track.modes()
-    sizes = (slider.count, *system.track.harmonics)
-    rows = _Rows(system, held, slider.count, track.count)
-    loads, signals = _loads(system, rows)
+    stiffness, dissipation, coupled = _couple(_Layout(system, ()))
+    layout = _Layout(system, coupled)
+    if coupled:
+        stiffness, dissipation, _ = _couple(layout)
+    modes = [layout.modes(body) for body in layout.order]
+    angular = np.concatenate([one.angular_frequency for one in modes])
+    damping = np.concatenate([one.damping for one in modes])
+    size = sum(layout.modes(body).count for body in coupled)
+    # Coupled modes march by matrices; alone they would not.
+    angular[:size] = damping[:size] = 0.0
+    if not coupled and len(stiffness):
+        angular = np.sqrt(np.diag(stiffness))
+        damping = np.diag(dissipation) / (2.0 * np.where(angular > 0.0, angular, 1.0))
+    loads, signals = _loads(system, layout)
+    position, velocity = _start(system, layout)
     return Assembly(
-        sizes=sizes,
-        angular_frequency=np.concatenate([slider.angular_frequency, track.angular_frequency]),
-        damping=np.concatenate([slider.damping, track.damping]),
-        tip=system.slider.trace(system.contact.tip.position, held),
-        loads=np.array([load.modal for load in loads]).reshape(len(loads), slider.count + track.count),
+        angular_frequency=angular,
+        damping=damping,
+        stiffness=stiffness[:size, :size],
+        dissipation=dissipation[:size, :size],
+        contacts=[_contact(contact, layout) for contact in system.contacts],
+        motion=_motion(system, signals[-3]),
+        loads=np.array([load.modal for load in loads]).reshape(len(loads), layout.size),
         signals=signals,
-        imposed=signals[-3],
-        velocity=_initial_velocity(system, rows),
-        probes=[_probe(probe, rows, loads) for probe in probes],
+        position=position,
+        velocity=velocity,
+        probes=[_probe(probe, layout, loads) for probe in probes],
     )
 
 
 @dataclass(frozen=True)
-class _Rows:
-    """Full-width rows of points of either body."""
+class _Layout:
+    """Where the modes of each body lie, and full-width rows of its points."""
 
     system: System
-    held: bool
-    slider_modes: int
-    track_modes: int
+    first: tuple[Any, ...]
+
+    @cached_property
+    def order(self) -> tuple[Any, ...]:
+        """The bodies, coupled ones first."""
+        return (*self.first, *(body for body in self.system.bodies if body not in self.first))
+
+    @cached_property
+    def spans(self) -> dict[Any, tuple[int, int]]:
+        """First mode of each body, and the one after its last."""
+        found, start = {}, 0
+        for body in self.order:
+            found[body] = (start, start + self.modes(body).count)
+            start = found[body][1]
+        return found
+
+    @property
+    def size(self) -> int:
+        """Number of modes."""
+        return max(end for _, end in self.spans.values())
+
+    def modes(self, body: Any) -> Modes:
+        """Return the modes of a body."""
+        modes: Modes = body.modes(self.system.is_held(body))
+        return modes
+
+    def full(self, body: Any, rows: Array) -> Array:
+        """Return rows on a body's modes as rows on all."""
+        first, end = self.spans[body]
+        out = np.zeros((*rows.shape[:-1], self.size))
+        out[..., first:end] = rows
+        return out
 
     def trace(self, point: BodyPoint) -> Array:
         """Return the rows of the world displacement at a point, shape (2, modes)."""
-        full = np.zeros((2, self.slider_modes + self.track_modes))
-        if point.body == self.system.slider:
-            full[:, : self.slider_modes] = self.system.slider.trace(point.position, self.held)
-        else:
-            full[:, self.slider_modes :] = self.system.track.trace(point.position)
-        return full
+        body: Any = point.body
+        return self.full(body, body.trace(point.position, self.system.is_held(body)))
 
-    def translation(self, body: FiniteElementBeam | ModalBeam) -> Array:
+    def translation(self, body: Any) -> Array:
         """Return what a uniform acceleration of a body along x and y drives, shape (2, modes)."""
-        full = np.zeros((2, self.slider_modes + self.track_modes))
-        if body == self.system.slider:
-            full[:, : self.slider_modes] = self.system.slider.modes(self.held).translation
+        return self.full(body, self.modes(body).translation)
+
+
+def _couple(layout: _Layout) -> tuple[Array, Array, tuple[Any, ...]]:
+    """Return stiffness and damping matrices over all modes, and the bodies whose modes they couple.
+
+    No body is coupled where both matrices are diagonal and every mode is a damped oscillator.
+    """
+    system = layout.system
+    bodies = [body for body in layout.order if layout.modes(body).damping_matrix is not None]
+    joined = [point.body for connection in system.connections for point in ends(connection)]
+    coupled = tuple(body for body in layout.order if body in bodies or body in joined)
+    if not coupled:
+        return np.zeros((0, 0)), np.zeros((0, 0)), ()
+    stiffness, dissipation = np.zeros((layout.size, layout.size)), np.zeros((layout.size, layout.size))
+    for body in layout.order:
+        modes, span = layout.modes(body), slice(*layout.spans[body])
+        stiffness[span, span] = np.diag(modes.angular_frequency**2)
+        own = np.diag(2.0 * modes.damping * modes.angular_frequency)
+        dissipation[span, span] = own if modes.damping_matrix is None else modes.damping_matrix
+    for connection in system.connections:
+        row = unit(connection) @ layout.trace(connection.first)
+        if connection.second is not None:
+            row = row - unit(connection) @ layout.trace(connection.second)
+        if isinstance(connection, Spring):
+            stiffness += connection.stiffness * np.outer(row, row)
         else:
-            full[:, self.slider_modes :] = self.system.track.modes().translation
-        return full
+            dissipation += connection.coefficient * np.outer(row, row)
+    rates = np.diag(dissipation) < 2.0 * np.sqrt(np.diag(stiffness))
+    oscillators = bool(np.all(rates | ~np.diag(dissipation).astype(bool)))
+    if oscillators and _is_diagonal(stiffness) and _is_diagonal(dissipation):
+        return stiffness, dissipation, ()
+    return stiffness, dissipation, coupled
+
+
+def _is_diagonal(matrix: Array) -> bool:
+    diagonal = np.diag(matrix)
+    scale = np.sqrt(np.outer(diagonal, diagonal))
+    return bool(np.all(np.abs(matrix - np.diag(diagonal)) <= UNCOUPLED * scale))
+
+
+def _contact(contact: PointContact, layout: _Layout) -> ContactRows:
+    fixed = contact.frame @ layout.trace(contact.tip)
+    if isinstance(contact.track, BodyPoint):
+        return ContactRows(contact, fixed - contact.frame @ layout.trace(contact.track))
+    if isinstance(contact.track, RigidTrack):
+        return ContactRows(contact, fixed)
+    first, end = layout.spans[contact.track]
+    axial = first + contact.track.harmonics[0]
+    return ContactRows(contact, fixed, (first, axial), (axial, end))
+
+
+def _motion(system: System, imposed: Signal) -> Signal:
+    """Return the motions imposed on every contact: by a body under an imposed velocity, by a moving rigid track."""
+
+    def motion(time: Array, step: float) -> Array:
+        values = np.zeros((time.size, len(system.contacts), 3))
+        for number, contact in enumerate(system.contacts):
+            (normal_x, _), (tangent_x, _) = contact.frame
+            if system.is_held(contact.tip.body):
+                values[:, number, 0] += tangent_x * imposed(time, step)
+                values[:, number, 2] += normal_x * imposed(time, step)
+            if isinstance(contact.track, BodyPoint) and system.is_held(contact.track.body):
+                values[:, number, 1] += tangent_x * imposed(time, step)
+                values[:, number, 2] -= normal_x * imposed(time, step)
+            if isinstance(contact.track, RigidTrack):
+                track = contact.track
+                values[:, number, 1] += track.velocity * track.history.integral(time)
+                values[:, number, 2] -= track.normal_velocity * track.normal_history.integral(time)
+        return values
+
+    return motion
 
 
 @dataclass
@@ -137,7 +274,7 @@ def _factor(history: History) -> Signal:
     return lambda time, step: history.factor(time)
 
 
-def _loads(system: System, rows: _Rows) -> tuple[list[_Load], list[Signal]]:
+def _loads(system: System, layout: _Layout) -> tuple[list[_Load], list[Signal]]:
     """Return the loads, drives of the same history together, and the signals."""
     by_history: dict[History, _Load] = {}
 
@@ -148,16 +285,15 @@ def _loads(system: System, rows: _Rows) -> tuple[list[_Load], list[Signal]]:
         else:
             by_history[history] = _Load(modal, root)
 
-    reaction = system.slider.root_reaction(rows.held)
+    inertia = _inertia(system)
     for drive in system.drives:
         if isinstance(drive, Force):
-            add(drive.history, *_force(drive.point, _components(drive), rows))
+            add(drive.history, *_force(drive.point, _components(drive), layout))
         elif isinstance(drive, ImposedVelocity):
-            add(Constant(), *_force(drive.point, np.array([0.0, -drive.normal_load]), rows))
+            add(Constant(), *_force(drive.point, np.array([0.0, -drive.normal_load]), layout))
         elif isinstance(drive, Gravity):
-            for body in (system.slider, system.track):
-                own = -drive.acceleration * reaction.inertia[:, 1] * (body == system.slider)
-                add(Constant(), -drive.acceleration * rows.translation(body)[1], own)
+            modal = sum(layout.translation(body)[1] for body in layout.order)
+            add(Constant(), -drive.acceleration * modal, -drive.acceleration * inertia[:, 1])
     felt = {history: load for history, load in by_history.items() if load.modal.any() or load.root.any()}
     loads = list(felt.values())
     signals = [_factor(history) for history in felt]
@@ -176,59 +312,84 @@ def _loads(system: System, rows: _Rows) -> tuple[list[_Load], list[Signal]]:
         return velocity * (history.factor(time + step / 2.0) - history.factor(time - step / 2.0)) / step
 
     if imposed and not isinstance(history, Constant):
-        loads.append(_Load(-rows.translation(system.slider)[0], -reaction.inertia[:, 0]))
+        loads.append(_Load(-layout.translation(imposed.point.body)[0], -inertia[:, 0]))
         signals.append(acceleration)
     return loads, [*signals, displacement, speed, acceleration]
 
 
+def _inertia(system: System) -> Array:
+    """Return the slider's inertia as its root feels it, zero for bodies without a root."""
+    slider = system.slider
+    if not isinstance(slider, FiniteElementBeam):
+        return np.zeros((3, 2))
+    return slider.root_reaction(system.is_held(slider)).inertia
+
+
 def _components(force: Force) -> Array:
     """Return the world components of a force [N], shape (2,)."""
-    along, across = force.point.body.axes  # type: ignore[attr-defined]
+    along, across = force.point.body.axes
     return force.axial * along + force.transverse * across + np.array([force.x, force.y])
 
 
-def _force(point: BodyPoint, components: Array, rows: _Rows) -> tuple[Array, Array]:
-    slider = rows.system.slider
-    root = slider.root_lever(point.position) @ components if point.body == slider else np.zeros(3)
-    return components @ rows.trace(point), root
+def _force(point: BodyPoint, components: Array, layout: _Layout) -> tuple[Array, Array]:
+    slider = layout.system.slider
+    root = np.zeros(3)
+    if point.body == slider and isinstance(slider, FiniteElementBeam):
+        root = slider.root_lever(point.position) @ components  # type: ignore[arg-type]
+    return components @ layout.trace(point), root
 
 
-def _initial_velocity(system: System, rows: _Rows) -> Array:
-    velocity = np.zeros(rows.slider_modes + rows.track_modes)
+def _start(system: System, layout: _Layout) -> tuple[Array, Array]:
+    """Return modal positions and velocities at the start."""
+    position, velocity = np.zeros(layout.size), np.zeros(layout.size)
     for drive in system.drives:
         if isinstance(drive, InitialVelocity):
-            velocity += np.array([drive.x, drive.y]) @ rows.translation(drive.body)
-    return velocity
+            velocity += np.array([drive.x, drive.y]) @ layout.translation(drive.body)
+        elif isinstance(drive, InitialState):
+            for values, given in ((position, drive.displacement), (velocity, drive.velocity)):
+                if given is not None:
+                    values += layout.full(drive.body, drive.body.modal_coordinates(given))
+    return position, velocity
 
 
-def _probe(probe: Probe, rows: _Rows, loads: list[_Load]) -> ProbeRows:
-    body = probe.body if isinstance(probe, Reaction) else probe.point.body
-    allowed = (rows.system.slider,) if isinstance(probe, Reaction) else (rows.system.slider, rows.system.track)
-    if body not in allowed:
-        words = "slider" if isinstance(probe, Reaction) else "slider or the track"
-        raise ValueError(f"probe must be on the {words} of this system, got {probe!r}")
-    direct = np.zeros(len(loads) + 3)
+def _probe(probe: Probe, layout: _Layout, loads: list[_Load]) -> ProbeRows:
+    system = layout.system
+    direct, contact = np.zeros(len(loads) + 3), np.zeros((len(system.contacts), 2))
     if isinstance(probe, Reaction):
-        return _reaction_rows(probe, rows, loads, direct)
+        return _reaction_rows(probe, layout, loads, direct, contact)
+    if probe.point.body not in system.bodies:
+        raise ValueError(f"probe must be on a body of this system, got {probe!r}")
     kind = (Displacement, Velocity, Acceleration).index(type(probe))
-    along, across = probe.point.body.axes  # type: ignore[attr-defined]
+    along, across = probe.point.body.axes
     direction = {"x": np.array([1.0, 0.0]), "y": np.array([0.0, 1.0]), "axial": along, "transverse": across}
-    unit = direction[probe.direction]
-    matrix = np.zeros((3, rows.slider_modes + rows.track_modes))
-    matrix[kind] = unit @ rows.trace(probe.point)
-    if probe.point.body == rows.system.slider:
-        direct[len(loads) + kind] = unit[0]
-    return ProbeRows(matrix, direct, np.zeros(2))
+    axis = direction[probe.direction]
+    matrix = np.zeros((3, layout.size))
+    matrix[kind] = axis @ layout.trace(probe.point)
+    if system.is_held(probe.point.body):
+        direct[len(loads) + kind] = axis[0]
+    return ProbeRows(matrix, direct, contact)
 
 
-def _reaction_rows(probe: Reaction, rows: _Rows, loads: list[_Load], direct: Array) -> ProbeRows:
+def _reaction_rows(probe: Reaction, layout: _Layout, loads: list[_Load], direct: Array, contact: Array) -> ProbeRows:
+    system, beam = layout.system, probe.body
     component = ("x", "y", "moment").index(probe.component)
-    if probe.body.tip_support != "free":
-        raise ValueError(f"tip_support must be free where a Reaction is recorded, got {probe.body.tip_support!r}")
-    reaction = rows.system.slider.root_reaction(rows.held)
-    matrix = np.zeros((3, rows.slider_modes + rows.track_modes))
-    matrix[2, : rows.slider_modes] = reaction.mass[component]
+    if beam != system.slider:
+        raise ValueError(f"probe must be on the slider of this system, got {probe!r}")
+    if beam.tip_support != "free":
+        raise ValueError(f"tip_support must be free where a Reaction is recorded, got {beam.tip_support!r}")
+    if any(point.body == beam for connection in system.connections for point in ends(connection)):
+        raise ValueError(f"connections must leave a body whose Reaction is recorded, got one on {probe!r}")
+    reaction = beam.root_reaction(system.is_held(beam))
+    matrix = np.zeros((3, layout.size))
+    matrix[2] = layout.full(beam, reaction.mass[component])
     direct[: len(loads)] = [-reaction.held[component] * load.root[component] for load in loads]
-    # The contact pushes the slider with (-tangential, normal).
-    lever = rows.system.slider.root_lever(rows.system.contact.tip.position)[component]
-    return ProbeRows(matrix, direct, reaction.held[component] * np.array([-lever[1], lever[0]]))
+    for number, point in enumerate(system.contacts):
+        # The contact pushes the tip with the normal force along the normal, less the tangential along the tangent.
+        signs = np.array([-1.0, 1.0])
+        if point.tip.body == beam:
+            lever = beam.root_lever(point.tip.position)[component]  # type: ignore[arg-type]
+            contact[number] += reaction.held[component] * signs * (point.frame @ lever)
+        if isinstance(point.track, BodyPoint) and point.track.body == beam:
+            lever = beam.root_lever(point.track.position)[component]  # type: ignore[arg-type]
+            contact[number] -= reaction.held[component] * signs * (point.frame @ lever)
+    return ProbeRows(matrix, direct, contact)

@@ -1,14 +1,15 @@
-"""What pushes: forces, an imposed velocity, gravity and an initial velocity."""
+"""What pushes: forces, an imposed velocity, gravity, initial velocities and displacements."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from .bodies import BodyPoint, FiniteElementBeam, ModalBeam
-from .checks import finite, instance, positive
-from .histories import Constant, Harmonic, History, Ramp, Sampled
+import numpy as np
 
-HISTORIES = (Constant, Ramp, Harmonic, Sampled)
+from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, PointMass, ReducedBody
+from .checks import finite, instance, positive
+from .histories import HISTORIES, Constant, History
 
 
 @dataclass(frozen=True)
@@ -99,20 +100,54 @@ class InitialVelocity:
 
     Parameters
     ----------
-    body : FiniteElementBeam or ModalBeam
-        The body.
+    body : FiniteElementBeam, ModalBeam, PointMass or ReducedBody
+        The body; a ReducedBody needs its `translation`.
     x, y : float, optional
         Velocity along the world's axes [m/s].
     """
 
-    body: FiniteElementBeam | ModalBeam
+    body: FiniteElementBeam | ModalBeam | PointMass | ReducedBody
     x: float = 0.0
     y: float = 0.0
 
     def __post_init__(self) -> None:
-        instance("body", self.body, (FiniteElementBeam, ModalBeam))
+        instance("body", self.body, (FiniteElementBeam, ModalBeam, PointMass, ReducedBody))
+        if isinstance(self.body, ReducedBody) and not self.body.has_translation:
+            raise ValueError("body must have its translation given for a uniform velocity, got a ReducedBody without")
         finite("x", self.x)
         finite("y", self.y)
 
 
-Drive = Force | ImposedVelocity | Gravity | InitialVelocity
+@dataclass(frozen=True)
+class InitialState:
+    """Displacement and velocity of every degree of freedom of a body at the start.
+
+    Parameters
+    ----------
+    body : PointMass or ReducedBody
+        The body.
+    displacement, velocity : sequence of float, optional
+        One entry per degree of freedom [m, m/s], along x and y of a PointMass; zero if left out. What modes above the
+        body's cutoff would carry is left out.
+    """
+
+    body: PointMass | ReducedBody
+    displacement: Sequence[float] | None = None
+    velocity: Sequence[float] | None = None
+
+    def __post_init__(self) -> None:
+        instance("body", self.body, (PointMass, ReducedBody))
+        for name in ("displacement", "velocity"):
+            given = getattr(self, name)
+            if given is not None:
+                object.__setattr__(self, name, self._checked(name, given))
+
+    def _checked(self, name: str, given: Sequence[float]) -> tuple[float, ...]:
+        try:
+            self.body.modal_coordinates(given)
+        except ValueError as error:
+            raise ValueError(str(error).replace("vector", name, 1)) from None
+        return tuple(float(value) for value in np.asarray(given))
+
+
+Drive = Force | ImposedVelocity | Gravity | InitialVelocity | InitialState

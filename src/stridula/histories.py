@@ -139,3 +139,6 @@ class Sampled:
         areas = np.concatenate([[0.0], np.cumsum(np.diff(knots) * (values[1:] + values[:-1]) / 2.0)])
         piece = np.clip(np.searchsorted(knots, time, side="right") - 1, 0, knots.size - 1)
         return areas[piece] + (time - knots[piece]) * (values[piece] + self.factor(time)) / 2.0
+
+
+HISTORIES = (Constant, Ramp, Harmonic, Sampled)

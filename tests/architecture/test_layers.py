@@ -72,11 +72,9 @@ def test_kernels_import_only_numpy_numba_and_math(path):
 
 @pytest.mark.parametrize("path", FILES, ids=IDS)
 def test_matplotlib_is_for_figures_only(path):
-    """In plot, in the figures of the papers, and where the command line asks which picture formats there are."""
+    """In plot, in the figures of papers and verification, and where the command line asks for picture formats."""
     module = module_of(path)
-    allowed = (
-        module == "plot" or module.startswith("plot.") or re.fullmatch(r"papers\..*figures.*|cli\.running", module)
-    )
+    allowed = re.fullmatch(r"plot(\..*)?|papers\..*figures.*|verification\.figures|cli\.running", module)
     if not allowed:
         assert "matplotlib" not in roots(imports(path))
 

@@ -62,8 +62,29 @@ def check_ten_lines(names: Mapping[str, Any], printed: str, folder: Path) -> Non
     assert unstable_frequencies(replace(names["system"], contact=contact), sense=1.0).size == 0
 
 
+def check_mass_on_a_belt(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """Stick-slip between constant coefficients has a closed form; a law between them gives no smaller swing.
+
+    With ``D = (static - kinetic) N / k`` and ``w = sqrt(k / m)`` the mass swings by ``sqrt(D² + (v / w)²)`` each way
+    and sticks for ``2 D / v`` of the period; with 1000 samples a second an instant is known to 1 ms.
+    """
+    swings = {name: float(swing) for name, swing in re.findall(r"^(.+): swings over (\S+) m", printed, re.MULTILINE)}
+    jump, rate, speed = (0.4 - 0.25) * 10.0 / 4.0, 2.0, 0.5
+    assert swings["static and kinetic"] == pytest.approx(2.0 * np.hypot(jump, speed / rate), abs=2 * speed * 1e-3)
+    assert swings["Coulomb"] == pytest.approx(2.0 * speed / rate, abs=2 * speed * 1e-3)
+    assert min(swings["Stribeck"], swings["LuGre"]) > swings["static and kinetic"]
+    slip, stick = (2 / rate) * (np.pi - np.arctan(jump * rate / speed)), 2 * jump / speed
+    shares = re.search(r"static and kinetic: .* sticks (\d+) %", printed)
+    # 20 s hold five and a half periods, which may begin and end anywhere in one.
+    assert float(shares[1]) / 100 == pytest.approx(stick / (slip + stick), abs=0.5 / 5.5)
+    assert len(list(folder.glob("*.png"))) == len(names["laws"])
+
+
 # One check for every example: it takes the example's names, what it printed and the folder it ran in.
-CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {"ten_lines.py": check_ten_lines}
+CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
+    "mass_on_a_belt.py": check_mass_on_a_belt,
+    "ten_lines.py": check_ten_lines,
+}
 
 
 def test_every_example_has_a_check():

@@ -8,6 +8,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as some
 
 from kernels.twin import contact_states
+from stridula._kernels import layout
 from stridula._kernels.contact import solve_contact
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
@@ -31,8 +32,14 @@ def compliance(turn, flat):
     return w
 
 
+def coulomb(gap, slip, w_nn, w_nt, w_tt, mu):
+    """The kernel's solve under Coulomb's law, which needs neither velocity nor state nor what was before."""
+    laws = np.array([[mu] + [0.0] * (layout.LAW_PARAMETERS - 1)])
+    return solve_contact(gap, slip, slip, w_nn, w_nt, w_tt, layout.COULOMB, laws, 0, 0.0, 0.0, False, 1.0)
+
+
 def solve(gap, slip, w, mu):
-    normal, tangential, status, jammed = solve_contact(gap, slip, w[0, 0], w[0, 1], w[1, 1], mu)
+    normal, tangential, status, jammed = coulomb(gap, slip, w[0, 0], w[0, 1], w[1, 1], mu)
     after = np.array([gap, slip]) + w @ [normal, -tangential]
     return normal, tangential, status, jammed, after[0], after[1]
 
@@ -142,7 +149,7 @@ def test_harness_rejects_a_wrong_solve():
     for _ in range(200):
         w = compliance(random.uniform(0, np.pi), random.uniform(0.05, 0.5))
         gap, slip, mu = -random.uniform(), random.uniform(-1, 1), random.uniform(0, 2)
-        normal, tangential, *_ = solve_contact(gap, slip, w[0, 0], -w[0, 1], w[1, 1], mu)
+        normal, tangential, *_ = coulomb(gap, slip, w[0, 0], -w[0, 1], w[1, 1], mu)
         _, right_normal, right_tangential = contact_states(gap, slip, w, mu)[0]
         wrong += abs(normal - right_normal) + abs(tangential - right_tangential) > 1e-6
     assert wrong > 150

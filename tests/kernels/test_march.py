@@ -18,6 +18,7 @@ from physics.cases import CASES, SCHEMES, STEP, every_step
 
 import stridula as st
 from kernels import twin
+from stridula._kernels import layout
 from stridula._kernels.march import stored_energy
 from stridula._kernels.traces import harmonics
 
@@ -109,12 +110,12 @@ def test_stored_energy_is_the_energy_of_an_oscillation():
     angular, amplitude = np.array([2 * np.pi * 440.0]), 1e-3
     for step, tolerance in ((1e-4, 2e-2), (1e-5, 2e-4), (1e-6, 2e-6)):
         k = st.ExactModal().coefficients(angular, 0 * angular, step)
-        block = np.zeros((7, 1))
-        block[1], block[3] = k.r, 0.5 / (k.c * step)
+        block = np.zeros((layout.COEFFICIENT_ROWS, 1))
+        block[layout.R], block[layout.HALF_OVER_CH] = k.r, 0.5 / (k.c * step)
         energies = []
         for t in np.linspace(0.0, 3e-3, 7):
             now, before = (amplitude * np.sin(angular * s) for s in (t, t - step))
-            energies.append(stored_energy(block, np.array([now, now - before])))
+            energies.append(stored_energy(block, np.zeros((layout.MATRICES, 0, 0)), np.array([now, now - before])))
         np.testing.assert_allclose(energies, energies[0], rtol=1e-9)
         # sin²(wh/2)/(wh/2)² and sin(wh)/(wh) differ from 1 by (wh)²/12 and (wh)²/6.
         assert energies[0] == pytest.approx(0.5 * (angular[0] * amplitude) ** 2, rel=tolerance)
@@ -126,7 +127,7 @@ def test_harmonics_by_doubling(count, theta):
     """sin(k theta): each doubling at most doubles the error and adds one eps, so k eps in all; np.sin's own argument
     k theta is rounded by k theta eps / 2, which is up to pi/2 times that."""
     sines, cosines = np.full(count, np.nan), np.full(count, np.nan)
-    harmonics(theta, sines, cosines)
+    harmonics(theta, count, sines, cosines)
     k = np.arange(1, count + 1)
     bound = 4.0 * k * np.finfo(float).eps
     assert np.all(np.abs(sines - np.sin(k * theta)) <= bound)

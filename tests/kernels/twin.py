@@ -194,7 +194,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> Trail:
         material_new = system.contact.at + imposed((n + 1) * h) + slip_row @ q_new
         x_new = system.contact.at + imposed((n + 1) * h) + tip[0] @ q_new
         work = (q_new - q_before) / (2 * h)
-        frame = tangential * (imposed((n + 1) * h) - imposed(n * h))
+        frame = tangential * (imposed((n + 1) * h) - imposed((n - 1) * h)) / 2
         drive += p_drive @ work + frame
         contact += p_contact @ work - frame
         friction += tangential * (material_new - material)

@@ -185,7 +185,7 @@ def test_a_stick_does_not_creep(scheme):
     # It works: the tangential force swings, and the tip moves with the track.
     assert np.ptp(run.tangential_force.values) > 0.1
     travelled = run.slip_velocity.values * run.attrs["sample_interval"]
-    before, after = (r.state_carried.values[layout.MATERIAL] for r in (settling, run))
+    before, after = (r.state_carried.values[0, layout.MATERIAL] for r in (settling, run))
     assert abs(after - before) <= 1e-12 * system.track.length
     assert np.abs(np.cumsum(travelled)).max() <= 1e-12 * system.track.length
 
@@ -199,13 +199,13 @@ def test_a_stick_returns_to_its_anchor(scheme):
     system = pair(lambda rod: [st.Force(rod.root, y=-5.0, history=st.Ramp(0.05))], mu=1.2, angle=20.0, gap=0.0)
     stuck = every_step(system, 60_000, scheme)
     assert stuck.status.values[-1] == STICKING
-    anchor = stuck.state_carried.values[layout.ANCHOR]
-    assert stuck.state_carried.values[layout.MATERIAL] == pytest.approx(anchor, abs=1e-15)
-    stuck.state_carried.values[layout.ANCHOR] = anchor + 1e-9
+    anchor = stuck.state_carried.values[0, layout.ANCHOR]
+    assert stuck.state_carried.values[0, layout.MATERIAL] == pytest.approx(anchor, abs=1e-15)
+    stuck.state_carried.values[0, layout.ANCHOR] = anchor + 1e-9
     run = every_step(system, 1, scheme, start=stuck)
     # 1 nm in one step takes some 0.2 N of the 7 N that the cone allows.
     assert run.status.values[0] == STICKING
-    assert run.state_carried.values[layout.MATERIAL] == pytest.approx(anchor + 1e-9, abs=1e-15)
+    assert run.state_carried.values[0, layout.MATERIAL] == pytest.approx(anchor + 1e-9, abs=1e-15)
 
 
 def test_creep_harness_rejects_a_slider_that_slips_now_and_then():
@@ -219,4 +219,4 @@ def test_creep_harness_rejects_a_slider_that_slips_now_and_then():
 
     system = pair(pressed, mu=0.3, angle=20.0, gap=0.0)
     run = st.simulate(system, 0.5, step=STEP, sample_rate=1e4)
-    assert abs(run.state_carried.values[layout.MATERIAL] - 0.2) > 1e-9
+    assert abs(run.state_carried.values[0, layout.MATERIAL] - 0.2) > 1e-9

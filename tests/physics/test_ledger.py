@@ -42,14 +42,14 @@ def test_ledger_closes_over_two_seconds(name, scheme):
 @pytest.mark.parametrize("row", [layout.HALF_LOSS, layout.HALF_OVER_CH])
 def test_harness_rejects_a_march_that_leaks(row, monkeypatch):
     """Negative control: one coefficient of one mode off by 1e-6 between the recurrence and its energy must show."""
-    blocks = run_module.coefficient_block
+    recurrence = run_module.recurrence
 
     def wrong(*arguments):
-        block, loads = blocks(*arguments)
-        block[row, 5] *= 1 + 1e-6
-        return block, loads
+        modes = recurrence(*arguments)
+        modes.block[row, 5] *= 1 + 1e-6
+        return modes
 
-    monkeypatch.setattr(run_module, "coefficient_block", wrong)
+    monkeypatch.setattr(run_module, "recurrence", wrong)
     run = st.simulate(CASES["squeal"](), 0.25, scheme=SCHEMES[1], step=STEP)
     assert residual(run) > 1e-10
 

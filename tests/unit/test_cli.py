@@ -8,7 +8,9 @@ import subprocess
 import sys
 import tomllib
 
+import numpy as np
 import pytest
+import scipy.io
 
 import stridula as st
 from stridula.cli import main, running
@@ -35,7 +37,7 @@ def test_version_and_help(stridula):
     assert stridula("--version") == (0, f"stridula {st.__version__}\n", "")
     code, out, err = stridula("--help")
     assert (code, err) == (0, "")
-    assert all(verb in out for verb in ("list", "show", "schema", "run", "paper"))
+    assert all(verb in out for verb in ("list", "show", "schema", "run", "export", "compare", "paper"))
     assert stridula()[:1] == (0,)
 
 
@@ -105,6 +107,11 @@ BAD = [
     (("run",), "Missing argument"),
     (("nope",), "No such command"),
     (("show", "sqeal"), "did you mean 'squeal'?"),
+    (("export", "none.nc", "--out", "a.csv"), "cannot read 'none.nc'"),
+    (("export", "nan.toml", "--out", "a.csv"), "path must be a record"),
+    (("export", "nan.toml"), "Missing option"),
+    (("compare", "none.nc", "none.nc"), "cannot read 'none.nc'"),
+    (("compare", "nan.toml", "nan.toml"), "path must be a record"),
 ]
 
 
@@ -130,6 +137,109 @@ def test_outputs_are_checked_before_the_run(stridula, monkeypatch):
     monkeypatch.setattr(st.Scenario, "simulate", lambda self, **kwargs: pytest.fail("it ran"))
     assert stridula("run", "squeal", "--out", "none/run.nc")[0] == 2
     assert stridula("run", "squeal", "--plot", "none/run.png")[0] == 2
+
+
+PAD = """
+title = "Pad on a belt"
+[bodies.pad]
+kind = "reduced"
+file = "matrices/pad.npz"
+[[contacts]]
+tip = { body = "pad", point = "tip" }
+track = { kind = "rigid", velocity = "20 cm/s" }
+gap = "1 um"
+friction = { law = "lugre", static = 0.5, kinetic = 0.3, velocity = "5 mm/s", stiffness = "100 1/mm", damping = 10.0 }
+[[contacts]]
+name = "heel"
+tip = { body = "pad", point = "heel" }
+track = { kind = "rigid" }
+friction = 0.2
+[[drives]]
+kind = "force"
+body = "pad"
+point = "tip"
+y = -50
+[simulation]
+duration = "2 ms"
+"""
+
+
+@pytest.fixture
+def pad(tmp_path):
+    """Write a scenario of a reduced body whose matrices lie in a folder beside it."""
+    (tmp_path / "matrices").mkdir()
+    stiffness = np.array([[4e5, -1e5, 0, 0], [-1e5, 4e5, 0, 0], [0, 0, 9e5, -2e5], [0, 0, -2e5, 9e5]])
+    body = st.ReducedBody(np.eye(4) * 0.1, stiffness, {"tip": (0, 2), "heel": (1, 3)}, damping=st.Rayleigh(1.0, 1e-6))
+    body.save(tmp_path / "matrices" / "pad.npz")
+    (tmp_path / "pad.toml").write_text(PAD)
+
+
+@pytest.mark.usefixtures("pad")
+def test_a_reduced_body_on_two_contacts_runs_exports_and_compares(stridula, tmp_path):
+    code, out, err = stridula("run", "pad.toml", "--out", "run.nc", "--plot", "run.png")
+    assert (code, err) == (0, "")
+    lines = out.splitlines()
+    assert sum("contact 1" in line for line in lines) == sum("heel" in line for line in lines) == 1
+    for path in (tmp_path / "matrices").iterdir():
+        path.unlink()
+    assert stridula("run", "run.nc", "--out", "again.nc")[0] == 0
+    code, out, _ = stridula("compare", "run.nc", "again.nc", "--tolerance", "0")
+    assert (code, "Within 0 everywhere" in out) == (0, True)
+    assert stridula("run", "run.nc", "--set", "contacts.1.friction=0.3", "--out", "other.nc")[0] == 0
+    code, out, _ = stridula("compare", "run.nc", "other.nc")
+    assert code == 1
+    assert "scenario.contacts.1.friction.coefficient" in out
+    assert stridula("compare", "run.nc", "other.nc", "--tolerance", "1e9")[0] == 0
+    for name in ("run.csv", "run.mat"):
+        assert stridula("export", "run.nc", "--out", name) == (0, "", "")
+    assert (tmp_path / "run.csv").read_text().count("\n") > 200
+    assert scipy.io.loadmat("run.mat")["normal_force"].shape == (200, 2)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ("pad.file=none.npz", "bodies.pad: cannot read 'none.npz': no such file"),
+        ("pad.file=matrices", "bodies.pad.file must be a file, got 'matrices'"),
+        ("contacts.0.tip.point=tipp", "contacts.0.tip.point must be one of tip, heel, got 'tipp'; did you mean 'tip'?"),
+        ("contacts.1.tip.body=bad", "contacts.1.tip.body must be one of pad, got 'bad'; did you mean 'pad'?"),
+        ("stiffness=12 N", "contacts.0.friction.stiffness must be a number in 1/m or 1/mm, got '12 N'"),
+        ("contacts.0.friction.law=lugr", "exponential weakening, linear weakening, lugre, rate and state, got 'lugr'"),
+    ],
+)
+@pytest.mark.usefixtures("pad")
+def test_what_is_wrong_with_bodies_and_contacts_is_one_line(stridula, change, message):
+    code, out, err = stridula("run", "pad.toml", "--set", change)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert message in err
+
+
+def test_records_of_other_sampling_cannot_be_compared_and_bad_tables_not_written(stridula, tmp_path):
+    for name, rate in (("a.nc", "100 kHz"), ("b.nc", "50 kHz")):
+        assert stridula("run", "squeal", *SHORT, "--set", f"sample_rate={rate}", "--out", name)[0] == 0
+    code, out, err = stridula("compare", "a.nc", "b.nc")
+    assert (code, out) == (2, "")
+    assert err == "stridula: b must have the sample interval of a, 1e-05 s, got 2e-05 s\n"
+    before = sorted(tmp_path.iterdir())
+    for name, message in (("a.txt", "path must end in .csv or .mat"), ("none/a.csv", "no folder"), (".", "must end")):
+        code, out, err = stridula("export", "a.nc", "--out", name)
+        assert (code, out, err.count("\n")) == (2, "", 1)
+        assert message in err
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_shorter_record_is_compared_over_what_both_have(stridula):
+    assert stridula("run", "squeal", *SHORT, "--out", "a.nc")[0] == 0
+    assert stridula("run", "squeal", "--duration", "3 ms", "--out", "b.nc")[0] == 0
+    code, out, _ = stridula("compare", "a.nc", "b.nc")
+    assert code == 0
+    assert "Compared over the 200 samples that both have; a has 200, b has 300." in out
+
+
+def test_a_constant_force_has_no_frequency(stridula):
+    code, out, _ = stridula("run", "belt", "--duration", "4")
+    assert code == 0
+    assert "the normal force is constant" in out
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
@@ -167,7 +277,7 @@ def test_a_failed_run_is_one_line_and_keeps_its_record(stridula, monkeypatch):
     record.attrs["ended"] = "not finite"
 
     def fail(self, **kwargs):
-        raise st.Diverged(record)
+        raise st.Diverged(record, "contact sliding")
 
     monkeypatch.setattr(st.Scenario, "simulate", fail)
     code, out, err = stridula("run", "squeal", "--out", "part.nc")

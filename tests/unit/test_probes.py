@@ -48,7 +48,7 @@ def test_labels_tell_probes_apart():
         st.Displacement(BAR.at(0.123), "x"),
         st.Reaction(ROD, "x"),
     ]
-    labels = [probe_label(probe) for probe in probes]
+    labels = [probe_label(probe, pair(lambda _: [], 0.5, rod=ROD, bar=BAR)) for probe in probes]
     assert labels == [
         "slider tip y",
         "slider root axial",

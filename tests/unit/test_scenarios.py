@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.io
+import scipy.sparse
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as some
 
 import stridula as st
+from stridula.records.packed import packed, unpacked
 from stridula.records.provenance import scenario_toml
 from stridula.scenarios.quantities import quantity
 
 CASES = ["axial-sliding", "judder", "squeal", "stable-sliding", "strong-pressure", "weak-pressure"]
+MASSES = ["belt", "lugre"]
 STEEL = st.Material(young=2.1e11, density=7800.0)
 SIMULATION = {"duration": 0.5, "scheme": "central difference", "step": 1e-6, "sample_rate": 5e4}
 
@@ -67,11 +73,11 @@ def test_a_quantity_must_be_finite(value):
         quantity(value, "m")
 
 
-def test_the_cases_of_the_paper_are_listed_in_its_order():
+def test_the_cases_are_listed_by_their_sources():
     cases = st.list_scenarios()
-    assert sorted(case.name for case in cases) == CASES
+    assert sorted(case.name for case in cases) == sorted(CASES + MASSES)
+    assert all(case.source for case in cases)
     assert [case.source for case in cases] == sorted(case.source for case in cases)
-    assert cases[0].name == "stable-sliding"
 
 
 def test_all_cases_share_one_set_of_beams():
@@ -83,7 +89,7 @@ def test_all_cases_share_one_set_of_beams():
     assert len({(slider.length, slider.material, slider.section, slider.damping) for slider in sliders.values()}) == 1
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", CASES + MASSES)
 def test_what_is_shown_loads_as_the_same_scenario(name, tmp_path):
     path = tmp_path / "copy.toml"
     path.write_text(st.scenario_text(name), encoding="utf-8")
@@ -91,7 +97,7 @@ def test_what_is_shown_loads_as_the_same_scenario(name, tmp_path):
     assert st.load_scenario(path) == st.load_scenario(name)
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", CASES + MASSES)
 def test_every_case_survives_provenance(name, tmp_path):
     scenario = st.load_scenario(name)
     assert reloaded(scenario.system, (), tmp_path).system == scenario.system
@@ -240,7 +246,7 @@ def test_another_shape_starts_a_section_afresh():
         ({"length": 1}, "key must mean one place, got 'length', which fits slider.length, track.length"),
         ({"frction": 1}, "key must be one of the scenario's, got 'frction'; did you mean 'friction'?"),
         ({"drives.3.x": 1}, "got 'drives.3.x'; did you mean 'drives.0.x'?"),
-        ({"contact": 1}, "set one of its keys at, friction, gap, point"),
+        ({"contact": 1}, "set one of its keys at, friction, gap, point, name"),
         ({"angle": "20 mm"}, "slider.angle must be a number in rad or deg, got '20 mm'"),
         ({"angle": "95 deg"}, "slider.angle must be strictly between -pi/2 and pi/2"),
         ({"elements": True}, "slider.elements must be a whole number, got True"),
@@ -273,14 +279,15 @@ def test_every_problem_of_a_file_is_told(tmp_path):
         tmp_path,
     )
     assert sorted(found) == [
-        "drives.0.kind must be one of force, imposed velocity, gravity, initial velocity, got 'forc'; "
+        "drives.0.kind must be one of force, imposed velocity, gravity, initial velocity, initial state, "
+        "got 'forc'; "
         "did you mean 'force'?",
         "drives.1.axial must be a number in N, mN or kN, got 'x {y}'",
         "material.young must be above 0, got -1",
         "simulation.probes.0.quantity must be one of displacement, velocity, acceleration, reaction, got 'speed'",
         "slider.angle must be finite, got nan",
         "slider.lenght must be one of the known keys material, section, length, angle, elements, damping, "
-        "root_support, tip_support, mass, cutoff, got lenght = 3; did you mean 'length'?",
+        "root_support, tip_support, mass, cutoff, name, got lenght = 3; did you mean 'length'?",
     ]
 
 
@@ -344,3 +351,290 @@ def test_the_schema_knows_every_key_and_forbids_others():
         "title": "Elements",
         "type": "integer",
     }
+
+
+LAWS = [
+    st.Coulomb(0.3),
+    st.StaticKinetic(0.4, 0.25),
+    st.Stribeck(0.5, 0.3, 0.01, exponent=1.5, viscous=0.2),
+    st.ExponentialWeakening(0.5, 0.3, 0.01),
+    st.LinearWeakening(0.5, 2.0, kinetic=0.1),
+    st.LuGre(0.5, 0.3, 1e-3, stiffness=1e5, damping=3.0, viscous=0.4),
+    st.RateAndState(0.6, 0.01, 0.015, 1e-5, 1e-6, evolution="slip", initial_state=3.0),
+]
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.law)
+def test_every_law_survives_provenance(law, tmp_path):
+    system = make()
+    pair = st.System(dataclasses.replace(system.contact, friction=law, name="tip on track"))
+    assert reloaded(pair, (), tmp_path).system == pair
+    mass = st.PointMass(0.3)
+    alone = st.System(st.PointContact(mass.centre, st.RigidTrack(velocity=0.2), friction=law))
+    assert reloaded(alone, (), tmp_path).system == alone
+
+
+def chain(size: int, **options) -> st.ReducedBody:
+    """Return a chain of equal masses on springs, along x and y, its last one the tip."""
+    line = 2.1e5 * np.eye(size) - 1e5 * (np.eye(size, k=1) + np.eye(size, k=-1))
+    stiffness = np.kron(line, np.diag([1.0, 1.7]))
+    points = {
+        "tip": (2 * size - 2, 2 * size - 1),
+        "20 mm": np.full((2, 2 * size), 1.0 / 3.0),
+        "x only": (0, None),
+        "y half": [[0.0] * 2 * size, [0.0, 0.5] + [0.0] * (2 * size - 2)],
+    }
+    return st.ReducedBody(np.eye(2 * size) * 0.1, stiffness, **{"points": points} | options)
+
+
+def alternating(size: int) -> np.ndarray:
+    return np.kron(np.ones(size), np.eye(2))
+
+
+REDUCED = {
+    "ratio": chain(2, damping=0.01),
+    "ratios": chain(2, damping=[0.01, 0.02, 0.03, 0.04], name="pad"),
+    "shares": chain(2, damping=st.Rayleigh(2.0, 1e-6), name='a "b".c'),
+    "matrix": chain(2, damping=np.eye(4) * 0.7, translation=alternating(2), cutoff=300.0),
+    "large": chain(20, damping=np.diag(np.linspace(0.1, 1.0, 40)), translation=alternating(20), name="slider"),
+}
+
+
+@pytest.mark.parametrize("body", REDUCED.values(), ids=REDUCED)
+def test_every_reduced_body_survives_provenance(body, tmp_path):
+    size = body.mass.shape[0]
+    start = st.InitialState(body, displacement=np.linspace(0.0, 1e-6, size), velocity=np.full(size, 1 / 3))
+    system = st.System(
+        [
+            st.PointContact(body.at("tip"), st.RigidTrack(), gap=1e-6, friction=st.Coulomb(0.3)),
+            st.PointContact(body.at("20 mm"), st.RigidTrack(velocity=-0.1, name="belt"), inclination=0.5),
+        ],
+        [st.Force(body.at("x only"), x=1.0), start],
+    )
+    probes = (st.Velocity(body.at("20 mm"), "x"),)
+    again = reloaded(system, probes, tmp_path)
+    assert again.system == system
+    assert again.probes == probes
+    assert again.system.slider.damping is not None
+
+
+def general() -> tuple[st.System, tuple[object, ...]]:
+    """Return a system with all that a pair of beams has not, and its probes."""
+    section = st.Circle(0.01)
+    rod = st.FiniteElementBeam(STEEL, section, 0.3, angle=0.3, elements=3, cutoff=8e3, root_support="free")
+    plate = st.ModalBeam(STEEL, section, 0.8, bending_modes=5, axial_modes=2, name="plate")
+    block, other, far = st.PointMass(0.2, name="track"), st.PointMass(0.2), chain(1)
+    belt = st.RigidTrack(
+        velocity=0.1, normal_velocity=0.01, history=st.Ramp(0.1), normal_history=st.Harmonic(50.0), name="belt"
+    )
+    contacts = [
+        st.PointContact(rod.tip, plate, at=0.3, gap=1e-6, friction=st.Coulomb(0.4), name="rod on plate"),
+        st.PointContact(block.centre, belt, at=-2.0, inclination=np.float64(0.1), friction=LAWS[5]),
+        st.PointContact(other.centre, st.BodyPoint(plate, 0.4), gap=2e-6, inclination=np.pi, friction=LAWS[6]),
+        st.PointContact(rod.at(0.1), block.centre, gap=1.0),
+    ]
+    drives = [
+        st.ImposedVelocity(rod.root, 0.01, normal_load=20.0),
+        st.InitialVelocity(block, x=0.05),
+        st.InitialState(other, velocity=(0.0, 0.01)),
+        st.Force(far.at("tip"), y=3.0, history=st.Sampled((0.0, 0.1), (1.0, 2.0))),
+    ]
+    connections = [
+        st.Spring(block.centre, rod.at(0.2), stiffness=5e3, direction="y"),
+        st.Spring(other.centre, stiffness=2e3),
+        st.Dashpot(other.centre, plate.at(0.1), coefficient=3.0, direction="y"),
+        st.Dashpot(far.at("tip"), coefficient=4.0),
+    ]
+    probes = (
+        st.Acceleration(plate.centre),
+        st.Displacement(rod.at(0.1), "transverse"),
+        st.Velocity(block.centre, "x"),
+        st.Velocity(far.at("tip")),
+    )
+    return st.System(contacts, drives, connections), probes
+
+
+def test_a_record_of_many_bodies_runs_again_bit_by_bit(tmp_path):
+    system, probes = general()
+    options = {"probes": probes, "contact_solve": st.GaussSeidel(tolerance=1e-9, sweeps=500), "sample_rate": 2e4}
+    record = st.simulate(system, 2e-3, title="all", **options)
+    assert 'name = ""' not in record.attrs["scenario"]
+    st.save(record, tmp_path / "run.nc")
+    again = st.load_scenario(tmp_path / "run.nc")
+    assert again.contact_solve == options["contact_solve"]
+    assert again.system.bodies == system.bodies
+    assert again.system.contacts == system.contacts
+    assert again.probes == probes
+    repeated = again.simulate()
+    assert repeated.attrs["scenario"] == record.attrs["scenario"]
+    xr.testing.assert_equal(repeated.drop_attrs(), record.drop_attrs())
+
+
+def test_a_record_of_many_bodies_is_shown_as_the_same_scenario_and_gone_on_from(tmp_path):
+    system, probes = general()
+    record = st.simulate(system, 1e-3, probes=probes)
+    st.save(record, tmp_path / "run.nc")
+    (tmp_path / "shown.toml").write_text(st.scenario_text(tmp_path / "run.nc"), encoding="utf-8")
+    shown = st.load_scenario(tmp_path / "shown.toml")
+    assert shown == st.load_scenario(tmp_path / "run.nc")
+    onwards = shown.simulate(duration=1e-3, start=record)
+    assert onwards["time"].values[0] > record["time"].values[-1]
+    other = st.load_scenario(tmp_path / "run.nc", {"contacts.1.friction.law": "coulomb", "contacts.1.friction": 0.3})
+    with pytest.raises(ValueError, match="same contacts"):
+        other.simulate(start=record)
+
+
+def test_matrices_written_out_are_the_same_as_their_file(tmp_path):
+    body = chain(3, damping=0.01, name="pad")
+    body.save(tmp_path / "pad.npz")
+    rest = '[[contacts]]\ntip = {body = "pad", point = "tip"}\ntrack = {kind = "rigid"}\n[simulation]\nduration = 1.0\n'
+    (tmp_path / "file.toml").write_text(f'[bodies.pad]\nkind = "reduced"\nfile = "pad.npz"\n{rest}')
+    # Rows in full, as one would write them by hand.
+    rows = {name: getattr(body, name).tolist() for name in ("mass", "stiffness")}
+    points = "\n".join(f'"{name}" = {value.tolist()}' for name, value in body.points.items())
+    (tmp_path / "rows.toml").write_text(
+        f'[bodies.pad]\nkind = "reduced"\ndamping = "1 %"\nmass = {rows["mass"]}\nstiffness = {rows["stiffness"]}\n'
+        f"[bodies.pad.points]\n{points}\n{rest}"
+    )
+    for name in ("mass", "stiffness"):
+        scipy.io.mmwrite(tmp_path / f"{name}.mtx", scipy.sparse.coo_array(getattr(body, name)), precision=17)
+    (tmp_path / "files.toml").write_text(
+        '[bodies.pad]\nkind = "reduced"\ndamping = 0.01\nmass = "mass.mtx"\nstiffness = "stiffness.mtx"\n'
+        f"[bodies.pad.points]\n{points}\n{rest}"
+    )
+    systems = [st.load_scenario(tmp_path / f"{name}.toml").system for name in ("file", "rows", "files")]
+    assert systems[0] == systems[1] == systems[2]
+    assert systems[0].slider == body
+
+
+def test_files_are_found_from_the_file_that_names_them(tmp_path):
+    (tmp_path / "sub").mkdir()
+    chain(2, name="pad").save(tmp_path / "sub" / "pad.npz")
+    (tmp_path / "sub" / "base.toml").write_text(
+        '[bodies.pad]\nkind = "reduced"\nfile = "pad.npz"\n[[contacts]]\ntip = {body = "pad", point = "tip"}\n'
+        'track = {kind = "rigid"}\n[simulation]\nduration = 1.0\n'
+    )
+    (tmp_path / "case.toml").write_text('base = "sub/base.toml"\n[bodies.pad]\ncutoff = "1 kHz"\n')
+    assert st.load_scenario(tmp_path / "case.toml").system.slider.cutoff == 1e3
+
+
+def test_equal_bodies_are_told_apart_by_their_names_in_the_file(tmp_path):
+    (tmp_path / "case.toml").write_text(
+        '[bodies]\nslider = {kind = "point mass", mass = 1}\ntrack = {kind = "point mass", mass = 1}\n'
+        '[[contacts]]\ntip = {body = "slider"}\ntrack = {kind = "point", body = "track"}\n'
+        "[simulation]\nduration = 1.0\n"
+    )
+    system = st.load_scenario(tmp_path / "case.toml").system
+    assert [body.name for body in system.bodies] == ["slider", "track"]
+    assert reloaded(system, (), tmp_path).system == system
+
+
+TWO = """
+density = 3
+[bodies.a]
+kind = "point mass"
+mass = "3 m"
+[bodies.b]
+kind = "reduced"
+mass = [[1, 2], [3]]
+points = 3
+[bodies.c]
+kind = "mass"
+[[contacts]]
+tip = {body = "a", pint = "centre"}
+track = {kind = "belt"}
+friction = {law = "stribek"}
+[[connections]]
+kind = "spring"
+first = {body = "a"}
+[simulation]
+duration = 1
+contact_solve = {sweeps = 0}
+"""
+
+
+def test_every_problem_of_bodies_and_contacts_is_told(tmp_path):
+    found = "\n".join(problems(TWO, tmp_path))
+    for words in (
+        "density must be one of the known keys",
+        "bodies.a.mass must be a number in kg, g or t, got '3 m'",
+        "bodies.b.mass must be a matrix, a list of rows of numbers or a file, got [[1, 2], [3]]",
+        "bodies.b.points must be a table of points by name, got 3",
+        "bodies.c.kind must be one of finite-element beam, modal beam, point mass, reduced, got 'mass'",
+        "contacts.0.tip.pint must be one of the known keys body, point, got pint = 'centre'; did you mean 'point'?",
+        "contacts.0.track.kind must be one of beam, rigid, point, got 'belt'",
+        "contacts.0.friction.law must be one of coulomb, static-kinetic, stribeck",
+        "did you mean 'stribeck'?",
+        "connections.0.stiffness must be given: stiffness [N/m]",
+        "simulation.contact_solve.sweeps must be at least 1, got 0",
+    ):
+        assert words in found
+
+
+MASS_ON_FLOOR = (
+    '[bodies.a]\nkind = "point mass"\nmass = 1\n[[contacts]]\ntip = {body = "a"}\ntrack = {kind = "rigid"}\n'
+    "[simulation]\nduration = 1\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('base = "squeal"\n' + MASS_ON_FLOOR, "slider must be left out where there are bodies and contacts, got both"),
+        ("[[contacts]]\ntip = 3\n", "bodies must be given: what vibrates, by name"),
+        ("contacts = []\nbodies = {}\n" + "[simulation]\nduration = 1\n", "contacts must not be empty, got []"),
+        ("cutoff = 3\n" + MASS_ON_FLOOR, "cutoff must stand in a body"),
+        (
+            MASS_ON_FLOOR + '[bodies.b]\nkind = "point mass"\nmass = 1\n',
+            "bodies.b must be in a contact or a connection",
+        ),
+        (MASS_ON_FLOOR.replace('body = "a"', 'body = "b"'), "contacts.0.tip.body must be one of a, got 'b'"),
+        (MASS_ON_FLOOR.replace('"rigid"', '"beam", body = "a"'), "contacts.0.track.body must be a modal beam, got 'a'"),
+        (MASS_ON_FLOOR + '[[drives]]\nkind = "imposed velocity"\nvelocity = 1\n', "must be a finite-element beam"),
+        (
+            MASS_ON_FLOOR + '[[drives]]\nkind = "initial state"\nvelocity = [1]\n',
+            "drives.0.velocity must be two finite",
+        ),
+        (MASS_ON_FLOOR + '[[drives]]\nkind = "force"\nbody = "b"\n', "drives.0.body must be one of "),
+        (MASS_ON_FLOOR + '[[simulation.probes]]\nquantity = "velocity"\nbody = "b"\n', "probes.0.body must be one of "),
+    ],
+)
+def test_a_bad_file_of_bodies_says_what_is_wrong(text, message, tmp_path):
+    assert any(message in problem for problem in problems(text, tmp_path))
+
+
+def test_a_damaged_packed_matrix_is_told(tmp_path):
+    text = MASS_ON_FLOOR.replace("mass = 1", 'stiffness = [[1]]\npoints = {p = {x = 0}}\nmass = "float64 1x1 eJx"')
+    found = problems(text.replace("point mass", "reduced"), tmp_path)
+    assert found == ("bodies.a.mass must be a whole packed array, as records have them, got 'float64 1x1 eJx'",)
+
+
+@given(some.integers(0, 3), some.integers(0, 4), some.integers(0, 2**32 - 1))
+def test_packed_arrays_come_back_bit_by_bit(rows, columns, seed):
+    array = np.random.default_rng(seed).standard_normal((rows, columns)) * 1e-300
+    np.testing.assert_array_equal(unpacked(packed(array)), array)
+
+
+def test_keys_reach_bodies_and_contacts():
+    belt = st.load_scenario("belt", {"block.mass": "2 kg", "kinetic": 0.3, "connections.0.stiffness": "5 N/m"}).system
+    assert (belt.slider.mass, belt.contact.friction.kinetic, belt.connections[0].stiffness) == (2.0, 0.3, 5.0)
+    other = st.load_scenario("belt", {"friction.law": "coulomb", "coefficient": 0.3}).system
+    assert other.contact.friction == st.Coulomb(0.3)
+    with pytest.raises(st.ScenarioError, match="got 'cutoff'"):
+        st.load_scenario("belt", {"cutoff": 1e3})
+
+
+def test_the_belt_sticks_and_slips_as_the_closed_form_says():
+    run = st.load_scenario("belt").simulate()
+    sliding = run["status"].values == 2
+    left = run["time"].values[1:][np.diff(sliding.astype(int)) == 1]
+    reach, angular = 0.15 * 10.0 / 4.0, 2.0
+    period = 2.0 / angular * (math.pi - math.atan(reach * angular / 0.5)) + 2.0 * reach / 0.5
+    np.testing.assert_allclose(np.diff(left), period, atol=4e-3)
+
+
+def test_the_pull_test_peaks_just_below_the_static_limit():
+    run = st.load_scenario("lugre").simulate()
+    force = run["tangential_force"].values
+    assert 1.45 < force.max() < 1.5
+    assert force[run["time"].values > 12.0].min() > 0.6

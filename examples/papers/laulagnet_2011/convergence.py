@@ -11,10 +11,8 @@ import sys
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
-import numpy as np
-import scipy.stats
-
 from stridula.papers.laulagnet_2011 import CLAIMS, Claim, Runs
+from stridula.studies import mean_and_interval
 
 STARTS = 8
 PERTURBATION = 1e-6
@@ -46,15 +44,6 @@ def one_start(arguments: tuple[str, int]) -> tuple[str, list[float]]:
     gap = Runs().scenario("squeal").system.contact.gap
     runs = Runs({**overrides, "contact.gap": gap * (1.0 + PERTURBATION * start)})
     return name, [float(claim.measure(runs)) for claim in converging()]
-
-
-def mean_and_interval(values: list[float]) -> tuple[float, float]:
-    """Return the mean and the half width of its 95 % interval."""
-    known = np.array(values)[np.isfinite(values)]
-    if known.size < 2:
-        return (float(known[0]) if known.size else np.nan), np.nan
-    half = scipy.stats.t.ppf(0.975, known.size - 1) * known.std(ddof=1) / np.sqrt(known.size)
-    return float(known.mean()), float(half)
 
 
 def verdict(claim: Claim, base: tuple[float, float], refined: tuple[float, float]) -> bool:

@@ -1,22 +1,45 @@
 """Where each number lives in the flat arrays of the march."""
 
-# Rows of the coefficient block, one column a mode: slider modes, bending modes of the track, axial modes of the track.
-B, R, CH, HALF_OVER_CH, HALF_LOSS, TIP_X, TIP_Y = range(7)
-COEFFICIENT_ROWS = 7
+# Rows of the coefficient block, one column a mode; those of coupled modes are matrices instead.
+B, R, CH, HALF_OVER_CH, HALF_LOSS = range(5)
+COEFFICIENT_ROWS = 5
+
+# Matrices of the coupled modes, which come first among the modes.
+KEPT, STIFFNESS, MOBILITY, IMPULSE, LOSS, KINETIC, ELASTIC = range(7)
+MATRICES = 7
 
 # Rows of the state block.
 Q, D = range(2)
 
-# Constants of a march.
-STEP, START, GAP, WAVENUMBER, AMPLITUDE, LENGTH, MU, W_NN, W_NT, W_TT = range(10)
-CONSTANTS = 10
+# Rows of a contact: relative displacement of the tip against the fixed part of the track, along normal and tangent.
+NORMAL, TANGENTIAL = range(2)
 
-# Scalars carried from step to step: material abscissa of the tip, anchor of the stick, last status, tip's abscissa at
-# the last two steps, and the accumulated energies.
-MATERIAL, ANCHOR, STATUS, ABSCISSA, ABSCISSA_BEFORE, DRIVE, CONTACT, FRICTION, CONVECTION, DAMPING = range(10)
-CARRIED = 10
+# Spans of the modes that a contact sees: fixed rows; bending and axial harmonics of a beam that the tip moves along.
+FIXED, FIXED_END, BENDING, BENDING_END, AXIAL, AXIAL_END = range(6)
+SPANS = 6
 
-# Columns of the record, one row a sample.
+# Motion imposed on a contact: of the tip and of the track along the tangent, of the gap.
+TIP_MOTION, TRACK_MOTION, GAP_MOTION = range(3)
+MOTIONS = 3
+
+# Constants of a contact.
+START, GAP, WAVENUMBER, AMPLITUDE, LENGTH, LAW = range(6)
+CONTACT_CONSTANTS = 6
+
+# Laws of friction, and the parameters of each, the state of a new contact last.
+COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, LUGRE, AGING, SLIP = range(7)
+LAW_PARAMETERS = 8
+
+# Scalars that each contact carries from step to step: material abscissa of the tip, anchor of the stick, last status,
+# tip's abscissa at the last two steps, last slip, internal state of the law, forces of the last step.
+MATERIAL, ANCHOR, STATUS, ABSCISSA, ABSCISSA_BEFORE, LAST_SLIP, FRICTION_STATE, LAST_NORMAL, LAST_TANGENTIAL = range(9)
+CARRIED = 9
+
+# Columns of the energy record, one row a sample; all but the stored energy are carried from step to step.
+STORED, DRIVE_WORK, CONTACT_WORK, FRICTION_LOSS, CONVECTION_WORK, DAMPING_LOSS, ITERATIONS, UNSOLVED = range(8)
+ENERGIES = 8
+
+# Columns of the record of a contact, one row a sample.
 (
     NORMAL_FORCE,
     TANGENTIAL_FORCE,
@@ -26,19 +49,14 @@ CARRIED = 10
     CONTACT_POSITION,
     CONTACT_HEIGHT,
     CONTACT_GAP,
-    SLIP,
+    SLIP_VELOCITY,
     JAMMED,
-    STORED,
-    DRIVE_WORK,
-    CONTACT_WORK,
-    FRICTION_LOSS,
-    CONVECTION_WORK,
-    DAMPING_LOSS,
-) = range(16)
-COLUMNS = 16
+    LAW_STATE,
+) = range(11)
+COLUMNS = 11
 
 # Kinds of probe rows: on positions, on centred velocities, on second differences.
 DISPLACEMENT, VELOCITY, ACCELERATION = range(3)
 
 # What ended a march.
-FINISHED, OFF_TRACK, NOT_FINITE = range(3)
+FINISHED, OFF_TRACK, NOT_FINITE, CONTACT_UNSOLVED, ENERGY_CREATED = range(5)

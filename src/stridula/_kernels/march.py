@@ -6,226 +6,387 @@ import numba
 import numpy as np
 
 from . import layout as at
-from .contact import SEPARATED, STICKING, solve_contact
+from .contact import SEPARATED, STICKING
+from .friction import next_state, set_valued
+from .gauss_seidel import solve_all, solve_one
 from .traces import FASTMATH, harmonics
+
+# Error of the contact forces, relative to the largest, beyond which none can be believed.
+UNBELIEVABLE = 1e-3
 
 
 @numba.njit(cache=True, fastmath=FASTMATH, nogil=True)
-def stored_energy(block, state):
+def stored_energy(block, matrices, state):
     """Return the energy half a step ago, ``[(1+b)/2 d² + r q[n] q[n-1]] / (2 c h)`` summed over the modes."""
     energy = 0.0
+    coupled = matrices.shape[1]
+    for k in range(coupled):
+        kinetic = elastic = 0.0
+        for j in range(coupled):
+            kinetic += matrices[at.KINETIC, k, j] * state[at.D, j]
+            elastic += matrices[at.ELASTIC, k, j] * (state[at.Q, j] - state[at.D, j])
+        energy += kinetic * state[at.D, k] + elastic * state[at.Q, k]
     for k in range(state.shape[1]):
         q, d = state[at.Q, k], state[at.D, k]
         energy += ((1.0 - block[at.HALF_LOSS, k]) * d * d + block[at.R, k] * q * (q - d)) * block[at.HALF_OVER_CH, k]
     return energy
 
 
+@numba.njit(cache=True, fastmath=FASTMATH)
+def set_load(loads, signals, n, load):
+    """Put the sum of the load increments, each times its signal at step `n`, into `load`."""
+    for k in range(load.size):
+        load[k] = signals[n, 0] * loads[0, k]
+    for j in range(1, loads.shape[0]):
+        for k in range(load.size):
+            load[k] += signals[n, j] * loads[j, k]
+
+
+@numba.njit(cache=True, fastmath=FASTMATH)
+def trial_increments(block, matrices, state, load, new, position):
+    """Put increments and positions at the end of the step without contact force into `new` and `position`."""
+    for k in range(new.size):
+        increment = block[at.B, k] * state[at.D, k] - block[at.R, k] * state[at.Q, k] + load[k]
+        new[k] = increment
+        position[k] = state[at.Q, k] + increment
+    for k in range(matrices.shape[1]):
+        for j in range(matrices.shape[1]):
+            new[k] += matrices[at.KEPT, k, j] * state[at.D, j] - matrices[at.STIFFNESS, k, j] * state[at.Q, j]
+        position[k] = state[at.Q, k] + new[k]
+
+
+@numba.njit(cache=True, fastmath=FASTMATH)
+def along(rows, i, side, vector, first, last):
+    """Return the displacement along a row of contact `i` over a span."""
+    total = 0.0
+    for k in range(first, last):
+        total += rows[i, side, k] * vector[k]
+    return total
+
+
+@numba.njit(cache=True, fastmath=FASTMATH)
+def set_harmonics(contacts, spans, i, place, rows, sines, cosines, slopes):
+    """Put minus the track's trace at abscissa `place`, and its slope, into the harmonic spans of contact `i`."""
+    first, first_axial = spans[i, at.BENDING], spans[i, at.AXIAL]
+    wavenumber, amplitude = contacts[i, at.WAVENUMBER], contacts[i, at.AMPLITUDE]
+    count = np.int64(max(spans[i, at.BENDING_END] - first, spans[i, at.AXIAL_END] - first_axial))
+    harmonics(wavenumber * place, count, sines, cosines)
+    for k in range(first, spans[i, at.BENDING_END]):
+        rows[i, at.NORMAL, k] = -amplitude * sines[k - first]
+    for k in range(first_axial, spans[i, at.AXIAL_END]):
+        rows[i, at.TANGENTIAL, k] = -amplitude * sines[k - first_axial]
+    for k in range(count):
+        slopes[i, k] = -amplitude * wavenumber * (k + 1.0) * cosines[k]
+
+
+@numba.njit(cache=True, fastmath=FASTMATH)
+def mobility_sum(block, rows, i, side, first, last):
+    """Return the displacement along a row for a unit force on it, over a span of uncoupled modes."""
+    total = 0.0
+    for k in range(first, last):
+        total += rows[i, side, k] * rows[i, side, k] * block[at.CH, k]
+    return total
+
+
+@numba.njit(cache=True, fastmath=FASTMATH)
+def set_compliance(block, matrices, rows, response, compliance):
+    """Put the relative displacements of all contacts for unit forces on each into `compliance`."""
+    for i in range(rows.shape[0]):
+        for side in range(2):
+            for k in range(response.size):
+                response[k] = block[at.CH, k] * rows[i, side, k]
+            for k in range(matrices.shape[1]):
+                for j in range(matrices.shape[1]):
+                    response[k] += matrices[at.MOBILITY, k, j] * rows[i, side, j]
+            for j in range(i + 1):
+                for other in range(2):
+                    value = along(rows, j, other, response, 0, response.size)
+                    compliance[2 * i + side, 2 * j + other] = value
+                    compliance[2 * j + other, 2 * i + side] = value
+
+
+@numba.njit(cache=True, fastmath=FASTMATH)
+def add_push(spans, rows, i, normal, tangential, push):
+    """Add the modal forces of contact `i` to `push`."""
+    for k in range(spans[i, at.FIXED], spans[i, at.FIXED_END]):
+        push[k] += rows[i, at.NORMAL, k] * normal - rows[i, at.TANGENTIAL, k] * tangential
+    for k in range(spans[i, at.BENDING], spans[i, at.BENDING_END]):
+        push[k] += rows[i, at.NORMAL, k] * normal
+    for k in range(spans[i, at.AXIAL], spans[i, at.AXIAL_END]):
+        push[k] -= rows[i, at.TANGENTIAL, k] * tangential
+
+
+@numba.njit(cache=True, fastmath=FASTMATH)
+def correct(block, matrices, state, load, push, new):
+    """Add what the contact forces do to the increments; return the works of contact, loads and damping."""
+    coupled = matrices.shape[1]
+    exchanged = given = lost = 0.0
+    for k in range(coupled):
+        for j in range(coupled):
+            new[k] += matrices[at.MOBILITY, k, j] * push[j]
+    for k in range(new.size):
+        new[k] += block[at.CH, k] * push[k]
+        both = new[k] + state[at.D, k]
+        exchanged += push[k] * both
+        given += load[k] * both * block[at.HALF_OVER_CH, k]
+        lost += block[at.HALF_LOSS, k] * both * both * block[at.HALF_OVER_CH, k]
+    for k in range(coupled):
+        impulse = loss = 0.0
+        for j in range(coupled):
+            impulse += matrices[at.IMPULSE, k, j] * load[j]
+            loss += matrices[at.LOSS, k, j] * (new[j] + state[at.D, j])
+        given += impulse * (new[k] + state[at.D, k])
+        lost += loss * (new[k] + state[at.D, k])
+    return 0.5 * exchanged, given, lost
+
+
+@numba.njit(cache=True, fastmath=FASTMATH)
+def convecting_force(spans, i, slopes, normal, tangential, state, new):
+    """Return the force along the track that its slopes make of the forces of contact `i`."""
+    first, first_axial = spans[i, at.BENDING], spans[i, at.AXIAL]
+    bend = stretch = 0.0
+    for k in range(first, spans[i, at.BENDING_END]):
+        bend += slopes[i, k - first] * (state[at.Q, k] + new[k])
+    for k in range(first_axial, spans[i, at.AXIAL_END]):
+        stretch += slopes[i, k - first_axial] * (state[at.Q, k] + new[k])
+    return tangential * stretch - normal * bend
+
+
+@numba.njit(cache=True, fastmath=FASTMATH)
+def keep_probes(rows, kinds, direct, shares, state, new, signals, n, forces, raw):
+    """Put the values of the probes at step `n` into ``raw[n]``."""
+    for p in range(rows.shape[0]):
+        value = 0.0
+        for i in range(forces.shape[0]):
+            value += shares[p, i, 0] * forces[i, 0] + shares[p, i, 1] * forces[i, 1]
+        for j in range(signals.shape[1]):
+            value += direct[p, j] * signals[n, j]
+        for k in range(kinds[p, at.DISPLACEMENT, 0], kinds[p, at.DISPLACEMENT, 1]):
+            value += rows[p, at.DISPLACEMENT, k] * state[at.Q, k]
+        for k in range(kinds[p, at.VELOCITY, 0], kinds[p, at.VELOCITY, 1]):
+            value += rows[p, at.VELOCITY, k] * (new[k] + state[at.D, k])
+        for k in range(kinds[p, at.ACCELERATION, 0], kinds[p, at.ACCELERATION, 1]):
+            value += rows[p, at.ACCELERATION, k] * (new[k] - state[at.D, k])
+        raw[n, p] = value
+
+
 @numba.njit(cache=True, fastmath=FASTMATH, nogil=True)
 def march(
     steps_per_sample,
-    sizes,
-    constants,
+    step,
+    tolerance,
+    sweeps,
     block,
+    matrices,
+    contacts,
+    laws,
+    spans,
+    rows,
+    compliance,
     state,
     carried,
+    energies,
     loads,
     signals,
-    imposed,
+    motion,
     probe_rows,
     probe_kinds,
     probe_direct,
-    probe_contact,
+    probe_shares,
+    energy_record,
     record,
     raw,
 ):
     """March through ``record.shape[0]`` samples and return (samples completed, what ended the march).
 
-    `sizes` holds the numbers of slider, bending and axial modes. `loads` has a row of load increments for each of the
-    first signals, `signals` a row of amplitudes a step, `imposed` the imposed displacement of the slider at
-    every step and the one after. `state` and `carried` are updated in place; `record` gets a row a sample and `raw` the
-    probes at every step.
+    `loads` has a row of load increments for each of the first signals, `signals` a row of amplitudes a step, `motion`
+    the motions imposed on each contact at every step, the one before and the one after. `rows` are the contacts'
+    traces, their harmonic spans filled here; `compliance` is that of the fixed parts. `state`, `carried` and `energies`
+    are updated in place; `energy_record` and `record` get a row a sample, `raw` the probes at every step.
     """
-    n_slider, n_bending, n_axial = sizes[0], sizes[1], sizes[2]
-    n_track = n_slider + n_bending
-    n_modes = n_track + n_axial
-    step, start, gap0 = constants[at.STEP], constants[at.START], constants[at.GAP]
-    wavenumber, amplitude, length = constants[at.WAVENUMBER], constants[at.AMPLITUDE], constants[at.LENGTH]
-    mu = constants[at.MU]
-    amplitude2 = amplitude * amplitude
-
-    sines = np.empty(max(n_bending, n_axial))
-    cosines = np.empty_like(sines)
-    load = np.zeros(n_modes)
-    new = np.empty(n_modes)
-    steady = loads.shape[0] == 0
-
-    material, anchor = carried[at.MATERIAL], carried[at.ANCHOR]
-    status = int(carried[at.STATUS])
-    abscissa, abscissa_before = carried[at.ABSCISSA], carried[at.ABSCISSA_BEFORE]
-    drive, contact = carried[at.DRIVE], carried[at.CONTACT]
-    friction, convection, damping = carried[at.FRICTION], carried[at.CONVECTION], carried[at.DAMPING]
+    n_modes, n_contacts, coupled = block.shape[1], contacts.shape[0], matrices.shape[1]
+    # One contact on an uncoupled beam needs the sums over its harmonics only.
+    n_harmonic = 0
+    simple = n_contacts == 1
+    for i in range(n_contacts):
+        moving = spans[i, at.BENDING_END] > spans[i, at.BENDING]
+        n_harmonic += moving
+        simple = simple and not (moving and spans[i, at.BENDING] < coupled)
+    sines, cosines, slopes = np.zeros(n_modes), np.zeros(n_modes), np.zeros((n_contacts, n_modes))
+    load, new, position = np.zeros(n_modes), np.empty(n_modes), np.empty(n_modes)
+    push, work = np.empty(n_modes), np.empty(n_modes)
+    gaps, slips, places = np.empty(n_contacts), np.empty(n_contacts), np.empty(n_contacts)
+    forces, statuses = np.zeros((n_contacts, 2)), np.zeros(n_contacts, dtype=np.int64)
+    jammed = np.zeros(n_contacts, dtype=np.bool_)
+    w = compliance.copy()
+    sums = np.zeros((n_contacts, at.COLUMNS))
+    first_material = np.empty(n_contacts)
+    drive, contact = energies[at.DRIVE_WORK], energies[at.CONTACT_WORK]
+    friction, convection = energies[at.FRICTION_LOSS], energies[at.CONVECTION_WORK]
+    damping = energies[at.DAMPING_LOSS]
 
     n = 0
     for sample in range(record.shape[0]):
-        sum_normal = sum_tangential = 0.0
-        share_separated = share_sticking = share_sliding = jams = 0
-        first_material = material
-        height = gap = 0.0
+        sums[:] = 0.0
+        most_sweeps = unsolved = 0
+        for i in range(n_contacts):
+            first_material[i] = carried[i, at.MATERIAL]
         for _ in range(steps_per_sample):
-            if not steady:
-                if loads.shape[0] == 1:
-                    factor = signals[n, 0]
-                    for k in range(n_modes):
-                        load[k] = factor * loads[0, k]
+            if loads.shape[0]:
+                set_load(loads, signals, n, load)
+            trial_increments(block, matrices, state, load, new, position)
+
+            for i in range(n_contacts):
+                first, last = spans[i, at.FIXED], spans[i, at.FIXED_END]
+                gap = (
+                    contacts[i, at.GAP]
+                    + motion[n + 2, i, at.GAP_MOTION]
+                    + along(rows, i, at.NORMAL, position, first, last)
+                )
+                place = (
+                    contacts[i, at.START]
+                    + motion[n + 2, i, at.TIP_MOTION]
+                    + along(rows, i, at.TANGENTIAL, position, first, last)
+                )
+                material = place - motion[n + 2, i, at.TRACK_MOTION]
+                bending, bending_end = spans[i, at.BENDING], spans[i, at.BENDING_END]
+                if bending_end > bending:
+                    length = contacts[i, at.LENGTH]
+                    if not 0.0 < place < length:
+                        # A tip does not cross the whole track in one step: that is a march that diverges.
+                        crossed = abs(place - carried[i, at.ABSCISSA]) < length
+                        return sample, (at.OFF_TRACK if crossed else at.NOT_FINITE)
+                    set_harmonics(contacts, spans, i, place, rows, sines, cosines, slopes)
+                    gap += along(rows, i, at.NORMAL, position, bending, bending_end)
+                    material += along(rows, i, at.TANGENTIAL, position, spans[i, at.AXIAL], spans[i, at.AXIAL_END])
+                gaps[i], slips[i], places[i] = gap, material - carried[i, at.MATERIAL], place
+
+            if simple:
+                touching = gaps[0] < 0.0
+                if touching:
+                    if n_harmonic:
+                        w[0, 0] = compliance[0, 0] + mobility_sum(
+                            block, rows, 0, at.NORMAL, spans[0, at.BENDING], spans[0, at.BENDING_END]
+                        )
+                        w[1, 1] = compliance[1, 1] + mobility_sum(
+                            block, rows, 0, at.TANGENTIAL, spans[0, at.AXIAL], spans[0, at.AXIAL_END]
+                        )
+                    forces[0, 0], forces[0, 1], statuses[0], jammed[0] = solve_one(
+                        0, gaps[0], slips[0], w[0, 0], w[0, 1], w[1, 1], contacts, laws, carried, False, step
+                    )
                 else:
-                    for k in range(n_modes):
-                        load[k] = 0.0
-                    for j in range(loads.shape[0]):
-                        factor = signals[n, j]
-                        for k in range(n_modes):
-                            load[k] += factor * loads[j, k]
-
-            # Trial: the state at n + 1 without contact force.
-            tip_x = tip_y = 0.0
-            for k in range(n_slider):
-                increment = block[at.B, k] * state[at.D, k] - block[at.R, k] * state[at.Q, k] + load[k]
-                new[k] = increment
-                position = state[at.Q, k] + increment
-                tip_x += block[at.TIP_X, k] * position
-                tip_y += block[at.TIP_Y, k] * position
-            for k in range(n_slider, n_modes):
-                new[k] = block[at.B, k] * state[at.D, k] - block[at.R, k] * state[at.Q, k] + load[k]
-
-            trial = start + imposed[n + 1] + tip_x
-            if not 0.0 < trial < length:
-                # A tip does not cross the whole track in one step: that is a march that diverges.
-                return sample, (at.OFF_TRACK if abs(trial - abscissa) < length else at.NOT_FINITE)
-            harmonics(wavenumber * trial, sines, cosines)
-            bend = w_bending = 0.0
-            for k in range(n_bending):
-                j = n_slider + k
-                bend += sines[k] * (state[at.Q, j] + new[j])
-                w_bending += sines[k] * sines[k] * block[at.CH, j]
-            stretch = w_axial = 0.0
-            for k in range(n_axial):
-                j = n_track + k
-                stretch += sines[k] * (state[at.Q, j] + new[j])
-                w_axial += sines[k] * sines[k] * block[at.CH, j]
-
-            gap = gap0 + tip_y - amplitude * bend
-            material_trial = trial - amplitude * stretch
-            w_nn = constants[at.W_NN] + amplitude2 * w_bending
-            w_nt = constants[at.W_NT]
-            w_tt = constants[at.W_TT] + amplitude2 * w_axial
-            target = anchor if status == STICKING else material
-            before = material
-            was_sticking = status == STICKING
-            normal, tangential, status, jammed = solve_contact(gap, material_trial - target, w_nn, w_nt, w_tt, mu)
-
-            material = material_trial + w_nt * normal - w_tt * tangential
-            if status == STICKING and not was_sticking:
-                anchor = before
-            gap += w_nn * normal - w_nt * tangential
-            height = gap0 + tip_y + constants[at.W_NN] * normal - w_nt * tangential
-            abscissa_new = trial + w_nt * normal - constants[at.W_TT] * tangential
-
-            # Correction by the contact force, ledger.
-            given = lost = 0.0
-            if status == SEPARATED:
-                share_separated += 1
-                for k in range(n_modes):
-                    both = new[k] + state[at.D, k]
-                    given += load[k] * both * block[at.HALF_OVER_CH, k]
-                    lost += block[at.HALF_LOSS, k] * both * both * block[at.HALF_OVER_CH, k]
+                    forces[0, 0], forces[0, 1], statuses[0] = 0.0, 0.0, SEPARATED
             else:
-                if status == STICKING:
-                    share_sticking += 1
-                    if jammed:
-                        jams += 1
+                touching = False
+                for i in range(n_contacts):
+                    touching = touching or gaps[i] < 0.0
+                if touching:
+                    if n_harmonic:
+                        set_compliance(block, matrices, rows, work, w)
+                    for i in range(n_contacts):
+                        forces[i, 0], forces[i, 1] = carried[i, at.LAST_NORMAL], carried[i, at.LAST_TANGENTIAL]
+                    made, error = solve_all(
+                        gaps, slips, w, contacts, laws, carried, step, tolerance, sweeps, forces, statuses, jammed
+                    )
+                    most_sweeps = max(most_sweeps, made)
+                    unsolved += not error <= tolerance
+                    if not error <= UNBELIEVABLE:
+                        for i in range(n_contacts):
+                            carried[i, at.LAST_NORMAL], carried[i, at.LAST_TANGENTIAL] = forces[i, 0], forces[i, 1]
+                            carried[i, at.STATUS] = statuses[i]
+                        return sample, at.CONTACT_UNSOLVED
                 else:
-                    share_sliding += 1
-                exchanged = 0.0
-                for k in range(n_slider):
-                    push = block[at.TIP_Y, k] * normal - block[at.TIP_X, k] * tangential
-                    new[k] += block[at.CH, k] * push
-                    both = new[k] + state[at.D, k]
-                    exchanged += push * both
-                    given += load[k] * both * block[at.HALF_OVER_CH, k]
-                    lost += block[at.HALF_LOSS, k] * both * both * block[at.HALF_OVER_CH, k]
-                bend_slope = stretch_slope = 0.0
-                for k in range(n_bending):
-                    j = n_slider + k
-                    push = -amplitude * sines[k] * normal
-                    new[j] += block[at.CH, j] * push
-                    both = new[j] + state[at.D, j]
-                    exchanged += push * both
-                    given += load[j] * both * block[at.HALF_OVER_CH, j]
-                    lost += block[at.HALF_LOSS, j] * both * both * block[at.HALF_OVER_CH, j]
-                    bend_slope += (k + 1) * cosines[k] * (state[at.Q, j] + new[j])
-                for k in range(n_axial):
-                    j = n_track + k
-                    push = amplitude * sines[k] * tangential
-                    new[j] += block[at.CH, j] * push
-                    both = new[j] + state[at.D, j]
-                    exchanged += push * both
-                    given += load[j] * both * block[at.HALF_OVER_CH, j]
-                    lost += block[at.HALF_LOSS, j] * both * both * block[at.HALF_OVER_CH, j]
-                    stretch_slope += (k + 1) * cosines[k] * (state[at.Q, j] + new[j])
-                driven = tangential * (imposed[n + 1] - imposed[n])
-                slope = wavenumber * amplitude * (normal * bend_slope - tangential * stretch_slope)
-                contact += 0.5 * exchanged - driven
-                drive += driven
-                friction += tangential * (material - before)
-                convection += slope * 0.5 * (abscissa_new - abscissa_before)
-                sum_normal += normal
-                sum_tangential += tangential
+                    for i in range(n_contacts):
+                        forces[i, 0], forces[i, 1], statuses[i] = 0.0, 0.0, SEPARATED
+
+            for k in range(n_modes):
+                push[k] = 0.0
+            if touching:
+                for i in range(n_contacts):
+                    if statuses[i] != SEPARATED:
+                        add_push(spans, rows, i, forces[i, 0], forces[i, 1], push)
+            exchanged, given, lost = correct(block, matrices, state, load, push, new)
             drive += given
             damping += lost
+            contact += exchanged
 
-            for p in range(probe_rows.shape[0]):
-                value = probe_contact[p, 0] * normal + probe_contact[p, 1] * tangential
-                for j in range(signals.shape[1]):
-                    value += probe_direct[p, j] * signals[n, j]
-                for kind in range(3):
-                    first, last = probe_kinds[p, kind, 0], probe_kinds[p, kind, 1]
-                    if kind == at.DISPLACEMENT:
-                        for k in range(first, last):
-                            value += probe_rows[p, kind, k] * state[at.Q, k]
-                    elif kind == at.VELOCITY:
-                        for k in range(first, last):
-                            value += probe_rows[p, kind, k] * (new[k] + state[at.D, k])
+            for i in range(n_contacts):
+                normal, tangential = forces[i, 0], forces[i, 1]
+                gap, slip, place = gaps[i], slips[i], places[i]
+                if touching:
+                    for j in range(n_contacts):
+                        gap += w[2 * i, 2 * j] * forces[j, 0] - w[2 * i, 2 * j + 1] * forces[j, 1]
+                        slip += w[2 * i + 1, 2 * j] * forces[j, 0] - w[2 * i + 1, 2 * j + 1] * forces[j, 1]
+                    place = contacts[i, at.START] + motion[n + 2, i, at.TIP_MOTION]
+                    for k in range(spans[i, at.FIXED], spans[i, at.FIXED_END]):
+                        place += rows[i, at.TANGENTIAL, k] * (state[at.Q, k] + new[k])
+                before = carried[i, at.MATERIAL]
+                material = before + slip
+                status = statuses[i]
+                if status == SEPARATED:
+                    sums[i, at.SEPARATED] += 1
+                else:
+                    if status == STICKING:
+                        sums[i, at.STICKING] += 1
+                        sums[i, at.JAMMED] += jammed[i]
+                        if int(carried[i, at.STATUS]) != STICKING:
+                            carried[i, at.ANCHOR] = before
                     else:
-                        for k in range(first, last):
-                            value += probe_rows[p, kind, k] * (new[k] - state[at.D, k])
-                raw[n, p] = value
+                        sums[i, at.SLIDING] += 1
+                    tip = 0.5 * (motion[n + 2, i, at.TIP_MOTION] - motion[n, i, at.TIP_MOTION])
+                    track = 0.5 * (motion[n + 2, i, at.TRACK_MOTION] - motion[n, i, at.TRACK_MOTION])
+                    lift = 0.5 * (motion[n + 2, i, at.GAP_MOTION] - motion[n, i, at.GAP_MOTION])
+                    driven = tangential * (tip - track) - normal * lift
+                    contact -= driven
+                    drive += driven
+                    friction += tangential * slip
+                    if spans[i, at.BENDING_END] > spans[i, at.BENDING]:
+                        slope = convecting_force(spans, i, slopes, normal, tangential, state, new)
+                        convection += slope * 0.5 * (place - carried[i, at.ABSCISSA_BEFORE])
+                    sums[i, at.NORMAL_FORCE] += normal
+                    sums[i, at.TANGENTIAL_FORCE] += tangential
+                law = int(contacts[i, at.LAW])
+                if not set_valued(law):
+                    if status == SEPARATED:
+                        carried[i, at.FRICTION_STATE] = laws[i, at.LAW_PARAMETERS - 1]
+                    else:
+                        velocity = (slip + carried[i, at.LAST_SLIP]) / (2.0 * step)
+                        old = carried[i, at.FRICTION_STATE]
+                        carried[i, at.FRICTION_STATE] = next_state(law, laws, i, old, velocity, step)
+                carried[i, at.STATUS], carried[i, at.MATERIAL], carried[i, at.LAST_SLIP] = status, material, slip
+                carried[i, at.ABSCISSA_BEFORE], carried[i, at.ABSCISSA] = carried[i, at.ABSCISSA], place
+                carried[i, at.LAST_NORMAL], carried[i, at.LAST_TANGENTIAL] = normal, tangential
+                gaps[i] = gap
 
+            keep_probes(probe_rows, probe_kinds, probe_direct, probe_shares, state, new, signals, n, forces, raw)
             for k in range(n_modes):
                 state[at.D, k] = new[k]
                 state[at.Q, k] += new[k]
-            abscissa_before, abscissa = abscissa, abscissa_new
+                position[k] = state[at.Q, k]
             n += 1
 
-        stored = stored_energy(block, state)
+        stored = stored_energy(block, matrices, state)
         if not math.isfinite(stored):
             return sample, at.NOT_FINITE
-        record[sample, at.NORMAL_FORCE] = sum_normal / steps_per_sample
-        record[sample, at.TANGENTIAL_FORCE] = sum_tangential / steps_per_sample
-        record[sample, at.SEPARATED] = share_separated / steps_per_sample
-        record[sample, at.STICKING] = share_sticking / steps_per_sample
-        record[sample, at.SLIDING] = share_sliding / steps_per_sample
-        record[sample, at.CONTACT_POSITION] = abscissa
-        record[sample, at.CONTACT_HEIGHT] = height
-        record[sample, at.CONTACT_GAP] = gap
-        record[sample, at.SLIP] = (material - first_material) / (steps_per_sample * step)
-        record[sample, at.JAMMED] = jams
-        record[sample, at.STORED] = stored
-        record[sample, at.DRIVE_WORK] = drive
-        record[sample, at.CONTACT_WORK] = contact
-        record[sample, at.FRICTION_LOSS] = friction
-        record[sample, at.CONVECTION_WORK] = convection
-        record[sample, at.DAMPING_LOSS] = damping
-        carried[at.MATERIAL], carried[at.ANCHOR], carried[at.STATUS] = material, anchor, status
-        carried[at.ABSCISSA], carried[at.ABSCISSA_BEFORE] = abscissa, abscissa_before
-        carried[at.DRIVE], carried[at.CONTACT] = drive, contact
-        carried[at.FRICTION], carried[at.CONVECTION], carried[at.DAMPING] = friction, convection, damping
+        energies[at.STORED], energies[at.DRIVE_WORK], energies[at.CONTACT_WORK] = stored, drive, contact
+        energies[at.FRICTION_LOSS], energies[at.CONVECTION_WORK] = friction, convection
+        energies[at.DAMPING_LOSS] = damping
+        energies[at.ITERATIONS], energies[at.UNSOLVED] = most_sweeps, unsolved
+        for k in range(at.ENERGIES):
+            energy_record[sample, k] = energies[k]
+        for i in range(n_contacts):
+            for column in range(at.SLIDING + 1):
+                record[sample, i, column] = sums[i, column] / steps_per_sample
+            record[sample, i, at.CONTACT_POSITION] = carried[i, at.ABSCISSA]
+            record[sample, i, at.CONTACT_HEIGHT] = (
+                contacts[i, at.GAP]
+                + motion[n + 1, i, at.GAP_MOTION]
+                + along(rows, i, at.NORMAL, position, spans[i, at.FIXED], spans[i, at.FIXED_END])
+            )
+            record[sample, i, at.CONTACT_GAP] = gaps[i]
+            record[sample, i, at.SLIP_VELOCITY] = (carried[i, at.MATERIAL] - first_material[i]) / (
+                steps_per_sample * step
+            )
+            record[sample, i, at.JAMMED] = sums[i, at.JAMMED]
+            record[sample, i, at.LAW_STATE] = carried[i, at.FRICTION_STATE]
     return record.shape[0], at.FINISHED

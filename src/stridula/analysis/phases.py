@@ -9,6 +9,7 @@ from scipy.ndimage import uniform_filter1d
 from ..bodies.modes import Array
 from ..checks import choice, positive
 from ..records.variables import STATUS_WORDS
+from .signals import of_one_contact
 
 SMOOTHING = 5e-3
 SHORTEST_STOP = 20e-3
@@ -36,7 +37,7 @@ def phases(run: xr.Dataset, status: str, smoothing: float = SMOOTHING) -> Array:
     """
     choice("status", status, STATUS_WORDS)
     positive("smoothing", smoothing)
-    share = run["status_share"].values[:, STATUS_WORDS.index(status)]
+    share = of_one_contact(run)["status_share"].values[:, STATUS_WORDS.index(status)]
     time, interval = _clock(run)
     width = max(1, 2 * round(smoothing / interval / 2.0) + 1)
     prevails = uniform_filter1d(share, width, mode="nearest") > 0.5
@@ -70,7 +71,7 @@ def complete(intervals: Array, run: xr.Dataset) -> Array:
 def status_share(run: xr.Dataset, status: str, intervals: Array | None = None) -> float:
     """Return the share of the time [1] in which the contact has a status, in the intervals or the whole run."""
     choice("status", status, STATUS_WORDS)
-    share = run["status_share"].values[:, STATUS_WORDS.index(status)]
+    share = of_one_contact(run)["status_share"].values[:, STATUS_WORDS.index(status)]
     chosen = share if intervals is None else share[inside(run, intervals)]
     return float(np.mean(chosen)) if chosen.size else float("nan")
 
@@ -78,7 +79,7 @@ def status_share(run: xr.Dataset, status: str, intervals: Array | None = None) -
 def settling_time(run: xr.Dataset) -> float:
     """Return the time [s] from which the contact slides at every step to the end; NaN if it does not end sliding."""
     time, interval = _clock(run)
-    slides = run["status_share"].values[:, STATUS_WORDS.index("sliding")] == 1.0
+    slides = of_one_contact(run)["status_share"].values[:, STATUS_WORDS.index("sliding")] == 1.0
     if not slides[-1]:
         return float("nan")
     others = np.flatnonzero(~slides)
@@ -88,7 +89,7 @@ def settling_time(run: xr.Dataset) -> float:
 def longest_unchanged(run: xr.Dataset) -> float:
     """Return the longest time [s] during which the status does not change."""
     _, interval = _clock(run)
-    share = run["status_share"].values
+    share = of_one_contact(run)["status_share"].values
     pure = np.where(share.max(axis=1) == 1.0, share.argmax(axis=1), -1)
     changes = np.flatnonzero(np.diff(pure)) + 1
     starts = np.concatenate([[0], changes])
@@ -98,7 +99,7 @@ def longest_unchanged(run: xr.Dataset) -> float:
 
 def advance(run: xr.Dataset, intervals: Array | None = None) -> float:
     """Return how far the contact point has moved along the track [m], net, in the intervals or the whole run."""
-    position, (time, _) = run["contact_position"].values, _clock(run)
+    position, (time, _) = of_one_contact(run)["contact_position"].values, _clock(run)
     if intervals is None:
         return float(position[-1] - position[0])
     ends = np.interp(np.asarray(intervals), time, position)

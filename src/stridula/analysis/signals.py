@@ -2,18 +2,40 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import numpy as np
 import xarray as xr
 
 from ..bodies.modes import Array
 
+Recorded = TypeVar("Recorded", xr.Dataset, xr.DataArray)
+
 
 def samples(signal: xr.DataArray) -> tuple[Array, float]:
     """Return the values of a signal over time and their interval [s]."""
+    of_one_contact(signal)
     if signal.dims != ("time",) or signal.size < 2:
         raise ValueError(f"signal must have the one dimension time and at least 2 samples, got {dict(signal.sizes)}")
     time = signal["time"].values
     return signal.values.astype(float), float((time[-1] - time[0]) / (time.size - 1))
+
+
+def of_one_contact(recorded: Recorded) -> Recorded:
+    """Return a record or a signal if it is of one contact.
+
+    Raises
+    ------
+    ValueError
+        If it has the dimension ``contact``.
+    """
+    if "contact" in recorded.dims:
+        names = ", ".join(repr(str(name)) for name in recorded["contact"].values)
+        kind = "run" if isinstance(recorded, xr.Dataset) else "signal"
+        raise ValueError(
+            f"{kind} must be of one contact, got those of {names}: choose one with {kind}.sel(contact=...)"
+        )
+    return recorded
 
 
 def pieces(signal: xr.DataArray, values: Array, intervals: Array | None) -> list[Array]:

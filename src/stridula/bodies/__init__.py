@@ -2,16 +2,22 @@
 
 from .finite_element_beam import FiniteElementBeam
 from .modal_beam import ModalBeam
-from .modes import BodyPoint, Modes
+from .modes import Body, BodyPoint, Modes
+from .point_mass import PointMass
+from .reduced_body import Rayleigh, ReducedBody
 from .sections import Circle, Material, Rectangle, Section
 
 __all__ = [
+    "Body",
     "BodyPoint",
     "Circle",
     "FiniteElementBeam",
     "Material",
     "ModalBeam",
     "Modes",
+    "PointMass",
+    "Rayleigh",
     "Rectangle",
+    "ReducedBody",
     "Section",
 ]

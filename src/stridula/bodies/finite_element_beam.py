@@ -53,6 +53,8 @@ class FiniteElementBeam:
     cutoff : float, optional
         Keep the modes up to this frequency [Hz], rigid ones always; all modes if left out, which is then exactly the
         finite-element model.
+    name : str, optional
+        What it is called in records; tells equal bodies apart.
 
     Raises
     ------
@@ -70,6 +72,7 @@ class FiniteElementBeam:
     tip_support: str = "free"
     mass: str = "consistent"
     cutoff: float | None = None
+    name: str = ""
 
     def __post_init__(self) -> None:
         instance("material", self.material, Material)
@@ -86,6 +89,7 @@ class FiniteElementBeam:
         choice("mass", self.mass, ("consistent", "lumped"))
         if self.cutoff is not None:
             positive("cutoff", self.cutoff)
+        instance("name", self.name, str)
 
     @property
     def tip(self) -> BodyPoint:
@@ -100,6 +104,10 @@ class FiniteElementBeam:
     def at(self, position: float) -> BodyPoint:
         """Return the point at `position` [m] from the tip along the axis."""
         return BodyPoint(self, position)
+
+    def check_position(self, position: float) -> None:
+        """Raise ValueError if `position` [m] is not on the beam."""
+        within("position", position, 0.0, self.length)
 
     @property
     def axes(self) -> Array:
@@ -118,7 +126,7 @@ class FiniteElementBeam:
 
     def trace(self, position: float, held_x: bool = False) -> Array:
         """Return the rows that give the world displacement (x, y) at `position` from the modes, shape (2, modes)."""
-        within("position", position, 0.0, self.length)
+        self.check_position(position)
         row = displacement_row(position, self.length, self.angle, self.elements)
         return row @ _reduced(self, held_x).shapes
 
@@ -135,7 +143,7 @@ class FiniteElementBeam:
 
     def root_lever(self, position: float) -> Array:
         """Return the force along x and y and the moment about the root of a unit world force at `position`, (3, 2)."""
-        within("position", position, 0.0, self.length)
+        self.check_position(position)
         return np.vstack([np.eye(2), (position - self.length) * self.axes[1]])
 
 
@@ -192,7 +200,7 @@ def _reduced(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
     elastic = shapes[:, rigid.shape[1] :]
     elastic = elastic - rigid @ (rigid.T @ mass @ elastic)
     shapes = np.hstack([rigid, elastic])
-    angular = np.concatenate([np.zeros(rigid.shape[1]), np.sqrt(squared[rigid.shape[1] :])])
+    angular = np.concatenate([np.zeros(rigid.shape[1]), np.sqrt(np.maximum(squared[rigid.shape[1] :], 0.0))])
 
     if beam.cutoff is not None:
         kept = angular <= 2.0 * np.pi * beam.cutoff

@@ -34,6 +34,8 @@ class ModalBeam:
         Modal damping ratio of every mode [1], from 0 to 1 (1 excluded).
     cutoff : float, optional
         Keep the modes up to this frequency [Hz] instead of the counts above.
+    name : str, optional
+        What it is called in records; tells equal bodies apart.
 
     Raises
     ------
@@ -48,6 +50,7 @@ class ModalBeam:
     axial_modes: int = 20
     damping: float = 0.0
     cutoff: float | None = None
+    name: str = ""
 
     def __post_init__(self) -> None:
         instance("material", self.material, Material)
@@ -57,6 +60,7 @@ class ModalBeam:
         count("axial_modes", self.axial_modes, low=0)
         if non_negative("damping", self.damping) >= 1.0:
             raise ValueError(f"damping must be below 1 (critical), got {self.damping!r}")
+        instance("name", self.name, str)
         if self.cutoff is not None:
             positive("cutoff", self.cutoff)
             if self.harmonics[0] < 1:
@@ -73,6 +77,10 @@ class ModalBeam:
     def at(self, position: float) -> BodyPoint:
         """Return the point at abscissa `position` [m]."""
         return BodyPoint(self, position)
+
+    def check_position(self, position: float) -> None:
+        """Raise ValueError if abscissa `position` [m] is not on the beam."""
+        within("position", position, 0.0, self.length)
 
     @property
     def axes(self) -> Array:
@@ -105,7 +113,7 @@ class ModalBeam:
 
     def trace(self, position: float, held_x: bool = False) -> Array:
         """Return the rows that give the displacement (u, w) at abscissa `position` from the modes, shape (2, modes)."""
-        within("position", position, 0.0, self.length)
+        self.check_position(position)
         bending, axial = self.harmonics
         rows = np.zeros((2, bending + axial))
         rows[1, :bending] = self.amplitude * np.sin(np.arange(1, bending + 1) * np.pi * position / self.length)

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-
-from ..checks import within
 
 Array = NDArray[Any]
 
@@ -17,19 +15,25 @@ Array = NDArray[Any]
 class Modes:
     """Mass-normalised modes of a body in the plane: ``q'' + 2 zeta w q' + w² q = Phi^T f``.
 
+    With a damping matrix D, ``D q'`` stands in place of ``2 zeta w q'``.
+
     Attributes
     ----------
     angular_frequency : ndarray, shape (modes,)
         Undamped angular frequencies w [rad/s], rising; exactly zero for rigid modes.
     damping : ndarray, shape (modes,)
-        Damping ratios zeta [1].
+        Damping ratios zeta [1], of no effect on rigid modes.
     translation : ndarray, shape (2, modes)
         ``Phi^T M 1``: how a uniform acceleration along world x and y drives each mode [kg^(1/2)].
+    damping_matrix : ndarray, shape (modes, modes), optional
+        Modal damping matrix ``Phi^T C Phi`` [1/s] where ratios cannot say it: it is not diagonal, it brakes a rigid
+        mode or a mode is overdamped. `damping` then only describes its diagonal.
     """
 
     angular_frequency: Array
     damping: Array
     translation: Array
+    damping_matrix: Array | None = None
 
     @property
     def count(self) -> int:
@@ -42,16 +46,42 @@ class Modes:
         return self.angular_frequency / (2.0 * np.pi)
 
 
+class Body(Protocol):
+    """What every body can say of itself; points are named by what `check_position` admits."""
+
+    @property
+    def name(self) -> str:
+        """What it is called in records; tells equal bodies apart."""
+
+    @property
+    def axes(self) -> Array:
+        """World components of its two axes, shape (2, 2)."""
+
+    @property
+    def total_mass(self) -> float:
+        """Mass [kg]."""
+
+    def modes(self, held_x: bool = False) -> Modes:
+        """Return the modes; with `held_x` those left when its driven end does not move along x."""
+
+    def trace(self, position: Any, held_x: bool = False) -> Array:
+        """Return the rows that give the world displacement (x, y) at `position` from the modes, shape (2, modes)."""
+
+    def check_position(self, position: Any) -> None:
+        """Raise ValueError if it has no point at `position`."""
+
+
 @dataclass(frozen=True)
 class BodyPoint:
     """A point of a body.
 
     Attributes
     ----------
-    body : FiniteElementBeam or ModalBeam
+    body : FiniteElementBeam, ModalBeam, ReducedBody or PointMass
         The body.
-    position : float
-        Distance along the body's axis from its first end [m]: from the tip of a slider, from the left end of a track.
+    position : float or str
+        On beams the distance along the axis from the first end [m]: from the tip of a slider, from the left end of a
+        track. On other bodies the name of the point.
 
     Raises
     ------
@@ -59,11 +89,13 @@ class BodyPoint:
         If the position is not on the body.
     """
 
-    body: object
-    position: float
+    body: Body
+    position: float | str
 
     def __post_init__(self) -> None:
-        length = getattr(self.body, "length", None)
-        if length is None:
-            raise ValueError(f"body must be a FiniteElementBeam or ModalBeam, got {self.body!r}")
-        within("position", self.position, 0.0, length)
+        check = getattr(self.body, "check_position", None)
+        if check is None or isinstance(self.body, type):
+            text = repr(self.body)
+            short = text if "\n" not in text else f"a {type(self.body).__name__}"
+            raise ValueError(f"body must be a body of stridula, got {short}")
+        check(self.position)

@@ -11,14 +11,19 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..analysis import bursts, dominant_frequency
+from ..analysis.phases import inside
 from ..records.variables import ENERGY, STATUS_WORDS
 
 ENDINGS = {
     "finished": "finished",
     "off the track": "the tip ran off the end of its track",
     "not finite": "failed: the state is no longer finite",
+    "contact unsolved": "failed: the contact forces were not found",
+    "energy created": "failed: energy came from nowhere",
     "interrupted": "interrupted",
 }
+# Relative changes of a force below are rounding, not vibration.
+STEADY = 1e-9
 
 
 def print_card(record: xr.Dataset, title: str, files: list[str]) -> None:
@@ -45,6 +50,19 @@ def card(record: xr.Dataset) -> dict[str, str]:
 
 
 def _contact(record: xr.Dataset) -> dict[str, str]:
+    """Return what came of the contact, or of each of several on a line of its own."""
+    if "contact" in record.dims:
+        names = [str(name) for name in record["contact"].values]
+        lines = {
+            name: "; ".join(words for words in _one_contact(record.sel(contact=name)).values() if words[:4] != "none")
+            for name in names
+        }
+        unsolved = int(record["unsolved_steps"].sum())
+        return lines | ({"unsolved": f"{unsolved} steps with contact forces out of tolerance"} if unsolved else {})
+    return _one_contact(record)
+
+
+def _one_contact(record: xr.Dataset) -> dict[str, str]:
     shares = record["status_share"].mean("time").values
     force, place = record["normal_force"].values, record["contact_position"].values
     jammed = int(record["jammed_steps"].sum())
@@ -59,9 +77,14 @@ def _contact(record: xr.Dataset) -> dict[str, str]:
 
 def _frequency(record: xr.Dataset) -> str:
     """Return the dominant frequency of the normal force, between the stops where there are any."""
-    if record.sizes["time"] < 2:
+    force = record["normal_force"].values
+    if force.size < 2:
         return "none"
     between = bursts(record)
+    # The first sample is where the load comes on.
+    heard = force[inside(record, between)] if len(between) else force[1:]
+    if np.ptp(heard) <= STEADY * np.abs(force).max():
+        return "none, the normal force is constant"
     frequency = dominant_frequency(record["normal_force"], between if len(between) else None)
     where = " of the normal force" + (" between the stops" if len(between) else "")
     return "none" if math.isnan(frequency) else f"{frequency:.4g} Hz{where}"

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..version import __version__
-from .exits import FAILED, INTERRUPTED, Stopped
+from .exits import FAILED, GOOD, INTERRUPTED, Stopped
 
 app = typer.Typer(
     help="Friction noise in the time domain: squeal, squeak and judder of elastic bodies in exact contact.",
@@ -84,6 +84,32 @@ def run(
 
 
 @app.command()
+def export(
+    record: Annotated[str, typer.Argument(metavar="RUN.nc", help="A record.")],
+    out: Annotated[str, typer.Option(metavar="FILE", help="Table to write: .csv or .mat.")],
+) -> None:
+    """Write a record as a table for other programs."""
+    from ..records.export import export as write_table
+    from ..records.files import load
+
+    write_table(load(record), out)
+
+
+@app.command()
+def compare(
+    first: Annotated[str, typer.Argument(metavar="A.nc", help="A record.")],
+    second: Annotated[str, typer.Argument(metavar="B.nc", help="Another one with the same sampling.")],
+    tolerance: Annotated[
+        float, typer.Option(metavar="X", help="Difference, relative to A's largest value, that still passes.")
+    ] = 1e-6,
+) -> int:
+    """Say how far two records are apart; exit with 1 if by more than the tolerance."""
+    from .comparing import print_comparison
+
+    return GOOD if print_comparison(first, second, tolerance) else FAILED
+
+
+@app.command()
 def paper(
     out: Annotated[str, typer.Option(metavar="DIR", help="Folder to write to.")] = "results/paper",
 ) -> None:
@@ -100,6 +126,29 @@ def paper(
     except Diverged as error:
         raise Stopped(f"{error}; what was finished is in {out}", FAILED) from None
     print(closing_line(rows))
+
+
+@app.command()
+def verify(
+    out: Annotated[str, typer.Option(metavar="DIR", help="Folder to write to.")] = "results/verify",
+    only: Annotated[
+        str | None, typer.Option(metavar="WORD", help="Only the cases with this word in their name or title.")
+    ] = None,
+) -> None:
+    """Run every case whose answer is known and hold each scheme against it."""
+    from ..verification import closing_line
+    from ..verification import verify as run_cases
+    from .verifying import interrupted_at_once, print_rows
+
+    try:
+        with interrupted_at_once():
+            rows = run_cases(out, only, report=lambda line: print(line, file=sys.stderr, flush=True))
+    except KeyboardInterrupt:
+        raise Stopped(f"interrupted; the figures of what was finished are in {out}", INTERRUPTED) from None
+    print_rows(rows)
+    if not all(row["holds"] for row in rows):
+        raise Stopped(closing_line(rows), FAILED)
+    print(f"{closing_line(rows)}; written to {out}")
 
 
 def _pair(text: str) -> tuple[str, str]:

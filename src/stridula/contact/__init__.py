@@ -1,6 +1,21 @@
-"""Where bodies touch: friction laws and point contact."""
+"""Where bodies touch: friction laws, rigid tracks and point contact."""
 
-from .coulomb import Coulomb
-from .point_contact import PointContact
+from .coulomb import Coulomb, StaticKinetic
+from .lugre import LuGre
+from .point_contact import FrictionLaw, PointContact
+from .rate_and_state import RateAndState
+from .rigid_track import RigidTrack
+from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
 
-__all__ = ["Coulomb", "PointContact"]
+__all__ = [
+    "Coulomb",
+    "ExponentialWeakening",
+    "FrictionLaw",
+    "LinearWeakening",
+    "LuGre",
+    "PointContact",
+    "RateAndState",
+    "RigidTrack",
+    "StaticKinetic",
+    "Stribeck",
+]

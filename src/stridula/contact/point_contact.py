@@ -1,45 +1,92 @@
-"""A point of one body on the track of another."""
+"""A point of one body on the track of another, on a rigid track or against a point of another body."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 
-from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam
-from ..checks import instance, non_negative, within
-from .coulomb import Coulomb
+import numpy as np
+
+from ..bodies import BodyPoint, ModalBeam
+from ..bodies.modes import Array
+from ..checks import finite, instance, non_negative, within
+from .coulomb import Coulomb, StaticKinetic
+from .lugre import LuGre
+from .rate_and_state import RateAndState
+from .rigid_track import RigidTrack
+from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
+
+FrictionLaw = Coulomb | StaticKinetic | Stribeck | ExponentialWeakening | LinearWeakening | LuGre | RateAndState
+LAWS = (Coulomb, StaticKinetic, Stribeck, ExponentialWeakening, LinearWeakening, LuGre, RateAndState)
 
 
 @dataclass(frozen=True)
 class PointContact:
     """The tip of a slider on a track: unilateral (Signorini), with dry friction, without restitution.
 
-    The normal force is compressive and never below zero; the tangential force is the force on the track along +x. The
-    contact point moves along the track with the tip.
+    The normal force is compressive and never below zero; the tangential force is the force on the track along its
+    tangent. On a beam or a rigid track the contact point moves along the track with the tip; against a point of
+    another body it is frozen.
 
     Parameters
     ----------
     tip : BodyPoint
         The point of the slider that touches.
-    track : ModalBeam
-        The body it slides on.
-    at : float
-        Abscissa of the tip on the track at the start [m], strictly between its ends.
-    friction : Coulomb
-        Law of friction.
+    track : ModalBeam, RigidTrack or BodyPoint
+        What it slides on: a beam, a rigid track, or a point of another body.
+    at : float, optional
+        Abscissa of the tip on the track at the start [m]; strictly between the ends of a beam.
+    friction : Coulomb, StaticKinetic, Stribeck, ExponentialWeakening, LinearWeakening, LuGre or RateAndState, optional
+        Law of friction; none if left out.
     gap : float, optional
         Distance between tip and track at the start [m].
+    inclination : float, optional
+        Angle from world x to the track's tangent [rad], counter-clockwise; the normal, from the track to the tip, is
+        the tangent turned by 90 degrees counter-clockwise. Zero on a ModalBeam.
+    name : str, optional
+        What it is called in records.
     """
 
     tip: BodyPoint
-    track: ModalBeam
-    at: float
-    friction: Coulomb
+    track: ModalBeam | RigidTrack | BodyPoint
+    at: float = 0.0
+    friction: FrictionLaw = field(default_factory=lambda: Coulomb(0.0))
     gap: float = 0.0
+    inclination: float = 0.0
+    name: str = ""
 
     def __post_init__(self) -> None:
         instance("tip", self.tip, BodyPoint)
-        instance("tip.body", self.tip.body, FiniteElementBeam)
-        instance("track", self.track, ModalBeam)
-        within("at", self.at, 0.0, self.track.length, ends=False)
-        instance("friction", self.friction, Coulomb)
+        instance("track", self.track, (ModalBeam, RigidTrack, BodyPoint))
+        if isinstance(self.track, ModalBeam):
+            within("at", self.at, 0.0, self.track.length, ends=False)
+            if self.inclination != 0.0:
+                raise ValueError(f"inclination must be 0 on a ModalBeam, got {self.inclination!r}")
+        finite("at", self.at)
+        if self.track_body == self.tip.body:
+            raise ValueError(
+                f"track must be another body than the tip's (equal ones need names), got {self.tip.body!r} for both"
+            )
+        instance("friction", self.friction, LAWS)
         non_negative("gap", self.gap)
+        if abs(finite("inclination", self.inclination)) > 2.0 * math.pi:
+            raise ValueError(f"inclination must be from -2 pi to 2 pi rad, got {self.inclination!r}")
+        instance("name", self.name, str)
+
+    @property
+    def track_body(self) -> object | None:
+        """The body on the track's side, None for a rigid track."""
+        if isinstance(self.track, RigidTrack):
+            return None
+        return self.track.body if isinstance(self.track, BodyPoint) else self.track
+
+    @property
+    def frame(self) -> Array:
+        """Unit vectors of the track's normal and tangent in the world frame, shape (2, 2)."""
+        # Exact zeros and ones where the track lies along an axis.
+        turn = self.inclination % (2.0 * math.pi)
+        cosine, sine = math.cos(turn), math.sin(turn)
+        quarters = round(turn / (math.pi / 2.0))
+        if abs(turn - quarters * math.pi / 2.0) < 1e-15 * max(1.0, turn) * 4.0:
+            cosine, sine = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[quarters % 4]
+        return np.array([[-sine, cosine], [cosine, sine]])

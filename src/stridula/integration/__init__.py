@@ -1,8 +1,18 @@
 """How time goes on: schemes, the time loop, watchers."""
 
-from .run import Diverged, Interrupted
+from .contact_solve import GaussSeidel
 from .schemes import SCHEMES, CentralDifference, ExactModal
 from .simulate import simulate
+from .stops import Diverged, Interrupted
 from .watchers import Progress
 
-__all__ = ["SCHEMES", "CentralDifference", "Diverged", "ExactModal", "Interrupted", "Progress", "simulate"]
+__all__ = [
+    "SCHEMES",
+    "CentralDifference",
+    "Diverged",
+    "ExactModal",
+    "GaussSeidel",
+    "Interrupted",
+    "Progress",
+    "simulate",
+]

@@ -2,52 +2,177 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from .._kernels import layout as at
 from ..assembly import Assembly
+from ..bodies import ModalBeam
 from ..bodies.modes import Array
-from ..system import System
+from ..contact import (
+    Coulomb,
+    ExponentialWeakening,
+    FrictionLaw,
+    LinearWeakening,
+    LuGre,
+    RateAndState,
+    StaticKinetic,
+    Stribeck,
+)
 from .schemes import Scheme
 
 
-def coefficient_block(arrays: Assembly, scheme: Scheme, step: float) -> tuple[Array, Array]:
-    """Return the coefficient block of the march and the load increments for unit signals."""
+@dataclass(frozen=True)
+class Recurrence:
+    """The recurrence of the modes.
+
+    Attributes
+    ----------
+    block : ndarray, shape (coefficients, modes)
+        Coefficients of uncoupled modes.
+    matrices : ndarray, shape (matrices, coupled, coupled)
+        Coefficients of coupled modes.
+    loads : ndarray, shape (loads, modes)
+        Load increments for unit signals.
+    """
+
+    block: Array
+    matrices: Array
+    loads: Array
+
+    def mobility(self, rows: Array) -> Array:
+        """Return the displacement of every mode at the end of a step for unit forces on rows, shape (..., modes)."""
+        size = self.matrices.shape[1]
+        moved = self.block[at.CH] * rows
+        moved[..., :size] = rows[..., :size] @ self.matrices[at.MOBILITY]
+        return np.asarray(moved)
+
+    def free(self, position: Array, increment: Array) -> Array:
+        """Return the next increments of motion without any force."""
+        size = self.matrices.shape[1]
+        moved = self.block[at.B] * increment - self.block[at.R] * position
+        moved[:size] = self.matrices[at.KEPT] @ increment[:size] - self.matrices[at.STIFFNESS] @ position[:size]
+        return np.asarray(moved)
+
+    def energy_of_loads(self) -> float:
+        """Return the energy [J] that all unit loads give to modes at rest in one step."""
+        size = self.matrices.shape[1]
+        coupled = self.loads[:, :size]
+        with np.errstate(over="ignore"):
+            energy = np.sum(self.loads**2 * self.block[at.HALF_OVER_CH])
+            return float(energy + np.sum(coupled @ self.matrices[at.IMPULSE] * coupled))
+
+
+def recurrence(arrays: Assembly, scheme: Scheme, step: float) -> Recurrence:
+    """Return the recurrence of a system under a scheme.
+
+    Raises
+    ------
+    ValueError
+        If the step is too long for coupled modes to answer an impulse in its own sense.
+    """
     k = scheme.coefficients(arrays.angular_frequency, arrays.damping, step)
     block = np.zeros((at.COEFFICIENT_ROWS, arrays.mode_count))
     block[at.B], block[at.R], block[at.CH] = k.b, k.r, k.c * step
     block[at.HALF_OVER_CH] = 0.5 / block[at.CH]
     block[at.HALF_LOSS] = (1.0 - k.b) / 2.0
-    block[[at.TIP_X, at.TIP_Y], : arrays.sizes[0]] = arrays.tip
-    return block, arrays.loads * k.load
+    size = arrays.coupled
+    matrices, loads = np.zeros((at.MATRICES, size, size)), arrays.loads * k.load
+    if size:
+        c = scheme.coupled_coefficients(arrays.stiffness, arrays.dissipation, step)
+        mobility = 0.5 * (c.c + c.c.T)
+        if np.linalg.eigvalsh(mobility)[0] <= 0.0:
+            raise ValueError(f"step must be shorter for the coupled modes of this system, got {step!r} s")
+        inverse, one = np.linalg.inv(c.c), np.eye(size)
+        block[:, :size] = 0.0
+        matrices[at.KEPT], matrices[at.STIFFNESS], matrices[at.MOBILITY] = c.b, c.r, c.c * step
+        matrices[at.IMPULSE] = inverse / (2.0 * step)
+        matrices[at.LOSS] = inverse @ (one - c.b) / (4.0 * step)
+        matrices[at.KINETIC] = inverse @ (one + c.b) / (4.0 * step)
+        matrices[at.ELASTIC] = inverse @ c.r / (2.0 * step)
+        loads[:, :size] = arrays.loads[:, :size] @ c.load.T
+    return Recurrence(block, matrices, loads)
 
 
-def constants(system: System, arrays: Assembly, block: Array, step: float) -> Array:
-    """Return the constants of the march, the slider's share of the contact's compliance among them."""
-    track, contact = system.track, system.contact
-    ch = block[at.CH, : arrays.sizes[0]]
-    tip_x, tip_y = arrays.tip
-    values = np.empty(at.CONSTANTS)
-    values[at.STEP] = step
-    values[at.START] = contact.at
-    values[at.GAP] = contact.gap
-    values[at.WAVENUMBER] = np.pi / track.length
-    values[at.AMPLITUDE] = track.amplitude
-    values[at.LENGTH] = track.length
-    values[at.MU] = contact.friction.coefficient
-    values[at.W_NN] = np.sum(ch * tip_y * tip_y)
-    values[at.W_NT] = np.sum(ch * tip_x * tip_y)
-    values[at.W_TT] = np.sum(ch * tip_x * tip_x)
-    return values
+@dataclass(frozen=True)
+class ContactBlocks:
+    """The contacts as the march reads them.
+
+    Attributes
+    ----------
+    constants : ndarray, shape (contacts, constants)
+        Numbers of each contact.
+    laws : ndarray, shape (contacts, parameters)
+        Parameters of its law of friction.
+    spans : ndarray, shape (contacts, spans)
+        Spans of modes that each contact sees.
+    rows : ndarray, shape (contacts, 2, modes)
+        Rows along normal and tangent; harmonic spans are filled by the march.
+    compliance : ndarray, shape (2 contacts, 2 contacts)
+        Relative displacements [m] of the fixed rows for unit forces on each.
+    """
+
+    constants: Array
+    laws: Array
+    spans: Array
+    rows: Array
+    compliance: Array
+
+
+def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
+    """Return the contacts as the march reads them."""
+    count = len(arrays.contacts)
+    constants, laws = np.zeros((count, at.CONTACT_CONSTANTS)), np.zeros((count, at.LAW_PARAMETERS))
+    # Unsigned, so that the march need not look for indices below zero.
+    spans = np.zeros((count, at.SPANS), dtype=np.uint64)
+    rows = np.array([contact.fixed for contact in arrays.contacts])
+    for i, one in enumerate(arrays.contacts):
+        used = np.flatnonzero(one.fixed.any(axis=0))
+        fixed = (used[0], used[-1] + 1) if used.size else (0, 0)
+        spans[i] = (*fixed, *one.bending, *one.axial)
+        constants[i, [at.START, at.GAP]] = one.contact.at, one.contact.gap
+        if isinstance(one.contact.track, ModalBeam):
+            track = one.contact.track
+            constants[i, [at.WAVENUMBER, at.AMPLITUDE]] = np.pi / track.length, track.amplitude
+            constants[i, at.LENGTH] = track.length
+        constants[i, at.LAW], parameters = _law(one.contact.friction)
+        laws[i, : len(parameters)] = parameters
+    flat = rows.reshape(2 * count, -1)
+    return ContactBlocks(constants, laws, spans, rows, np.ascontiguousarray(modes.mobility(flat) @ flat.T))
+
+
+def _law(law: FrictionLaw) -> tuple[int, tuple[float, ...]]:
+    """Return the code of a law of friction and its parameters, the state of a new contact last."""
+    if isinstance(law, Coulomb):
+        return at.COULOMB, (law.coefficient,)
+    if isinstance(law, StaticKinetic):
+        return at.STATIC_KINETIC, (law.static, law.kinetic)
+    if isinstance(law, Stribeck):
+        return at.STRIBECK, (law.static, law.kinetic, law.velocity, law.exponent, law.viscous)
+    if isinstance(law, ExponentialWeakening):
+        return at.STRIBECK, (law.static, law.kinetic, law.velocity, 1.0, 0.0)
+    if isinstance(law, LinearWeakening):
+        ends = (law.static - law.kinetic) / law.slope if law.slope else 0.0
+        return at.LINEAR_WEAKENING, (law.static, law.slope, law.kinetic, ends or 1.0)
+    if isinstance(law, LuGre):
+        return at.LUGRE, (law.static, law.kinetic, law.velocity, law.stiffness, law.damping, law.viscous)
+    code = at.AGING if law.evolution == "aging" else at.SLIP
+    return code, (law.reference, law.a, law.b, law.slip_distance, law.velocity, 0.0, 0.0, law.state_at_start)
+
+
+def keeps_state(law: FrictionLaw) -> bool:
+    """Return whether a law has an internal state."""
+    return isinstance(law, (LuGre, RateAndState))
 
 
 def probe_blocks(arrays: Assembly, step: float) -> tuple[Array, Array, Array, Array]:
-    """Return the probes' rows on q, d[n+1] + d[n] and d[n+1] - d[n], their spans, shares of signals and contact."""
+    """Return the probes' rows on q, d[n+1] + d[n] and d[n+1] - d[n], their spans, shares of signals and contacts."""
     count = len(arrays.probes)
     rows = np.zeros((count, 3, arrays.mode_count))
-    spans = np.zeros((count, 3, 2), dtype=np.int64)
+    spans = np.zeros((count, 3, 2), dtype=np.uint64)
     direct = np.zeros((count, len(arrays.signals)))
-    contact = np.zeros((count, 2))
+    contact = np.zeros((count, len(arrays.contacts), 2))
     scale = np.array([1.0, 0.5 / step, 1.0 / step**2])
     for p, probe in enumerate(arrays.probes):
         rows[p] = probe.rows * scale[:, None]
@@ -57,21 +182,3 @@ def probe_blocks(arrays: Assembly, step: float) -> tuple[Array, Array, Array, Ar
             if used.size:
                 spans[p, kind] = used[0], used[-1] + 1
     return rows, spans, direct, contact
-
-
-def at_rest(system: System, arrays: Assembly, scheme: Scheme, step: float) -> tuple[Array, Array]:
-    """Return the state at the start, whose first increment makes the scheme of second order from the first step on."""
-    zero = np.zeros(1)
-    factors = np.array([signal(zero, step)[0] for signal in arrays.signals[: arrays.loads.shape[0]]])
-    state = np.zeros((2, arrays.mode_count))
-    state[at.D] = scheme.first_increment(
-        arrays.angular_frequency, arrays.damping, step, state[at.Q], arrays.velocity, factors @ arrays.loads
-    )
-    carried = np.zeros(at.CARRIED)
-    start = system.contact.at
-    before = arrays.tip[0] @ state[at.D, : arrays.sizes[0]]
-    carried[at.MATERIAL] = carried[at.ABSCISSA] = start
-    carried[at.ABSCISSA_BEFORE] = (
-        start - before - (arrays.imposed(zero + step, step)[0] - arrays.imposed(zero, step)[0])
-    )
-    return state, carried

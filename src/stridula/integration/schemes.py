@@ -3,6 +3,9 @@
 March of increments d and positions q, for an impulse p at step n::
 
     d[n+1] = b d[n] - r q[n] + c p[n],    q[n+1] = q[n] + d[n+1],    r = 1 - a + b
+
+Modes that springs, dashpots or a general damping matrix couple, ``q'' + D q' + K q = f``, march in the same way with
+matrices in the place of b, r and c.
 """
 
 from __future__ import annotations
@@ -11,13 +14,14 @@ from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
 import numpy as np
+import scipy.linalg
 
 from ..bodies.modes import Array
 
 
 @dataclass(frozen=True)
 class Coefficients:
-    """Coefficients of the march of increments, each of shape (modes,).
+    """Coefficients of the march of increments, each of shape (modes,), or (modes, modes) for coupled modes.
 
     Attributes
     ----------
@@ -62,6 +66,20 @@ class Scheme(Protocol):
         """Return ``q[0] - q[-1]`` of motion that passes `position` with `velocity` under a constant `force`."""
         ...
 
+    def coupled_coefficients(self, stiffness: Array, damping: Array, step: float) -> Coefficients:
+        """Return the coefficients of ``q'' + damping q' + stiffness q = f``, all matrices."""
+        ...
+
+    def coupled_limit(self, stiffness: Array, damping: Array) -> float:
+        """Return the step [s] that coupled modes must not reach."""
+        ...
+
+    def coupled_first_increment(
+        self, stiffness: Array, damping: Array, step: float, position: Array, velocity: Array, force: Array
+    ) -> Array:
+        """Return the first increment of coupled modes."""
+        ...
+
 
 @dataclass(frozen=True)
 class CentralDifference:
@@ -94,6 +112,25 @@ class CentralDifference:
         """Return the increment whose centred velocity at the start is `velocity`."""
         k = self.coefficients(angular, damping, step)
         return (2.0 * step * velocity + k.r * position - k.load * force) / (1.0 + k.b)
+
+    def coupled_coefficients(self, stiffness: Array, damping: Array, step: float) -> Coefficients:
+        """Return the matrices of the same differences: ``(1 + h D / 2)`` divides."""
+        one, half = np.eye(len(stiffness)), 0.5 * step * damping
+        inverse = np.linalg.inv(one + half)
+        return Coefficients(
+            b=inverse @ (one - half), r=step**2 * inverse @ stiffness, c=step * inverse, load=step**2 * inverse
+        )
+
+    def coupled_limit(self, stiffness: Array, damping: Array) -> float:
+        """Return ``2 / w_max`` [s] of the undamped coupled modes."""
+        return self.limit(_angular(stiffness), damping)
+
+    def coupled_first_increment(
+        self, stiffness: Array, damping: Array, step: float, position: Array, velocity: Array, force: Array
+    ) -> Array:
+        """Return the increment whose centred velocity at the start is `velocity`."""
+        k = self.coupled_coefficients(stiffness, damping, step)
+        return np.linalg.solve(np.eye(len(stiffness)) + k.b, 2.0 * step * velocity + k.r @ position - k.load @ force)
 
 
 @dataclass(frozen=True)
@@ -137,6 +174,49 @@ class ExactModal:
         )
         free = velocity * step - force * step**2 / 2.0
         return np.where(rigid, free, offset - back)
+
+    def coupled_coefficients(self, stiffness: Array, damping: Array, step: float) -> Coefficients:
+        """Return the matrices of exact free motion.
+
+        With the blocks ``[[E, F], [H, G]]`` of the exponential of the state matrix over a step and ``J``, the integral
+        of ``F``: ``c = F``, the rest point moves by ``load = J + F (F - G F^-1 J)``, ``r = load K`` without
+        cancellation, and ``b = F (G F^-1 E - H)`` from two steps of free motion.
+        """
+        size = len(stiffness)
+        passed = _transition(stiffness, damping, step)
+        e, f, j = passed[:size, :size], passed[:size, size : 2 * size], passed[:size, 2 * size :]
+        g_f, g = np.linalg.solve(f.T, passed[size : 2 * size, size : 2 * size].T).T, passed[size : 2 * size]
+        load = j + f @ (f - g_f @ j)
+        b = f @ (g_f @ e - g[:, :size])
+        return Coefficients(b=b, r=load @ stiffness, c=f, load=load)
+
+    def coupled_limit(self, stiffness: Array, damping: Array) -> float:
+        """Return half the shortest damped period [s] of the coupled modes."""
+        zero, one = np.zeros_like(stiffness), np.eye(len(stiffness))
+        roots = np.linalg.eigvals(np.block([[zero, one], [-stiffness, -damping]]))
+        highest = float(np.max(np.abs(roots.imag), initial=0.0))
+        return np.pi / highest if highest else np.inf
+
+    def coupled_first_increment(
+        self, stiffness: Array, damping: Array, step: float, position: Array, velocity: Array, force: Array
+    ) -> Array:
+        """Return ``q(0) - q(-h)`` of the exact motion, followed back."""
+        size = len(stiffness)
+        back = _transition(stiffness, damping, -step)[:size]
+        return position - back @ np.concatenate([position, velocity, force])
+
+
+def _angular(stiffness: Array) -> Array:
+    return np.asarray(np.sqrt(np.maximum(np.linalg.eigvalsh(stiffness), 0.0)))
+
+
+def _transition(stiffness: Array, damping: Array, step: float) -> Array:
+    """Return what takes (position, velocity, constant force) over a step, shape (3 modes, 3 modes)."""
+    zero, one = np.zeros_like(stiffness), np.eye(len(stiffness))
+    # Scaled by the step, all entries are displacements.
+    rate = np.block([[zero, one, zero], [-stiffness * step**2, -damping * step, one], [zero, zero, zero]])
+    units = np.repeat([1.0, step, step**2], len(stiffness))
+    return np.asarray(scipy.linalg.expm(rate) / units[:, None] * units)
 
 
 SCHEMES: dict[str, type[CentralDifference] | type[ExactModal]] = {

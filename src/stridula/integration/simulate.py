@@ -7,11 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from .._kernels.layout import COLUMNS
+from .._kernels.layout import COLUMNS, ENERGIES
 from ..assembly import Assembly, assemble
+from ..bodies import ModalBeam
 from ..checks import instance, positive
 from ..records import Acceleration, Probe
 from ..system import System
+from .contact_solve import GaussSeidel
 from .run import Run, Timing
 from .schemes import CentralDifference, ExactModal, Scheme
 from .watchers import Watcher
@@ -29,6 +31,7 @@ def simulate(
     step: float | None = None,
     sample_rate: float = 100e3,
     probes: Sequence[Probe] | None = None,
+    contact_solve: GaussSeidel | None = None,
     start: xr.Dataset | None = None,
     watchers: Sequence[Watcher] = (),
     title: str = "",
@@ -50,7 +53,9 @@ def simulate(
         Samples per second to record [Hz]; with a step given, the nearest rate at which a sample is a whole number
         of steps.
     probes : sequence of Displacement, Velocity, Acceleration or Reaction, optional
-        What else to record; the acceleration of the track's centre along y if left out.
+        What else to record; the acceleration of the track's centre along y if left out and the track is a beam.
+    contact_solve : GaussSeidel, optional
+        How several contacts are solved together; one contact is solved exactly.
     start : xarray.Dataset, optional
         A record to go on from; the new record begins where it ended. Bodies, contact point, gap, probes, scheme, step
         and sampling must be the same; friction and drives may change.
@@ -65,7 +70,7 @@ def simulate(
         Forces (means over each sample interval), contact, energies and probes over ``time`` [s], with units and
         meanings in the attributes. ``attrs["ended"]`` is ``finished`` or ``off the track``; ``attrs["scenario"]`` is
         TOML that runs it again. The forces follow the convention: normal compressive, tangential on the track
-        along +x.
+        along its tangent. Variables of the contact have the dimension ``contact`` where there are several.
 
     Raises
     ------
@@ -74,7 +79,9 @@ def simulate(
     Interrupted
         On Ctrl-C, with the record so far.
     Diverged
-        If the state is no longer finite, with the record so far.
+        If the result cannot be believed: a state that is not finite, contact forces that were not found, energy that
+        comes from nowhere. The message says when, the last state of the contacts and the likely cause; the exception
+        has the record so far.
     """
     instance("system", system, System)
     chosen: Scheme = ExactModal() if scheme is None else scheme
@@ -83,17 +90,21 @@ def simulate(
         raise ValueError(f"watchers must be a list of callables, got {watchers!r}")
     if probes is not None and not isinstance(probes, Sequence):
         raise ValueError(f"probes must be a list of probes, got {probes!r}")
-    declared = tuple(probes) if probes is not None else (Acceleration(system.track.centre, "y"),)
+    default = (Acceleration(system.track.centre, "y"),) if isinstance(system.track, ModalBeam) else ()
+    declared = tuple(probes) if probes is not None else default
     for number, probe in enumerate(declared):
         instance(f"probes[{number}]", probe, Probe.__args__)
+    solve = GaussSeidel() if contact_solve is None else contact_solve
+    instance("contact_solve", solve, GaussSeidel)
     arrays = assemble(system, declared)
     timing = choose_timing(arrays, chosen, duration, step, sample_rate)
-    if len(declared) + COLUMNS > LARGEST_RECORD / 8 / max(timing.samples, 1):
+    columns = len(declared) + ENERGIES + COLUMNS * len(system.contacts)
+    if columns > LARGEST_RECORD / 8 / max(timing.samples, 1):
         raise ValueError(
             f"duration must give a record below {LARGEST_RECORD / 1e9:g} GB, got {duration!r} s at "
             f"{1 / timing.interval:.6g} Hz: lower sample_rate"
         )
-    run = Run(system, arrays, chosen, timing, declared, start, title)
+    run = Run(system, arrays, chosen, timing, declared, solve, start, title)
     return run.march(watchers)
 
 
@@ -101,7 +112,10 @@ def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float
     """Return the step and the sampling that the arguments of `simulate` ask for."""
     positive("duration", duration)
     wanted = 1.0 / positive("sample_rate", sample_rate)
-    limit = scheme.limit(arrays.angular_frequency, arrays.damping)
+    limit = min(
+        scheme.limit(arrays.angular_frequency, arrays.damping),
+        scheme.coupled_limit(arrays.stiffness, arrays.dissipation),
+    )
     if step is None:
         ratio = max(1, int(np.ceil(wanted / (scheme.default_fraction * limit) - 1e-9)))
         step = wanted / ratio

@@ -2,79 +2,217 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import fields
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
 from numbers import Integral, Real
 from typing import Any
 
+import numpy as np
 import tomli_w
 
-from ..bodies import BodyPoint, FiniteElementBeam
-from ..drives import Drive, Force, ImposedVelocity, InitialVelocity
+from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam
+from ..bodies.modes import Array
+from ..contact import PointContact, RigidTrack
+from ..drives import Drive, Force, ImposedVelocity, InitialState, InitialVelocity
+from ..histories import Constant
 from ..system import System
+from .packed import LONGEST_LIST, packed
 from .probes import Probe, Reaction
+
+DRIVE_KINDS = {
+    "Force": "force",
+    "ImposedVelocity": "imposed velocity",
+    "Gravity": "gravity",
+    "InitialVelocity": "initial velocity",
+    "InitialState": "initial state",
+}
+# A list as tomli_w writes it, one number on a line; texts are on one line each and never match.
+_LIST_OF_NUMBERS = re.compile(r"\[\n((?:\s*[-+.\dinfaeE]+,\n)+)\s*\]")
+BODY_KINDS = {
+    "FiniteElementBeam": "finite-element beam",
+    "ModalBeam": "modal beam",
+    "PointMass": "point mass",
+    "ReducedBody": "reduced",
+}
 
 
 def scenario_toml(system: System, probes: Sequence[Probe], simulation: dict[str, Any]) -> str:
-    """Return the scenario as TOML, in the words that `stridula run` reads."""
-    contact = system.contact
-    tables = {
+    """Return the scenario as TOML, in the words that `stridula run` reads.
+
+    A beam on a beam is a slider, a track and a contact; any other system lists its bodies, contacts and connections.
+    Matrices are lists of rows while they are small, text that holds every bit of them beyond.
+    """
+    tables = _pair(system) if _is_pair(system) else _general(system)
+    tables["drives"] = [_drive(drive, system) for drive in system.drives]
+    tables["simulation"] = {**_value(simulation), "probes": [_probe(probe, system) for probe in probes]}
+    return toml(tables)
+
+
+def toml(tables: Mapping[str, Any]) -> str:
+    """Return tables as TOML, lists of numbers on one line."""
+    return _LIST_OF_NUMBERS.sub(_on_one_line, tomli_w.dumps(tables))
+
+
+def _on_one_line(found: re.Match[str]) -> str:
+    return f"[{' '.join(found[1].split()).rstrip(',')}]"
+
+
+def _is_pair(system: System) -> bool:
+    return (
+        len(system.contacts) == 1
+        and not system.connections
+        and isinstance(system.slider, FiniteElementBeam)
+        and isinstance(system.contacts[0].track, ModalBeam)
+    )
+
+
+def _pair(system: System) -> dict[str, Any]:
+    contact = system.contacts[0]
+    return {
         "slider": _body(system.slider),
         "track": _body(system.track),
-        "contact": {
-            "at": _value(contact.at),
-            "gap": _value(contact.gap),
-            "point": _point(contact.tip),
-            "friction": {"law": "coulomb", "coefficient": _value(contact.friction.coefficient)},
-        },
-        "drives": [_drive(drive, system) for drive in system.drives],
-        "simulation": {**simulation, "probes": [_probe(probe, system) for probe in probes]},
+        "contact": {**_contact(contact), "point": _point(contact.tip)},
     }
-    return tomli_w.dumps(tables)
+
+
+def _general(system: System) -> dict[str, Any]:
+    def place(point: BodyPoint) -> dict[str, Any]:
+        return {"body": system.body_name(point.body), "point": _point(point)}
+
+    def track(contact: PointContact) -> dict[str, Any]:
+        if isinstance(contact.track, RigidTrack):
+            return {"kind": "rigid", **_plain(contact.track, "history", "normal_history"), **_histories(contact.track)}
+        if isinstance(contact.track, BodyPoint):
+            return {"kind": "point", **place(contact.track)}
+        return {"kind": "beam", "body": system.body_name(contact.track)}
+
+    tables: dict[str, Any] = {
+        "bodies": {
+            system.body_name(body): {"kind": BODY_KINDS[type(body).__name__], **_general_body(body, system)}
+            for body in system.bodies
+        },
+        "contacts": [
+            {**_contact(contact), "tip": place(contact.tip), "track": track(contact)} for contact in system.contacts
+        ],
+    }
+    if system.connections:
+        tables["connections"] = [
+            {
+                "kind": type(connection).__name__.lower(),
+                **_plain(connection, "first", "second"),
+                "first": place(connection.first),
+                **({"second": place(connection.second)} if connection.second is not None else {}),
+            }
+            for connection in system.connections
+        ]
+    return tables
+
+
+def _contact(contact: PointContact) -> dict[str, Any]:
+    given = {"at": _value(contact.at), "gap": _value(contact.gap)}
+    for name in ("inclination", "name"):
+        if getattr(contact, name):
+            given[name] = _value(getattr(contact, name))
+    return {**given, "friction": {"law": contact.friction.law, **_plain(contact.friction)}}
+
+
+def _histories(record: Any) -> dict[str, Any]:
+    """Return the histories of a record that are not constant."""
+    found = {}
+    for name in ("history", "normal_history"):
+        history = getattr(record, name, None)
+        if history is not None and not isinstance(history, Constant):
+            found[name] = _history(history)
+    return found
+
+
+def _history(history: Any) -> dict[str, Any]:
+    return {"kind": type(history).__name__.lower(), **_plain(history)}
 
 
 def _plain(record: Any, *skipped: str) -> dict[str, Any]:
-    """Return the plain fields of a dataclass that hold a value."""
+    """Return the plain fields of a dataclass that hold a value, an empty name left out."""
     pairs = ((f.name, getattr(record, f.name)) for f in fields(record) if f.name not in skipped)
-    return {name: _value(value) for name, value in pairs if value is not None}
+    return {name: _value(value) for name, value in pairs if value is not None and (name, value) != ("name", "")}
 
 
 def _value(value: Any) -> Any:
-    """Return a value that TOML can write: NumPy's numbers as Python's."""
-    if isinstance(value, tuple):
+    """Return a value that TOML can write: NumPy's numbers as Python's, arrays as lists or packed."""
+    if isinstance(value, np.ndarray):
+        return value.tolist() if value.size <= LONGEST_LIST else packed(value)
+    if isinstance(value, (tuple, list)):
         return [_value(entry) for entry in value]
+    if isinstance(value, Mapping):
+        return {name: _value(entry) for name, entry in value.items()}
+    if is_dataclass(value) and not isinstance(value, type):
+        return _plain(value)
+    if isinstance(value, bool):
+        return value
     if isinstance(value, Integral):
         return int(value)
     return float(value) if isinstance(value, Real) else value
 
 
 def _body(body: Any) -> dict[str, Any]:
+    given = _plain(body, "material", "section", "points")
+    if hasattr(body, "points"):
+        given["points"] = {name: _rows(rows) for name, rows in body.points.items()}
+    if not hasattr(body, "section"):
+        return given
     section = {"shape": type(body.section).__name__.lower(), **_plain(body.section)}
     if section["shape"] == "section":
         section["shape"] = "general"
-    return {**_plain(body, "material", "section"), "material": _plain(body.material), "section": section}
+    return {**given, "material": _plain(body.material), "section": section}
+
+
+def _general_body(body: Any, system: System) -> dict[str, Any]:
+    """Return the table of a body, without the name where the table's own name says it."""
+    given = _body(body)
+    if body.name != _default_name(body, system):
+        given.pop("name", None)
+    return given
+
+
+def _default_name(body: Any, system: System) -> str:
+    """Return what a body would be called if it had no name."""
+    if body == system.slider:
+        return "slider"
+    return "track" if body == system.track else f"body {system.bodies.index(body) + 1}"
+
+
+def _rows(rows: Array) -> Any:
+    """Return the rows of a point: the degrees of freedom that it moves with where that says it all."""
+    chosen = {axis: np.flatnonzero(row) for axis, row in zip("xy", rows, strict=True)}
+    if all(
+        found.size == 0 or (found.size == 1 and rows[k, found[0]] == 1.0) for k, found in enumerate(chosen.values())
+    ):
+        return {axis: int(found[0]) for axis, found in chosen.items() if found.size}
+    return _value(rows)
 
 
 def _point(point: BodyPoint) -> str | float:
     body: Any = point.body
+    if isinstance(point.position, str):
+        return point.position
     named = {"tip": 0.0, "root": body.length} if isinstance(body, FiniteElementBeam) else {"centre": body.length / 2.0}
     return next((name for name, position in named.items() if position == point.position), _value(point.position))
 
 
-def _body_name(body: object, system: System) -> str:
-    return "slider" if body == system.slider else "track"
-
-
 def _drive(drive: Drive, system: System) -> dict[str, Any]:
-    kinds = {"Force": "force", "ImposedVelocity": "imposed velocity", "Gravity": "gravity"}
-    table: dict[str, Any] = {"kind": kinds.get(type(drive).__name__, "initial velocity")}
+    table: dict[str, Any] = {"kind": DRIVE_KINDS[type(drive).__name__]}
     if isinstance(drive, Force):
-        table |= {"body": _body_name(drive.point.body, system), "point": _point(drive.point)}
-    if isinstance(drive, InitialVelocity):
-        table["body"] = _body_name(drive.body, system)
+        table |= {"body": system.body_name(drive.point.body), "point": _point(drive.point)}
+    elif isinstance(drive, (InitialVelocity, InitialState)):
+        table["body"] = system.body_name(drive.body)
+    elif isinstance(drive, ImposedVelocity) and drive.point.body != system.slider:
+        table["body"] = system.body_name(drive.point.body)
     table |= _plain(drive, "point", "body", "history")
+    if isinstance(drive, InitialState):
+        given = {name: getattr(drive, name) for name in ("displacement", "velocity")}
+        table |= {name: _value(np.array(values)) for name, values in given.items() if values is not None}
     if isinstance(drive, (Force, ImposedVelocity)):
-        table["history"] = {"kind": type(drive.history).__name__.lower(), **_plain(drive.history)}
+        table["history"] = _history(drive.history)
     return table
 
 
@@ -83,7 +221,7 @@ def _probe(probe: Probe, system: System) -> dict[str, Any]:
         return {"quantity": "reaction", "direction": probe.component}
     return {
         "quantity": type(probe).__name__.lower(),
-        "body": _body_name(probe.point.body, system),
+        "body": system.body_name(probe.point.body),
         "point": _point(probe.point),
         "direction": probe.direction,
     }

@@ -31,12 +31,18 @@ STATUS_WORDS = ("separated", "sticking", "sliding")
 
 CONTACT = (
     Variable("normal_force", "N", "normal contact force, compressive", "mean"),
-    Variable("tangential_force", "N", "tangential contact force on the track along +x", "mean"),
+    Variable("tangential_force", "N", "tangential contact force on the track along its tangent", "mean"),
     Variable("contact_position", "m", "abscissa of the tip along the track"),
     Variable("contact_height", "m", "height of the tip above the undeformed track"),
     Variable("gap", "m", "distance from tip to track"),
     Variable("slip_velocity", "m/s", "velocity of the tip along the track's material", "mean"),
     Variable("jammed_steps", "1", "steps in which sliding would have jammed", "sum"),
+)
+# Units are those of the law: m for LuGre's bristles, s for the state of rate and state.
+FRICTION_STATE = Variable("friction_state", "1", "internal state of the law of friction")
+SOLVE = (
+    Variable("contact_sweeps", "1", "largest number of Gauss-Seidel sweeps a step", "maximum"),
+    Variable("unsolved_steps", "1", "steps in which the contact forces are out of tolerance", "sum"),
 )
 STATUS = Variable("status", "1", "contact status that holds for the largest part of the interval", "mode")
 STATUS_SHARE = Variable("status_share", "1", "share of the interval in each contact status", "mean")

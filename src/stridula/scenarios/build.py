@@ -5,15 +5,33 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from .. import histories
-from ..bodies import BodyPoint, Circle, FiniteElementBeam, Material, ModalBeam, Rectangle, Section
-from ..contact import Coulomb, PointContact
-from ..drives import Drive, Force, Gravity, ImposedVelocity, InitialVelocity
+from ..bodies import (
+    BodyPoint,
+    Circle,
+    FiniteElementBeam,
+    Material,
+    ModalBeam,
+    PointMass,
+    Rayleigh,
+    Rectangle,
+    ReducedBody,
+    Section,
+)
+from ..checks import suggestion
+from ..connections import Dashpot, Spring
+from ..contact import PointContact, RigidTrack
+from ..contact.point_contact import LAWS
+from ..drives import Drive, Force, Gravity, ImposedVelocity, InitialState, InitialVelocity
+from ..integration import GaussSeidel
 from ..records import Acceleration, Displacement, Probe, Reaction, Velocity
 from ..system import System
 from .errors import ScenarioError
+from .quantities import quantity
 
 SECTIONS: dict[str, Callable[..., Any]] = {"rectangle": Rectangle, "circle": Circle, "general": Section}
 HISTORIES: dict[str, Callable[..., Any]] = {
@@ -23,7 +41,10 @@ HISTORIES: dict[str, Callable[..., Any]] = {
     "sampled": histories.Sampled,
 }
 MOTIONS = {"displacement": Displacement, "velocity": Velocity, "acceleration": Acceleration}
+FRICTIONS: dict[str, Callable[..., Any]] = {law.law: law for law in LAWS}
+CONNECTIONS: dict[str, Callable[..., Any]] = {"spring": Spring, "dashpot": Dashpot}
 Tables = dict[str, Any]
+Place = tuple[str | int, ...]
 _ARGUMENT = re.compile(r"([a-z_]\w*(?:[.\[]\w+\]?)*) (must|and) ")
 
 
@@ -38,23 +59,27 @@ class Builder:
         Turns a path into the key as it was written.
     """
 
-    def __init__(self, tables: Tables, words: Callable[[tuple[str | int, ...]], str]) -> None:
+    def __init__(self, tables: Tables, words: Callable[[Place], str]) -> None:
         self.tables, self.words = tables, words
         self.problems: list[str] = []
+        self.places: dict[str, Place] = {"slider": ("slider",), "track": ("track",)}
+        self.bodies: dict[str, Any] = {}
 
     def system(self) -> System:
         """Return the system."""
-        slider = self._body("slider", FiniteElementBeam)
-        track = self._body("track", ModalBeam)
-        self._stop_at_problems()
-        contact = self._contact(slider, track)
-        drives = [self._drive(number, table, slider, track) for number, table in enumerate(self.tables["drives"])]
+        if "bodies" in self.tables:
+            contacts, connections = self._general()
+        else:
+            contacts, connections = [self._pair()], []
+        drives = [self._drive(number, table) for number, table in enumerate(self.tables["drives"])]
         self._stop_at_problems()
         with self._within():
-            system = System(contact, drives)
+            system = System(contacts[0] if len(contacts) == 1 else contacts, drives, connections)
         self._stop_at_problems()
-        with self._within("slider"):
-            slider.modes(system.imposed_velocity is not None)
+        for name, body in self.bodies.items():
+            if isinstance(body, FiniteElementBeam):
+                with self._within(*self.places.get(name, ("bodies", name))):
+                    body.modes(system.is_held(body))
         self._stop_at_problems()
         return system
 
@@ -67,66 +92,237 @@ class Builder:
         self._stop_at_problems()
         return tuple(probes)
 
-    def _body(self, name: str, kind: Callable[..., Any]) -> Any:
-        table = dict(self.tables[name])
-        section = dict(table.pop("section"))
-        with self._within(name, "section"):
-            shape = SECTIONS[section.pop("shape")](**section)
-        with self._within(name, "material"):
-            material = Material(**table.pop("material"))
-        with self._within(name):
-            return kind(material, shape, **table)
+    def contact_solve(self) -> GaussSeidel | None:
+        """Return how several contacts are solved together, None for the default."""
+        table = self.tables["simulation"].get("contact_solve")
+        if table is None:
+            return None
+        solve = None
+        with self._within("simulation", "contact_solve"):
+            solve = GaussSeidel(**table)
+        self._stop_at_problems()
+        return solve
 
-    def _contact(self, slider: FiniteElementBeam, track: ModalBeam) -> Any:
+    def _pair(self) -> Any:
+        slider = self._beam(("slider",), FiniteElementBeam, self.tables["slider"])
+        track = self._beam(("track",), ModalBeam, self.tables["track"])
+        self._stop_at_problems()
+        self.bodies = {"slider": slider, "track": track} | {body.name: body for body in (slider, track) if body.name}
+        for body, place in ((slider, "slider"), (track, "track")):
+            self.places |= {body.name: (place,)} if body.name else {}
         table = dict(self.tables["contact"])
-        friction = Coulomb(table.pop("friction")["coefficient"])
+        friction = self._friction(("contact",), table)
         tip = self._point(("contact", "point"), slider, table.pop("point", "tip"))
         with self._within("contact"):
-            return PointContact(tip, track, friction=friction, **table)
+            return PointContact(tip, track, **friction, **table)
 
-    def _drive(self, number: int, table: Tables, slider: FiniteElementBeam, track: ModalBeam) -> Any:
+    def _general(self) -> tuple[list[Any], list[Any]]:
+        tables: dict[str, Tables] = self.tables["bodies"]
+        self.places = {name: ("bodies", name) for name in tables}
+        used = self._check_used()
+        self._stop_at_problems()
+        built = {name: self._body(name, dict(table), used) for name, table in tables.items()}
+        self._stop_at_problems()
+        bodies = list(built.values())
+        # Bodies that are equal are told apart by their names in the file.
+        built = {k: replace(b, name=k) if not b.name and bodies.count(b) > 1 else b for k, b in built.items()}
+        aliases = {body.name: name for name, body in built.items() if body.name}
+        aliases |= {"slider": used[0]}
+        if self.tables["contacts"][0]["track"]["kind"] != "rigid":
+            aliases |= {"track": self.tables["contacts"][0]["track"]["body"]}
+        self.bodies = {alias: built[name] for alias, name in aliases.items()} | built
+        self.places = {alias: ("bodies", name) for alias, name in aliases.items()} | self.places
+        contacts = [self._contact(number, dict(table)) for number, table in enumerate(self.tables["contacts"])]
+        joined = self.tables.get("connections") or []
+        return contacts, [self._connection(number, dict(table)) for number, table in enumerate(joined)]
+
+    def _check_used(self) -> list[str]:
+        """Return the names of the bodies in the order in which contacts and connections name them."""
+        named: dict[Place, str] = {}
+        for number, contact in enumerate(self.tables["contacts"]):
+            named[("contacts", number, "tip", "body")] = contact["tip"]["body"]
+            if contact["track"]["kind"] != "rigid":
+                named[("contacts", number, "track", "body")] = contact["track"]["body"]
+        for number, connection in enumerate(self.tables.get("connections") or []):
+            for end in ("first", "second"):
+                if connection.get(end) is not None:
+                    named[("connections", number, end, "body")] = connection[end]["body"]
+        bodies = self.tables["bodies"]
+        for path, name in named.items():
+            if name not in bodies:
+                self.problems.append(_unknown(self.words(path), name, list(bodies)))
+        for name in bodies:
+            if name not in named.values():
+                self.problems.append(
+                    f"{self.words(('bodies', name))} must be in a contact or a connection, got neither"
+                )
+        return list(dict.fromkeys(named.values()))
+
+    def _body(self, name: str, table: Tables, used: list[str]) -> Any:
+        path = ("bodies", name)
+        kind = table.pop("kind")
+        table["name"] = table.get("name") or ("" if name == self._default_name(name, used) else name)
+        if kind == "point mass":
+            with self._within(*path):
+                return PointMass(**table)
+        if kind == "reduced":
+            return self._reduced(path, table)
+        return self._beam(path, FiniteElementBeam if kind == "finite-element beam" else ModalBeam, table)
+
+    def _default_name(self, name: str, used: list[str]) -> str:
+        """Return what a body is called that has no name of its own, so that records can leave it without one."""
+        track = self.tables["contacts"][0]["track"]
+        if name == used[0]:
+            return "slider"
+        return "track" if name == track.get("body") else f"body {used.index(name) + 1}"
+
+    def _reduced(self, path: Place, table: Tables) -> Any:
+        files = {key: table[key] for key in ("file", "mass", "stiffness", "damping") if isinstance(table.get(key), str)}
+        for key, file in files.items():
+            if Path(file).exists() and not Path(file).is_file():
+                self.problems.append(f"{self.words((*path, key))} must be a file, got {file!r}")
+                return None
+        if isinstance(table.get("damping"), dict):
+            table["damping"] = Rayleigh(**table["damping"])
+        with self._within(*path):
+            if "file" in table or {"mass", "stiffness"} & set(files):
+                container = table.pop("file", None)
+                return ReducedBody.read(container, **table)
+            for key, words in (("mass", "mass matrix"), ("stiffness", "stiffness matrix"), ("points", "its points")):
+                if table.get(key) is None:
+                    raise ValueError(f"{key} must be given: {words}, unless a file has it")
+            return ReducedBody(**table)
+
+    def _beam(self, path: Place, kind: Callable[..., Any], given: Tables) -> Any:
+        table = dict(given)
+        section = dict(table.pop("section"))
+        with self._within(*path, "section"):
+            shape = SECTIONS[section.pop("shape")](**section)
+        with self._within(*path, "material"):
+            material = Material(**table.pop("material"))
+        with self._within(*path):
+            return kind(material, shape, **table)
+
+    def _friction(self, path: Place, table: Tables) -> dict[str, Any]:
+        """Take the law of friction out of the table of a contact, if it has one."""
+        given = dict(table.pop("friction", None) or {})
+        if not given:
+            return {}
+        with self._within(*path, "friction"):
+            return {"friction": FRICTIONS[given.pop("law")](**given)}
+        return {}
+
+    def _contact(self, number: int, table: Tables) -> Any:
+        path = ("contacts", number)
+        friction = self._friction(path, table)
+        tip = self._place((*path, "tip"), table.pop("tip"))
+        track = self._track((*path, "track"), dict(table.pop("track")))
+        with self._within(*path):
+            return PointContact(tip, track, **friction, **table)
+
+    def _track(self, path: Place, table: Tables) -> Any:
+        kind = table.pop("kind")
+        if kind == "point":
+            return self._place(path, table)
+        if kind == "beam":
+            body = self.bodies[table["body"]]
+            if not isinstance(body, ModalBeam):
+                self.problems.append(f"{self.words((*path, 'body'))} must be a modal beam, got {table['body']!r}")
+            return body
+        for name in ("history", "normal_history"):
+            if table.get(name) is not None:
+                table[name] = self._history((*path, name), table[name])
+        with self._within(*path):
+            return RigidTrack(**{name: value for name, value in table.items() if value is not None})
+
+    def _place(self, path: Place, table: Tables) -> Any:
+        return self._point((*path, "point"), self.bodies[table["body"]], table.get("point"), "tip")
+
+    def _connection(self, number: int, table: Tables) -> Any:
+        path = ("connections", number)
+        kind = table.pop("kind")
+        first = self._place((*path, "first"), table.pop("first"))
+        second = table.pop("second", None)
+        other = None if second is None else self._place((*path, "second"), second)
+        with self._within(*path):
+            return CONNECTIONS[kind](first, other, **table)
+
+    def _drive(self, number: int, table: Tables) -> Any:
         path = ("drives", number)
         table = dict(table)
         kind = table.pop("kind")
-        body: Any = {"slider": slider, "track": track}[table.pop("body", "slider")]
-        if "history" in table:
+        body: Any = None if kind == "gravity" else self._named_body((*path, "body"), table.pop("body", "slider"))
+        if table.get("history") is not None:
             table["history"] = self._history((*path, "history"), table["history"])
+        if kind == "force":
+            at = self._point((*path, "point"), body, table.pop("point", None), "root")
         makers: dict[str, Callable[[], Drive]] = {
-            "force": lambda: Force(self._point((*path, "point"), body, table.pop("point", "root")), **table),
-            "imposed velocity": lambda: ImposedVelocity(slider.root, **table),
+            "force": lambda: Force(at, **table),
+            "imposed velocity": lambda: ImposedVelocity(self._root(path, body), **table),
             "gravity": lambda: Gravity(**table),
             "initial velocity": lambda: InitialVelocity(body, **table),
+            "initial state": lambda: InitialState(body, **table),
         }
         with self._within(*path):
             return makers[kind]()
 
-    def _history(self, path: tuple[str | int, ...], table: Tables) -> Any:
+    def _root(self, path: Place, body: Any) -> Any:
+        if not isinstance(body, FiniteElementBeam):
+            self.problems.append(f"{self.words((*path, 'body'))} must be a finite-element beam, whose root is driven")
+            return None
+        return body.root
+
+    def _history(self, path: Place, table: Tables) -> Any:
         values = {name: value for name, value in table.items() if name != "kind"}
         with self._within(*path):
             return HISTORIES[table["kind"]](**values)
 
     def _probe(self, number: int, table: Tables, system: System) -> Any:
         path = ("simulation", "probes", number)
-        if table["quantity"] == "reaction":
-            return Reaction(system.slider, table.get("direction", "moment"))
-        body = getattr(system, table.get("body", "track"))
-        point = self._point((*path, "point"), body, table.get("point", "centre"))
         with self._within(*path):
+            if table["quantity"] == "reaction":
+                return Reaction(system.slider, table.get("direction", "moment"))
+            name = table.get("body") or ("track" if "track" in self.bodies else "slider")
+            body = self._named_body((*path, "body"), name)
+            point = self._point((*path, "point"), body, table.get("point"), "tip")
             return MOTIONS[table["quantity"]](point, table.get("direction", "y"))
 
-    def _point(self, path: tuple[str | int, ...], body: Any, place: str | float) -> Any:
-        if isinstance(place, float):
-            try:
-                return body.at(place)
-            except ValueError as error:
-                self.problems.append(str(error).replace("position", self.words(path), 1))
-                return None
-        names = ("tip", "root") if isinstance(body, FiniteElementBeam) else ("centre",)
-        if place not in names:
-            self.problems.append(f"{self.words(path)} must be {' or '.join(names)} or a position, got {place!r}")
+    def _named_body(self, path: Place, name: str) -> Any:
+        if name not in self.bodies:
+            self.problems.append(_unknown(self.words(path), name, list(self.bodies)))
+        return self.bodies.get(name)
+
+    def _point(self, path: Place, body: Any, place: str | float | None, end: str = "") -> Any:
+        """Return a point of a body; without a place the `end` of a slider, the centre or the only point."""
+        if body is None:
             return None
-        point: BodyPoint = getattr(body, place)
-        return point
+        if isinstance(body, (FiniteElementBeam, ModalBeam)):
+            return self._point_of_beam(path, body, place, end)
+        known = tuple(body.points) if isinstance(body, ReducedBody) else ("centre",)
+        if place is None and len(known) == 1:
+            place = known[0]
+        if place is None:
+            self.problems.append(f"{self.words(path)} must be given: one of {', '.join(known)}")
+        elif place in known:
+            return BodyPoint(body, place)
+        else:
+            self.problems.append(_unknown(self.words(path), place, known))
+        return None
+
+    def _point_of_beam(self, path: Place, body: Any, place: str | float | None, end: str) -> Any:
+        names = ("tip", "root") if isinstance(body, FiniteElementBeam) else ("centre",)
+        if place is None:
+            place = end if end in names else names[0]
+        if place in names:
+            point: BodyPoint = getattr(body, str(place))
+            return point
+        try:
+            return body.at(quantity(place, "m"))
+        except ValueError as error:
+            key, words = self.words(path), str(error)
+            problem = words.replace("position", key, 1) if words.startswith("position") else ""
+            self.problems.append(problem or f"{key} must be {' or '.join(names)} or a position, got {place!r}")
+        return None
 
     @contextmanager
     def _within(self, *path: str | int) -> Iterator[None]:
@@ -134,18 +330,26 @@ class Builder:
         known = len(self.problems)
         try:
             yield
-        except ValueError as error:
+        except OverflowError:
+            self.problems.append(f"{self.words(path) or 'scenario'} must hold smaller numbers: its modes overflow")
+        except (ValueError, OSError) as error:
             if len(self.problems) == known and "got None" not in str(error):
                 self.problems.append(self._named(path, str(error)))
 
-    def _named(self, path: tuple[str | int, ...], message: str) -> str:
+    def _named(self, path: Place, message: str) -> str:
         match = _ARGUMENT.match(message)
         if match is None:
             return f"{self.words(path)}: {message}" if path else message
-        argument = match[1].replace("[", ".").replace("]", "")
-        owner = ("slider",) if argument in ("root_support", "tip_support") else path
-        return self.words((*owner, *argument.split("."))) + message[len(match[1]) :]
+        argument = match[1].replace("[", ".").replace("]", "").replace("path", "file")
+        if argument in ("root_support", "tip_support") and not path:
+            driven: Tables = next((drive for drive in self.tables["drives"] if drive["kind"] == "imposed velocity"), {})
+            path = self.places.get(driven.get("body", "slider"), ("slider",))
+        return self.words((*path, *argument.split("."))) + message[len(match[1]) :]
 
     def _stop_at_problems(self) -> None:
         if self.problems:
             raise ScenarioError(self.problems)
+
+
+def _unknown(key: str, name: Any, known: Any) -> str:
+    return f"{key} must be one of {', '.join(known)}, got {name!r}{suggestion(name, list(known))}"

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from ..checks import suggestion
 from . import outline
 from .outline import Path
+from .schema import GENERAL, PAIR
 
 
 class ScenarioError(ValueError):
@@ -21,18 +22,43 @@ class ScenarioError(ValueError):
         super().__init__("; ".join(self.problems))
 
 
-def explain(error: ValidationError, tables: dict[str, Any], written: dict[str, Any]) -> ScenarioError:
+def explain(error: ValidationError, tables: dict[str, Any], written: dict[str, Any]) -> list[str]:
     """Return the errors of validated `tables` in words, with the keys as they were `written` before sharing."""
-    return ScenarioError([_line(dict(details), tables, written) for details in error.errors()])
+    return [_line(dict(details), tables, written) for details in error.errors()]
+
+
+def wrong_form(tables: dict[str, Any]) -> list[str]:
+    """Return what lacks for a pair of beams or for bodies in contacts, and what does not go together.
+
+    Parameters
+    ----------
+    tables : dict
+        The tables as written, before sharing.
+    """
+    is_general = any(key in tables for key in (*GENERAL, "connections"))
+    wanted, others = (GENERAL, PAIR) if is_general else (PAIR, GENERAL)
+    problems = [
+        f"{key} must be left out where there are bodies and contacts, got both" for key in others if key in tables
+    ]
+    if is_general and isinstance(tables.get("bodies"), dict) and not outline.beams(tables):
+        shared = [key for key in outline.SHARED if key in tables]
+        problems += [f"{key} must stand in a body, got one at the top, where only beams take it from" for key in shared]
+    for key in wanted:
+        if key not in tables:
+            problems.append(f"{key} must be given: {(outline.node_at((key,), tables) or {})['description']}")
+        elif key in GENERAL and not tables[key]:
+            problems.append(f"{key} must not be empty, got {tables[key]!r}")
+    return problems
 
 
 def as_written(path: Path, written: dict[str, Any]) -> str:
     """Return a key as text; one that a body takes from the shared tables at the top loses the body's name."""
-    own, shared = path, path[1:]
-    is_shared = path[0] in ("slider", "track") and len(path) > 1 and shared[0] in outline.SHARED
+    body = next((beam for beam in outline.beams(written) if path[: len(beam)] == beam), path)
+    shared = path[len(body) :]
+    is_shared = bool(shared) and shared[0] in outline.SHARED
     # A key that is not there belongs to the table in which it is missed.
     for length in range(len(shared), 0, -1) if is_shared else ():
-        if outline.look_up(written, own[: length + 1]) is not None:
+        if outline.look_up(written, (*body, *shared[:length])) is not None:
             break
         if outline.look_up(written, shared[:length]) is not None:
             return ".".join(map(str, shared))

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Integral
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError
 from pydantic_core.core_schema import no_info_plain_validator_function
 
-from .quantities import UNITS, quantity
+from ..bodies.modes import Array
+from ..records.packed import is_packed, unpacked
+from .quantities import UNITS, is_quantity, quantity
 
 
 class Table(BaseModel):
@@ -106,23 +109,151 @@ class Whole(_Kind):
 
 @dataclass(frozen=True)
 class Place(_Kind):
-    """A point of a body: one of its named points, or a position along it."""
+    """A point of a body: one of its named points, or a position along a beam."""
 
     names = ("tip", "root", "centre")
 
     def read(self, value: Any) -> str | float:
-        if value in self.names:
-            return str(value)
+        if isinstance(value, str):
+            return value
         try:
             return quantity(value, "m")
         except ValueError as error:
-            raise ValueError(f"must be {', '.join(self.names)} or a position, which {error}") from None
+            raise ValueError(f"must be the name of a point or a position, which {error}") from None
 
     def json_schema(self) -> dict[str, Any]:
-        return {"anyOf": [{"enum": list(self.names)}, *Quantity("m").json_schema()["anyOf"]]}
+        return {"anyOf": [{"enum": list(self.names)}, {"type": "string"}, {"type": "number"}]}
 
 
-BodyName = Literal["slider", "track"]
+@dataclass(frozen=True)
+class Numbers(_Kind):
+    """A list of numbers or a matrix, written out or packed; where allowed also one ratio, shares, or a file.
+
+    Attributes
+    ----------
+    dimensions : tuple of int
+        Dimensions it may have: 0 for one number, 1 for a list, 2 for a matrix.
+    file : bool
+        Whether a text may be the name of a file.
+    rayleigh : bool
+        Whether a table with shares of mass and stiffness will do.
+    """
+
+    dimensions: tuple[int, ...]
+    file: bool = False
+    rayleigh: bool = False
+
+    def read(self, value: Any) -> Any:
+        array: Array | None
+        if isinstance(value, str) and is_packed(value):
+            array = unpacked(value)
+        elif self.file and isinstance(value, str) and not (0 in self.dimensions and is_quantity(value, "1")):
+            return value
+        elif self.rayleigh and isinstance(value, dict):
+            return _shares(value)
+        elif 0 in self.dimensions and not isinstance(value, list):
+            return quantity(value, "1")
+        else:
+            array = _array(value)
+        if array is None or array.ndim not in self.dimensions:
+            raise ValueError(self._words())
+        if not np.isfinite(array).all():
+            raise ValueError("must hold finite numbers only")
+        return array
+
+    def json_schema(self) -> dict[str, Any]:
+        row = {"type": "array", "items": {"type": "number"}}
+        kinds = {0: {"type": "number"}, 1: row, 2: {"type": "array", "items": row}}
+        shares = {"type": "object", "properties": {name: Quantity("1").json_schema() for name in SHARES}}
+        own = [*([shares] if self.rayleigh else []), {"type": "string"}]
+        return {"anyOf": [*(kinds[dimension] for dimension in self.dimensions), *own]}
+
+    def _words(self) -> str:
+        kinds = {0: "a number", 1: "a list of numbers", 2: "a matrix, a list of rows of numbers"}
+        words = [kinds[dimension] for dimension in self.dimensions]
+        words += ["shares of mass and stiffness"] if self.rayleigh else []
+        words += ["a file"] if self.file else []
+        return f"must be {' or '.join(words)}"
+
+
+@dataclass(frozen=True)
+class Points(_Kind):
+    """Points of a reduced body by name: rows, or the degrees of freedom or labels that they move with along x and y."""
+
+    def read(self, value: Any) -> dict[str, Any]:
+        if not isinstance(value, dict):
+            raise ValueError("must be a table of points by name")
+        return {name: self._point(name, point) for name, point in value.items()}
+
+    def json_schema(self) -> dict[str, Any]:
+        rows = Numbers((2,)).json_schema()
+        label = {"anyOf": [{"type": "integer"}, {"type": "array", "items": {"type": "integer"}}]}
+        axes = {"type": "object", "properties": {"x": label, "y": label}, "additionalProperties": False}
+        pair = {"type": "array", "items": label}
+        return {"type": "object", "additionalProperties": {"anyOf": [axes, pair, *rows["anyOf"]]}}
+
+    def _point(self, name: str, point: Any) -> Any:
+        if isinstance(point, dict) and set(point) <= {"x", "y"}:
+            point = [point.get("x"), point.get("y")]
+        if isinstance(point, list) and len(point) == 2 and all(map(_is_label_or_none, point)):
+            return tuple(tuple(label) if isinstance(label, list) else label for label in point)
+        try:
+            return Numbers((2,)).read(point)
+        except ValueError:
+            raise ValueError(
+                f"must give the point {name} as rows on the degrees of freedom, shape (2, n), or by the degrees of "
+                "freedom that it moves with: {x = 0, y = 1}"
+            ) from None
+
+
+@dataclass(frozen=True)
+class Motion(_Kind):
+    """How a translation moves the degrees of freedom: rows, or with labels the numbers of those along x and y."""
+
+    def read(self, value: Any) -> Any:
+        if isinstance(value, list) and len(value) == 2 and all(map(_is_whole, value)):
+            return tuple(value)
+        return Numbers((2,)).read(value)
+
+    def json_schema(self) -> dict[str, Any]:
+        return {"anyOf": [{"type": "array", "items": {"type": "integer"}}, *Numbers((2,)).json_schema()["anyOf"]]}
+
+
+SHARES = ("mass", "stiffness")
+
+
+def _shares(value: dict[str, Any]) -> dict[str, float]:
+    if set(value) != set(SHARES):
+        raise ValueError("must hold the shares mass [1/s] and stiffness [s]")
+    return {"mass": quantity(value["mass"], "1/s"), "stiffness": quantity(value["stiffness"], "s")}
+
+
+def _array(value: Any) -> Array | None:
+    """Return lists of real numbers as an array of floats, None if they are no such thing."""
+    if not isinstance(value, (list, tuple, np.ndarray)):
+        return None
+    try:
+        array = np.array(value)
+    except ValueError:
+        return None
+    flat = value if isinstance(value, np.ndarray) else [entry for row in value for entry in _entries(row)]
+    is_real = array.dtype.kind in "iuf" and not any(isinstance(entry, bool) for entry in flat)
+    return array.astype(float) if is_real else None
+
+
+def _entries(row: Any) -> Any:
+    return row if isinstance(row, list) else [row]
+
+
+def _is_whole(value: Any) -> bool:
+    return isinstance(value, Integral) and not isinstance(value, bool)
+
+
+def _is_label_or_none(value: Any) -> bool:
+    is_label = isinstance(value, list) and len(value) == 2 and all(map(_is_whole, value))
+    return value is None or _is_whole(value) or is_label
+
+
 Ratio = Annotated[float, Quantity("1")]
 Friction = Annotated[float, Quantity("1", least=0.0)]
 Damping = Annotated[float, Quantity("1", least=0.0, below=1.0)]
@@ -142,3 +273,16 @@ Acceleration = Annotated[float, Quantity("m/s2", above=0.0)]
 Count = Annotated[int, Whole(1)]
 CountOrNone = Annotated[int, Whole(0)]
 Point = Annotated[str | float, Place()]
+Position = Annotated[float, Quantity("m")]
+Mass = Annotated[float, Quantity("kg", above=0.0)]
+Stiffness = Annotated[float, Quantity("N/m", above=0.0)]
+Viscosity = Annotated[float, Quantity("N s/m", above=0.0)]
+Speed = Annotated[float, Quantity("m/s", above=0.0)]
+PositiveRatio = Annotated[float, Quantity("1", above=0.0)]
+Bristles = Annotated[float, Quantity("1/m", above=0.0)]
+Slope = Annotated[float, Quantity("s/m", least=0.0)]
+Matrix = Annotated[Any, Numbers((2,), file=True)]
+ReducedDamping = Annotated[Any, Numbers((0, 1, 2), file=True, rayleigh=True)]
+Vector = Annotated[Any, Numbers((1,))]
+PointTable = Annotated[Any, Points()]
+Translation = Annotated[Any, Motion()]

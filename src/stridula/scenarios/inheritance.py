@@ -1,10 +1,10 @@
-"""How scenario tables build on others: a base, and what both bodies share."""
+"""How scenario tables build on others: a base, and what all beams share."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from .outline import SHARED, TAGS
+from .outline import SHARED, TAGS, Path, beams, look_up
 
 
 def merged(below: Any, above: Any) -> Any:
@@ -21,17 +21,39 @@ def merged(below: Any, above: Any) -> Any:
 
 
 def shared_out(tables: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables with what both bodies share put into each of them."""
+    """Return the tables with what all beams share put into each of them, and each friction with its law."""
     shared = {key: tables[key] for key in SHARED if key in tables}
-    bodies = {name: tables[name] for name in ("slider", "track") if isinstance(tables.get(name), dict)}
-    rest = {key: value for key, value in tables.items() if key not in SHARED}
-    return rest | {name: merged(shared, body) for name, body in bodies.items()}
+    full = {key: value for key, value in tables.items() if key not in SHARED}
+    for path in beams(full):
+        _replace(full, path, merged(shared, look_up(full, path)))
+    for path in _frictions(full):
+        friction = look_up(full, path)
+        if isinstance(friction, dict) and "law" not in friction:
+            _replace(full, path, {"law": "coulomb", **friction})
+    return full
 
 
 def spelled_out(tables: dict[str, Any]) -> dict[str, Any]:
     """Return the tables with a bare ``friction = 1.5`` written as a table."""
-    contact = tables.get("contact")
-    if not isinstance(contact, dict) or "friction" not in contact or isinstance(contact["friction"], dict):
-        return tables
-    friction = {"law": "coulomb", "coefficient": contact["friction"]}
-    return tables | {"contact": contact | {"friction": friction}}
+    full = dict(tables)
+    for path in _frictions(full):
+        friction = look_up(full, path)
+        if friction is not None and not isinstance(friction, dict):
+            _replace(full, path, {"law": "coulomb", "coefficient": friction})
+    return full
+
+
+def _frictions(tables: dict[str, Any]) -> list[Path]:
+    """Return where the friction of each contact stands."""
+    contacts = tables.get("contacts")
+    count = len(contacts) if isinstance(contacts, list) else 0
+    places: list[Path] = [("contact",), *(("contacts", number) for number in range(count))]
+    return [(*place, "friction") for place in places if isinstance(look_up(tables, place), dict)]
+
+
+def _replace(tables: Any, path: Path, value: Any) -> None:
+    """Put a value at a path of `tables`, which keeps its identity while all on the way is copied."""
+    for part in path[:-1]:
+        tables[part] = tables[part].copy()
+        tables = tables[part]
+    tables[path[-1]] = value

@@ -49,6 +49,9 @@ def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
     """Return the path that a key means; a table's key means its only number unless `is_table`."""
     asked = tuple(part.strip() for part in str(key).split("."))
     known = dict(outline.paths(tables))
+    if "bodies" in tables and not outline.beams(tables):
+        # What beams share means nothing where there is none.
+        known = {path: node for path, node in known.items() if path[0] not in outline.SHARED}
     full = [path for path in known if _text(path) == asked]
     ending = [path for path in known if _text(path)[-len(asked) :] == asked]
     present = [path for path in ending if outline.look_up(tables, path) is not None]
@@ -89,12 +92,12 @@ def _set(tables: dict[str, Any], path: Path, value: Any) -> None:
 
 
 def _make_shared(tables: dict[str, Any], path: Path) -> None:
-    """Take a value that is set for both bodies out of each of them."""
+    """Take a value that is set for all beams out of each of them."""
     if path[0] not in outline.SHARED:
         return
     own = path[:-1] if path[-1] in outline.TAGS else path
-    for body in ("slider", "track"):
-        table = outline.look_up(tables, (body, *own[:-1]))
+    for beam in outline.beams(tables):
+        table = outline.look_up(tables, (*beam, *own[:-1]))
         if isinstance(table, dict):
             table.pop(own[-1], None)
 

@@ -11,11 +11,11 @@ from typing import Any
 import xarray as xr
 from pydantic import ValidationError
 
-from ..integration import SCHEMES, CentralDifference, ExactModal, simulate
+from ..integration import SCHEMES, CentralDifference, ExactModal, GaussSeidel, simulate
 from ..records import Probe
 from ..system import System
 from .build import Builder
-from .errors import ScenarioError, as_written, explain
+from .errors import ScenarioError, as_written, explain, wrong_form
 from .inheritance import shared_out
 from .keys import overridden
 from .read import read_tables
@@ -42,6 +42,8 @@ class Scenario:
         Samples recorded per second [Hz].
     probes : tuple of probes or None
         What else to record; the acceleration of the track's centre if None.
+    contact_solve : GaussSeidel or None
+        How several contacts are solved together; the default if None.
     """
 
     title: str
@@ -52,6 +54,7 @@ class Scenario:
     step: float | None
     sample_rate: float
     probes: tuple[Probe, ...] | None
+    contact_solve: GaussSeidel | None = None
 
     def simulate(self, **kwargs: Any) -> xr.Dataset:
         """March the system in time and return its record.
@@ -66,7 +69,7 @@ class Scenario:
         ScenarioError
             If the scenario's step, duration or sample rate is out of its range.
         """
-        names = ("duration", "scheme", "step", "sample_rate", "probes", "title")
+        names = ("duration", "scheme", "step", "sample_rate", "probes", "contact_solve", "title")
         own = {name: getattr(self, name) for name in names}
         try:
             return simulate(self.system, **(own | kwargs))
@@ -100,10 +103,13 @@ def load_scenario(name_or_path: str | Path, overrides: Mapping[str, Any] | None 
     """
     written = overridden(read_tables(name_or_path), overrides or {})
     tables = shared_out(written)
+    problems = wrong_form(written)
     try:
         checked = ScenarioTable.model_validate(tables)
     except ValidationError as error:
-        raise explain(error, tables, written) from None
+        raise ScenarioError(problems + explain(error, tables, written)) from None
+    if problems:
+        raise ScenarioError(problems)
     builder = Builder({"drives": []} | checked.model_dump(exclude_unset=True), partial(as_written, written=written))
     system = builder.system()
     simulation = checked.simulation
@@ -116,4 +122,5 @@ def load_scenario(name_or_path: str | Path, overrides: Mapping[str, Any] | None 
         step=simulation.step,
         sample_rate=simulation.sample_rate,
         probes=builder.probes(system),
+        contact_solve=builder.contact_solve(),
     )

@@ -11,12 +11,18 @@ Node = dict[str, Any]
 Path = tuple[str | int, ...]
 SHARED = ("material", "section", "damping", "cutoff")
 TAGS = ("shape", "law", "kind", "quantity")
+BEAMS = ("finite-element beam", "modal beam")
 
 
 def properties(node: Node | None, table: Any = None) -> dict[str, Node]:
-    """Return the keys known in a table: those of its own kind if it says which, else of all kinds."""
-    kinds = [variant.get("properties", {}) for variant in _variants(node)]
-    known: dict[str, Node] = {}
+    """Return the keys known in a table: those of its own kind if it says which, else of all kinds.
+
+    Of a table whose keys are names, such as the bodies, those that are there.
+    """
+    variants = _variants(node)
+    kinds = [variant["properties"] for variant in variants if "properties" in variant]
+    named = [variant["additionalProperties"] for variant in variants if variant.get("additionalProperties")]
+    known: dict[str, Node] = dict.fromkeys(table, named[0]) if named and isinstance(table, dict) else {}
     for kind in [kind for kind in kinds if not _differs(kind, table)] or kinds:
         for name, child in kind.items():
             known[name] = _joined(known[name], child) if name in known else child
@@ -37,6 +43,14 @@ def words(node: Node | None) -> list[str]:
     """Return the words that a key allows, none if it is not a choice."""
     chosen = [variant.get("enum", [variant["const"]] if "const" in variant else []) for variant in _variants(node)]
     return list(dict.fromkeys(word for group in chosen for word in group))
+
+
+def beams(tables: Any) -> list[Path]:
+    """Return the paths of the beams, which take what stands at the top."""
+    bodies = look_up(tables, ("bodies",))
+    named = bodies if isinstance(bodies, dict) else {}
+    kinds = [("bodies", name) for name, body in named.items() if look_up(body, ("kind",)) in BEAMS]
+    return [path for path in (("slider",), ("track",), *kinds) if isinstance(look_up(tables, path), dict)]
 
 
 def node_at(path: Path, tables: Any) -> Node | None:

@@ -23,6 +23,12 @@ UNITS: dict[str, dict[str, str]] = {
     "N": {"N": "1", "mN": "1e-3", "kN": "1e3"},
     "Pa": {"Pa": "1", "MPa": "1e6", "GPa": "1e9"},
     "kg/m3": {"kg/m3": "1", "g/cm3": "1e3"},
+    "kg": {"kg": "1", "g": "1e-3", "t": "1e3"},
+    "N/m": {"N/m": "1", "N/mm": "1e3", "kN/m": "1e3"},
+    "N s/m": {"N s/m": "1", "N s/mm": "1e3", "kN s/m": "1e3"},
+    "1/m": {"1/m": "1", "1/mm": "1e3"},
+    "1/s": {"1/s": "1", "1/ms": "1e3"},
+    "s/m": {"s/m": "1", "s/mm": "1e3"},
 }
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?|[+-]?inf|nan)\s*(.*?)\s*")
 
@@ -55,6 +61,15 @@ def quantity(value: Any, unit: str) -> float:
     if factor is None:
         raise ValueError(f"must be a number{_units(unit)}")
     return math.radians(float(number)) if factor == DEGREES else float(Decimal(number) * Decimal(factor))
+
+
+def is_quantity(value: Any, unit: str) -> bool:
+    """Return whether a value is a number in some unit of the dimension of `unit`."""
+    try:
+        quantity(value, unit)
+    except ValueError:
+        return False
+    return True
 
 
 def _finite(number: Real | float) -> float:

@@ -9,10 +9,13 @@ from typing import Any
 
 from ..checks import suggestion
 from ..records.files import MAGIC, read, scenario_of
+from ..records.packed import is_packed
 from .errors import ScenarioError
 from .inheritance import merged, spelled_out
+from .quantities import is_quantity
 
 SHIPPED = files(__package__)
+FILES = ("file", "mass", "stiffness", "damping")
 
 
 def shipped(folder: str) -> dict[str, str]:
@@ -64,7 +67,24 @@ def _file_tables(path: Path) -> dict[str, Any]:
         raise ScenarioError(
             [f"scenario must not be empty, got {str(path)!r}: `stridula show squeal` prints one to edit"]
         )
-    return tables
+    return _with_files(tables, path.parent)
+
+
+def _with_files(tables: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the tables with the files of reduced bodies found from the folder of the file that names them."""
+    bodies = tables.get("bodies")
+    if not isinstance(bodies, dict):
+        return tables
+    return tables | {"bodies": {name: _with_own_files(body, folder) for name, body in bodies.items()}}
+
+
+def _with_own_files(body: Any, folder: Path) -> Any:
+    if not isinstance(body, dict) or body.get("kind", "reduced") != "reduced":
+        return body
+    texts = {key: body[key] for key in FILES if isinstance(body.get(key), str)}
+    # A damping of "1 %" is no file.
+    named = {key: text for key, text in texts.items() if not is_packed(text) and not is_quantity(text, "1")}
+    return body | {key: str(folder / text) for key, text in named.items()}
 
 
 def _parsed(text: str, name: str) -> dict[str, Any]:

@@ -6,38 +6,21 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from ..contact import PointContact
+from ..integration import GaussSeidel
 from . import fields as is_
-from .fields import BodyName, Table
-from .schema_bodies import Material, Section, Slider, Track
+from .fields import Table
+from .schema_bodies import Body, Material, Section, Slider, Track
+from .schema_contacts import Connection, Contact, PairContact
 from .schema_drives import Drive
-
-
-class Coulomb(Table):
-    law: Literal["coulomb"] = "coulomb"
-    """law of friction"""
-    coefficient: is_.Friction
-    """coefficient of friction mu, the same in sticking and in sliding"""
-
-
-class Contact(Table):
-    at: is_.Length
-    """abscissa of the tip on the track at the start [m]"""
-    friction: Coulomb
-    """friction between tip and track"""
-    gap: is_.Distance = PointContact.gap
-    """distance between tip and track at the start [m]"""
-    point: is_.Point = "tip"
-    """point of the slider that touches: tip, root or a position from the tip [m]"""
 
 
 class Motion(Table):
     quantity: Literal["displacement", "velocity", "acceleration"]
     """displacement, velocity, acceleration or reaction"""
-    body: BodyName = "track"
-    """body: slider or track"""
-    point: is_.Point = "centre"
-    """where: tip, root, centre or a position [m]"""
+    body: str | None = None
+    """body: slider, track or its name; the track if left out, the slider on a rigid track"""
+    point: is_.Point | None = None
+    """where: tip, root, centre, the name of a point or a position [m]; centre or tip if left out"""
     direction: Literal["x", "y", "axial", "transverse"] = "y"
     """x, y, axial or transverse"""
 
@@ -52,6 +35,13 @@ class Reaction(Table):
 Probe = Annotated[Motion | Reaction, Field(discriminator="quantity")]
 
 
+class ContactSolve(Table):
+    tolerance: is_.PositiveRatio = GaussSeidel.tolerance
+    """largest change of a force in the last sweep, relative to the largest force"""
+    sweeps: is_.Count = GaussSeidel.sweeps
+    """largest number of sweeps a step"""
+
+
 class Simulation(Table):
     duration: is_.Time
     """time to simulate [s]"""
@@ -63,10 +53,15 @@ class Simulation(Table):
     """samples recorded per second [Hz]"""
     probes: list[Probe] | None = None
     """what else to record, the acceleration of the track's centre if left out"""
+    contact_solve: ContactSolve | None = None
+    """how several contacts are solved together"""
 
 
 class ScenarioTable(Table):
-    """A scenario of stridula: two beams in friction contact, what drives them, and how long to simulate."""
+    """A scenario of stridula: bodies in friction contact, what drives them, and how long to simulate.
+
+    Two beams are a slider, a track and a contact; anything else is bodies, contacts and connections.
+    """
 
     title: str = ""
     """one line that says what it is"""
@@ -77,19 +72,25 @@ class ScenarioTable(Table):
     base: str | None = None
     """scenario file, or shipped base, that this one changes"""
     material: Material | None = None
-    """material of both bodies, unless a body has its own"""
+    """material of all beams, unless a body has its own"""
     section: Section | None = None
-    """cross-section of both bodies, unless a body has its own"""
+    """cross-section of all beams, unless a body has its own"""
     damping: is_.Damping | None = None
-    """damping ratio of both bodies, unless a body has its own"""
+    """damping ratio of all beams, unless a body has its own"""
     cutoff: is_.Frequency | None = None
-    """highest frequency of the modes of both bodies, unless a body has its own [Hz]"""
-    slider: Slider
+    """highest frequency of the modes of all beams, unless a body has its own [Hz]"""
+    slider: Slider | None = None
     """the beam whose tip touches"""
-    track: Track
+    track: Track | None = None
     """the beam it slides on"""
-    contact: Contact
+    contact: PairContact | None = None
     """where they touch"""
+    bodies: dict[str, Body] | None = None
+    """what vibrates, by name, in place of slider and track"""
+    contacts: list[Contact] | None = None
+    """where bodies touch, in place of contact"""
+    connections: list[Connection] | None = None
+    """springs and dashpots between bodies"""
     drives: list[Drive] = Field(default_factory=list)
     """what pushes"""
     simulation: Simulation
@@ -97,3 +98,5 @@ class ScenarioTable(Table):
 
 
 SCHEMA: dict[str, Any] = ScenarioTable.model_json_schema()
+PAIR = ("slider", "track", "contact")
+GENERAL = ("bodies", "contacts")

@@ -69,6 +69,8 @@ class Slider(Table):
     """mass matrix of the elements: consistent or lumped"""
     cutoff: is_.Frequency | None = None
     """keep the modes up to this frequency, all if left out [Hz]"""
+    name: str = ""
+    """what it is called in records"""
 
 
 class Track(Table):
@@ -86,3 +88,48 @@ class Track(Table):
     """damping ratio of every mode"""
     cutoff: is_.Frequency | None = None
     """keep the modes up to this frequency [Hz]"""
+    name: str = ""
+    """what it is called in records"""
+
+
+class FiniteElementBody(Slider):
+    kind: Literal["finite-element beam"]
+    """finite-element beam, modal beam, point mass or reduced"""
+
+
+class ModalBody(Track):
+    kind: Literal["modal beam"]
+    """finite-element beam, modal beam, point mass or reduced"""
+
+
+class PointMass(Table):
+    kind: Literal["point mass"]
+    """finite-element beam, modal beam, point mass or reduced"""
+    mass: is_.Mass
+    """mass [kg]"""
+    name: str = ""
+    """what it is called in records, the table's own name if left out"""
+
+
+class Reduced(Table):
+    kind: Literal["reduced"]
+    """finite-element beam, modal beam, point mass or reduced"""
+    file: str | None = None
+    """.npz or .mat file with matrices and points, beside the scenario"""
+    mass: is_.Matrix | None = None
+    """mass matrix: rows, or its file [SI]"""
+    stiffness: is_.Matrix | None = None
+    """stiffness matrix: rows, or its file [SI]"""
+    points: is_.PointTable | None = None
+    """points by name: rows, or the degrees of freedom along x and y"""
+    damping: is_.ReducedDamping | None = None
+    """damping: a ratio, one for each mode, shares of mass and stiffness, a matrix, or its file"""
+    translation: is_.Translation | None = None
+    """rows that say how a translation along x and y moves it; gravity and initial velocities need it"""
+    cutoff: is_.Frequency | None = None
+    """keep the modes up to this frequency, all if left out [Hz]"""
+    name: str = ""
+    """what it is called in records, the table's own name if left out"""
+
+
+Body = Annotated[FiniteElementBody | ModalBody | PointMass | Reduced, Field(discriminator="kind")]

@@ -9,7 +9,7 @@ from pydantic import Field
 from ..drives import Gravity
 from ..histories import Harmonic as HarmonicHistory
 from . import fields as is_
-from .fields import BodyName, Table
+from .fields import Table
 
 
 class Constant(Table):
@@ -51,26 +51,28 @@ History = Annotated[Constant | Ramp | Harmonic | Sampled, Field(discriminator="k
 
 class Force(Table):
     kind: Literal["force"]
-    """force, imposed velocity, gravity or initial velocity"""
-    body: BodyName = "slider"
-    """body it acts on: slider or track"""
-    point: is_.Point = "root"
-    """where it acts: tip, root, centre or a position [m]"""
+    """force, imposed velocity, gravity, initial velocity or initial state"""
+    body: str = "slider"
+    """body it acts on: slider, track or its name"""
+    point: is_.Point | None = None
+    """where it acts: tip, root, centre, the name of a point or a position [m]; root or centre if left out"""
     axial: is_.Newtons = 0.0
     """component along the body's axis, tip to root: a push towards the track is negative [N]"""
     transverse: is_.Newtons = 0.0
     """component along (cos angle, -sin angle) [N]"""
     x: is_.Newtons = 0.0
-    """component along the track [N]"""
+    """component along world x [N]"""
     y: is_.Newtons = 0.0
-    """component along the track's normal, towards the slider [N]"""
+    """component along world y, from the track towards the slider [N]"""
     history: History | None = None
     """factor over time, constant if left out"""
 
 
 class ImposedVelocity(Table):
     kind: Literal["imposed velocity"]
-    """force, imposed velocity, gravity or initial velocity"""
+    """force, imposed velocity, gravity, initial velocity or initial state"""
+    body: str = "slider"
+    """beam whose root moves: slider or its name"""
     velocity: is_.Velocity
     """velocity of the slider's root along the track [m/s]"""
     normal_load: is_.Newtons = 0.0
@@ -81,20 +83,31 @@ class ImposedVelocity(Table):
 
 class Weight(Table):
     kind: Literal["gravity"]
-    """force, imposed velocity, gravity or initial velocity"""
+    """force, imposed velocity, gravity, initial velocity or initial state"""
     acceleration: is_.Acceleration = Gravity.acceleration
     """acceleration of free fall [m/s²]"""
 
 
 class InitialVelocity(Table):
     kind: Literal["initial velocity"]
-    """force, imposed velocity, gravity or initial velocity"""
-    body: BodyName = "slider"
-    """body that moves at the start: slider or track"""
+    """force, imposed velocity, gravity, initial velocity or initial state"""
+    body: str = "slider"
+    """body that moves at the start: slider, track or its name"""
     x: is_.Velocity = 0.0
-    """velocity along the track [m/s]"""
+    """velocity along world x [m/s]"""
     y: is_.Velocity = 0.0
-    """velocity along the track's normal [m/s]"""
+    """velocity along world y [m/s]"""
 
 
-Drive = Annotated[Force | ImposedVelocity | Weight | InitialVelocity, Field(discriminator="kind")]
+class InitialState(Table):
+    kind: Literal["initial state"]
+    """force, imposed velocity, gravity, initial velocity or initial state"""
+    body: str = "slider"
+    """point mass or reduced body that starts so: slider, track or its name"""
+    displacement: is_.Vector | None = None
+    """displacement of every degree of freedom at the start, zero if left out [m]"""
+    velocity: is_.Vector | None = None
+    """velocity of every degree of freedom at the start, zero if left out [m/s]"""
+
+
+Drive = Annotated[Force | ImposedVelocity | Weight | InitialVelocity | InitialState, Field(discriminator="kind")]

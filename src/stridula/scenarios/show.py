@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import copy
+import re
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any
 
 import tomli_w
 
-from .outline import Path, node_at, properties
+from ..records.provenance import toml
+from .outline import TAGS, Path, node_at, properties
 from .read import read_tables, shipped
 from .schema import SCHEMA
 
 COMMENT_COLUMN = 32
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 @dataclass(frozen=True)
@@ -52,7 +55,8 @@ def scenario_schema() -> dict[str, Any]:
 
 def _lines(table: dict[str, Any], path: Path, tables: dict[str, Any]) -> list[str]:
     """Return the lines of a table: its values first, then the tables and lists of tables in it."""
-    order = list(properties(node_at(path, tables), table))
+    known = list(properties(node_at(path, tables), table))
+    order = [tag for tag in TAGS if tag in known] + [key for key in known if key not in TAGS]
     ordered = sorted(table.items(), key=lambda item: order.index(item[0]) if item[0] in order else len(order))
     lines = []
     for key, value in ordered:
@@ -60,7 +64,10 @@ def _lines(table: dict[str, Any], path: Path, tables: dict[str, Any]) -> list[st
             lines += _value_lines(key, value, (*path, key), tables)
     for key, value in ordered:
         if isinstance(value, dict):
-            lines += ["", f"[{_header((*path, key))}]", *_lines(value, (*path, key), tables)]
+            # A table that only holds tables needs no header of its own.
+            only_tables = bool(value) and all(isinstance(entry, dict) for entry in value.values())
+            header = [] if only_tables else ["", f"[{_header((*path, key))}]"]
+            lines += [*header, *_lines(value, (*path, key), tables)]
         elif _has_header(value):
             for number, entry in enumerate(value):
                 lines += ["", f"[[{_header((*path, key))}]]", *_lines(entry, (*path, key, number), tables)]
@@ -68,7 +75,9 @@ def _lines(table: dict[str, Any], path: Path, tables: dict[str, Any]) -> list[st
 
 
 def _value_lines(key: str, value: Any, path: Path, tables: dict[str, Any]) -> list[str]:
-    lines = tomli_w.dumps({key: value}, multiline_strings="\n" in str(value)).rstrip("\n").split("\n")
+    is_text = isinstance(value, str) and "\n" in value
+    text = tomli_w.dumps({key: value}, multiline_strings=True) if is_text else toml({key: value})
+    lines = text.rstrip("\n").split("\n")
     comment = (node_at(path, tables) or {}).get("description")
     if comment and len(path) > 1 and len(lines) == 1:
         lines = [f"{lines[0]:<{COMMENT_COLUMN}}  # {comment}"]
@@ -82,7 +91,11 @@ def _has_header(value: Any) -> bool:
 
 
 def _header(path: Path) -> str:
-    return ".".join(part for part in path if isinstance(part, str))
+    return ".".join(part if _BARE.fullmatch(part) else _quoted(part) for part in path if isinstance(part, str))
+
+
+def _quoted(key: str) -> str:
+    return tomli_w.dumps({key: 0}).rpartition(" = ")[0]
 
 
 def _relaxed(node: Any) -> Any:

@@ -102,7 +102,7 @@ def _settled(run: xr.Dataset) -> xr.Dataset:
 def friction_cone(runs: Runs) -> float:
     """Return the largest ``| |tangential| / (friction normal) - 1 |`` [1] once 3.1 slides for good."""
     run = _settled(runs.record("stable-sliding"))
-    friction = runs.scenario("stable-sliding").system.contact.friction.coefficient
+    friction = runs.scenario("stable-sliding").system.contacts[0].friction.coefficient_at(1.0)
     return float(np.abs(np.abs(run.tangential_force) / (friction * run.normal_force) - 1.0).max())
 
 

@@ -1,0 +1,75 @@
+"""What files of matrices hold, as the arguments of a `ReducedBody`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from numbers import Integral
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+
+from .matrix_files import AlignedMatrices, check_size
+from .matrix_input import Rayleigh, check_mass, is_pair, point_rows, rows_of, square, symmetric
+from .modes import Array
+
+
+def from_container(held: dict[str, Any]) -> dict[str, Any]:
+    """Return the arguments of a body from what a file holds, where every number and text is an array, too."""
+    arguments = {word: value for word, value in held.items() if word != "rayleigh"}
+    if "rayleigh" in held:
+        mass, stiffness = held["rayleigh"].tolist()
+        arguments["damping"] = Rayleigh(mass, stiffness)
+    for word in ("cutoff", "name"):
+        if word in held:
+            arguments[word] = held[word].item()
+    return arguments
+
+
+def from_matrices(files: AlignedMatrices, points: Mapping[str, Any], translation: Any) -> dict[str, Any]:
+    """Return the arguments of a body from files of matrices, without the degrees of freedom held in them."""
+    free, size = files.free, files.free.size
+    check_size("stiffness", int(free.sum()))
+    arguments: dict[str, Any] = {name: matrix[free][:, free] for name, matrix in files.matrices.items()}
+    arguments["points"] = {
+        name: point_rows(f"points[{name!r}]", _by_number(f"points[{name!r}]", value, files.labels), size)[:, free]
+        for name, value in points.items()
+    }
+    if translation is not None:
+        motion = _translation(translation, files.labels, size)
+        mass = symmetric("mass", square("mass", arguments["mass"]))
+        check_mass(mass)
+        held = scipy.linalg.solve(mass, files.matrices["mass"][free][:, ~free] @ motion[:, ~free].T, assume_a="pos")
+        arguments["translation"] = motion[:, free] + held.T
+    return arguments
+
+
+def _by_number(word: str, value: Any, labels: Array | None) -> Any:
+    """Return a point given by labels as numbers of degrees of freedom, any other as it is."""
+    if labels is None or isinstance(value, np.ndarray):
+        return value
+    if not is_pair(value, (tuple, list)) or not all(entry is None or is_pair(entry, Integral) for entry in value):
+        raise ValueError(f"{word} must be a pair of labels (node, degree of freedom), got {value!r}")
+    return tuple(None if label is None else _number(word, label, labels) for label in value)
+
+
+def _number(word: str, label: tuple[int, int], labels: Array) -> int:
+    of_node = np.flatnonzero(labels[:, 0] == label[0])
+    found = of_node[labels[of_node, 1] == label[1]]
+    if found.size == 0:
+        there = ", ".join(str(dof) for dof in labels[of_node, 1])
+        known = f"node {label[0]} has {there}" if there else f"no node {label[0]}"
+        raise ValueError(f"{word} must name degrees of freedom in the files ({known}), got {label!r}")
+    return int(found[0])
+
+
+def _translation(value: Any, labels: Array | None, size: int) -> Array:
+    """Return rows of shape (2, size), with labels also from the numbers of the degrees of freedom along x and y."""
+    if labels is None or not is_pair(value, Integral):
+        return rows_of("translation", value, size)
+    motion = np.stack([(labels[:, 0] > 0) & (labels[:, 1] == dof) for dof in value]).astype(float)
+    for dof, row in zip(value, motion, strict=True):
+        if dof is not None and not row.any():
+            known = ", ".join(str(number) for number in np.unique(labels[labels[:, 0] > 0, 1]))
+            raise ValueError(f"translation must name degrees of freedom of the nodes ({known}), got {dof!r}")
+    return motion

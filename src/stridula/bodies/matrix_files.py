@@ -1,0 +1,323 @@
+"""Files of matrices: NumPy, MATLAB, Matrix Market and the text output of Abaqus."""
+
+from __future__ import annotations
+
+import io
+import os
+import zipfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.io
+import scipy.sparse
+
+from .modes import Array
+
+LARGEST_FILE = 2 * 1024**3
+LARGEST_SIZE = 4000
+
+# Abaqus marks a constrained degree of freedom by 1e36 on the diagonal of the stiffness; no body is as stiff as this.
+PENALTY = 1e30
+
+MATRICES = ("mass", "stiffness", "damping")
+OTHERS = ("translation", "rayleigh", "cutoff", "name")
+SYNONYMS = {"M": "mass", "K": "stiffness", "C": "damping"}
+POINT = "point_"
+
+# A label (node, degree of freedom) as one integer that sorts as the pair does.
+LABEL_BASE = 2**20
+LARGEST_NUMBER = 2**40
+
+
+@dataclass(frozen=True)
+class AlignedMatrices:
+    """Matrices of several files on the same degrees of freedom.
+
+    Attributes
+    ----------
+    matrices : dict
+        Sparse matrices by name, shape (n, n) each.
+    labels : ndarray, shape (n, 2), or None
+        Node and degree of freedom of every row, rising; None if the files number their rows.
+    free : ndarray, shape (n,)
+        False where Abaqus marks the row as constrained.
+    """
+
+    matrices: dict[str, Any]
+    labels: Array | None
+    free: Array
+
+
+def check_size(name: str, size: int) -> None:
+    """Raise ValueError if a matrix of `size` rows is too large to be made dense."""
+    if size > LARGEST_SIZE:
+        raise ValueError(
+            f"{name} must have at most {LARGEST_SIZE} degrees of freedom, got {size}: reduce the model first"
+        )
+
+
+def read_container(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Return what an .npz or .mat file holds, by the words of `ReducedBody`; points lie in a dictionary.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    ValueError
+        If it is damaged, too large, of another kind, or lacks the mass or the stiffness.
+    """
+    kind = _kind(path)
+    if kind not in ("npz", "mat"):
+        raise ValueError(
+            f"path must be an .npz or .mat file, got {os.fspath(path)!r}; "
+            "files of one matrix each are given as mass and stiffness"
+        )
+    with _whole(path):
+        arrays = _npz(path) if kind == "npz" else _mat(path)
+    contents = {name: arrays[name] for name in (*MATRICES, *OTHERS) if name in arrays}
+    contents["points"] = {name[len(POINT) :]: rows for name, rows in arrays.items() if name.startswith(POINT)}
+    return contents
+
+
+def read_matrices(paths: Mapping[str, str | os.PathLike[str]]) -> AlignedMatrices:
+    """Read files of one matrix each and bring them to the same degrees of freedom.
+
+    Parameters
+    ----------
+    paths : mapping
+        Path by the name of the matrix; each is Matrix Market or Abaqus text.
+
+    Raises
+    ------
+    OSError
+        If a file cannot be read.
+    ValueError
+        If a file is damaged, too large, of another kind, or if only some have labels.
+    """
+    files = {name: _one_matrix(name, path) for name, path in paths.items()}
+    labelled = {file.labelled for file in files.values()}
+    if len(labelled) > 1:
+        raise ValueError(
+            "mass, stiffness and damping must all be with labels (Abaqus FORMAT=MATRIX INPUT) or all without, "
+            f"got {', '.join(f'{name} with' + ('' if f.labelled else 'out') for name, f in files.items())}"
+        )
+    every = np.concatenate([np.append(file.rows, file.columns) for file in files.values()])
+    if labelled == {True}:
+        keys = np.unique(every)
+        labels = np.stack(np.divmod(keys, LABEL_BASE), axis=1)
+        matrices = {name: file.on(keys, keys.size) for name, file in files.items()}
+    else:
+        labels = None
+        size = max(int(every.max(initial=-1)) + 1, *(file.size or 0 for file in files.values()))
+        matrices = {name: file.on(None, file.size or size) for name, file in files.items()}
+    for name, matrix in matrices.items():
+        if matrix.shape != matrices["stiffness"].shape:
+            wanted, got = matrices["stiffness"].shape[0], matrix.shape[0]
+            raise ValueError(f"{name} must have as many degrees of freedom as stiffness, {wanted}, got {got}")
+    free = np.ones(matrices["stiffness"].shape[0], dtype=bool)
+    if files["stiffness"].size is None:
+        diagonal = matrices["stiffness"].diagonal()
+        free = ~(np.isfinite(diagonal) & (diagonal >= PENALTY))
+    return AlignedMatrices(matrices, labels, free)
+
+
+def write_npz(path: str | os.PathLike[str], arrays: Mapping[str, Any]) -> None:
+    """Write arrays to an .npz file, whole or not at all."""
+    content = io.BytesIO()
+    plain: dict[str, Any] = dict(arrays)
+    np.savez(content, **plain)
+    target = Path(path).resolve()
+    beside = target.parent / f".stridula-{os.getpid()}-{target.name}.part"
+    with _one_line(f"cannot write {os.fspath(path)!r}"):
+        try:
+            beside.write_bytes(content.getbuffer())
+            os.replace(beside, target)
+        finally:
+            with suppress(OSError):
+                beside.unlink()
+
+
+@dataclass(frozen=True)
+class _Entries:
+    """Entries of one symmetric matrix, both triangles; size is None where the file does not say it."""
+
+    rows: Array
+    columns: Array
+    values: Array
+    size: int | None
+    labelled: bool
+
+    def on(self, keys: Array | None, size: int) -> Any:
+        rows, columns = (self.rows, self.columns) if keys is None else np.searchsorted(keys, (self.rows, self.columns))
+        return scipy.sparse.coo_array((self.values, (rows, columns)), shape=(size, size)).tocsr()
+
+
+def _kind(path: str | os.PathLike[str]) -> str:
+    """Return the kind of a file from its first bytes, after a check of its size."""
+    with _one_line(f"cannot read {os.fspath(path)!r}"):
+        size = os.stat(path).st_size
+        with open(path, "rb") as file:
+            head = file.read(1024)
+    if size > LARGEST_FILE:
+        raise ValueError(f"cannot read {os.fspath(path)!r}: {size / 1024**3:.1f} GiB, at most 2 GiB are read")
+    if not head:
+        raise ValueError(f"cannot read {os.fspath(path)!r}: the file is empty")
+    if head.startswith(b"PK"):
+        return "npz"
+    if head.startswith(b"MATLAB 7.3") or head.startswith(b"\x89HDF"):
+        raise ValueError(f"cannot read {os.fspath(path)!r}: a MATLAB file of version 7.3, save it with '-v7'")
+    if head.startswith(b"MATLAB 5.0") or Path(path).suffix.lower() == ".mat":
+        return "mat"
+    return "matrix market" if head.startswith(b"%%MatrixMarket") else "abaqus"
+
+
+def _npz(path: str | os.PathLike[str]) -> dict[str, Any]:
+    with zipfile.ZipFile(path) as archive:
+        unpacked = sum(entry.file_size for entry in archive.infolist())
+    if unpacked > LARGEST_FILE:
+        raise ValueError(f"{unpacked / 1024**3:.1f} GiB when unpacked, at most 2 GiB are read")
+    with np.load(path, allow_pickle=False) as file:
+        arrays = {name: file[name] for name in file.files if name in (*MATRICES, *OTHERS) or name.startswith(POINT)}
+    _check_held(arrays)
+    return arrays
+
+
+def _check_held(arrays: Mapping[str, Any]) -> None:
+    for name in MATRICES[:2]:
+        if name not in arrays:
+            raise ValueError(f"it must hold {name}, it holds {', '.join(sorted(arrays)) or 'nothing known'}")
+
+
+def _mat(path: str | os.PathLike[str]) -> dict[str, Any]:
+    shapes = {name: shape for name, shape, _ in scipy.io.whosmat(os.fspath(path), appendmat=False)}
+    wanted = [name for name in shapes if name in (*SYNONYMS, *MATRICES, "translation") or name.startswith(POINT)]
+    for name in wanted:
+        check_size(name, max(shapes[name], default=0))
+    held = scipy.io.loadmat(os.fspath(path), appendmat=False, variable_names=wanted)
+    arrays = {SYNONYMS[name]: held[name] for name in wanted if name in SYNONYMS}
+    arrays |= {name: held[name] for name in wanted if name not in SYNONYMS}
+    _check_held(arrays)
+    damping = arrays.get("damping")
+    if isinstance(damping, np.ndarray) and 1 in damping.shape and damping.shape != arrays["mass"].shape:
+        # MATLAB keeps numbers and lists as matrices: one number is a ratio, a row or a column a list of them.
+        arrays["damping"] = damping.ravel() if damping.size > 1 else damping.ravel()[0]
+    return arrays
+
+
+def _one_matrix(name: str, path: str | os.PathLike[str]) -> _Entries:
+    kind = _kind(path)
+    if kind in ("npz", "mat"):
+        raise ValueError(
+            f"{name} must be a Matrix Market file or Abaqus text, got {os.fspath(path)!r}; "
+            "a file with all matrices is given as path"
+        )
+    with _whole(path):
+        return _matrix_market(name, path) if kind == "matrix market" else _abaqus(path)
+
+
+def _matrix_market(name: str, path: str | os.PathLike[str]) -> _Entries:
+    rows, columns, entries, _, field, _ = scipy.io.mminfo(os.fspath(path))
+    if rows != columns:
+        raise ValueError(f"{name} must be square, got {rows} x {columns}")
+    check_size(name, rows)
+    if field not in ("real", "integer", "unsigned-integer") or entries > rows * columns:
+        raise ValueError(f"the header must announce at most {rows * columns} real entries, it says {entries} {field}")
+    matrix = scipy.sparse.coo_array(scipy.io.mmread(os.fspath(path)))
+    at = np.asarray(matrix.row, dtype=np.int64), np.asarray(matrix.col, dtype=np.int64)
+    return _Entries(*at, matrix.data.astype(float), rows, False)
+
+
+def _abaqus(path: str | os.PathLike[str]) -> _Entries:
+    table = _numbers(path)
+    labelled = table.shape[1] == 5
+    integers = table[:, :-1].astype(np.int64)
+    if labelled:
+        if not np.isin(integers[:, [1, 3]] // LABEL_BASE, 0).all():
+            raise ValueError(f"degrees of freedom of a node must be numbered from 0 to {LABEL_BASE - 1}")
+        rows, columns = (integers[:, k] * LABEL_BASE + integers[:, k + 1] for k in (0, 2))
+    else:
+        rows, columns = integers.T - 1
+        if integers.min() < 1:
+            raise ValueError(f"rows and columns must be numbered from 1, got {integers.min()}")
+    return _Entries(*_both_triangles(rows, columns, table[:, -1], labelled), None, labelled)
+
+
+def _numbers(path: str | os.PathLike[str]) -> Array:
+    """Return the table of a text file, five columns with labels, three without; lines with ``*`` are left out."""
+    with open(path, encoding="latin-1") as file:
+        first = next((line for line in file if line.strip() and not line.lstrip().startswith("*")), "")
+    if not first:
+        raise ValueError("it holds no number")
+    comma = "," if "," in first else None
+    width = 5 if len(first.split(comma)) == 5 else 3
+    try:
+        with open(path, encoding="latin-1") as file:
+            table = np.loadtxt(file, delimiter=comma, comments="*", ndmin=2)
+    except ValueError as error:
+        raise ValueError(_bad_line(path, comma, width) or str(error)) from error
+    numbers = table[:, :-1]
+    if table.shape[1] != width or not ((numbers == np.round(numbers)) & (np.abs(numbers) < LARGEST_NUMBER)).all():
+        raise ValueError(_bad_line(path, comma, width) or "it is no matrix")
+    return table
+
+
+def _bad_line(path: str | os.PathLike[str], comma: str | None, width: int) -> str:
+    """Return what is wrong with the first line that is no entry of a matrix, nothing if all are."""
+    with open(path, encoding="latin-1") as file:
+        for number, line in enumerate(file, 1):
+            text = line.partition("*")[0].strip()
+            if text and not _is_entry(text.split(comma), width):
+                wanted = "'node, dof, node, dof, value'" if width == 5 else "'row column value'"
+                return f"line {number} must be {wanted}, got {text[:60]!r}"
+    return ""
+
+
+def _is_entry(words: list[str], width: int) -> bool:
+    try:
+        values = [float(word) for word in words]
+    except ValueError:
+        return False
+    return len(words) == width and all(v.is_integer() and abs(v) < LARGEST_NUMBER for v in values[:-1])
+
+
+def _both_triangles(rows: Array, columns: Array, values: Array, labelled: bool) -> tuple[Array, Array, Array]:
+    """Return the entries of a symmetric matrix given by one triangle or in full, in full."""
+    keys, number = np.unique(np.append(rows, columns), return_inverse=True)
+    i, j = np.split(number.astype(np.int64), 2)
+    place, mirrored = i * keys.size + j, j * keys.size + i
+    order = np.argsort(place, kind="stable")
+    twice = np.flatnonzero(np.diff(place[order]) == 0)
+    if twice.size:
+        key = rows[order[twice[0]]], columns[order[twice[0]]]
+        where = [divmod(int(k), LABEL_BASE) if labelled else int(k) + 1 for k in key]
+        raise ValueError(f"each entry must stand once (assembled matrices), got two at {where[0]}, {where[1]}")
+    beside = i != j
+    if np.isin(mirrored[beside], place).any():
+        return rows, columns, values
+    both = np.append(rows, columns[beside]), np.append(columns, rows[beside])
+    return *both, np.append(values, values[beside])
+
+
+@contextmanager
+def _one_line(doing: str) -> Iterator[None]:
+    """Turn an OSError into one of the same kind that says in one line what failed and why."""
+    try:
+        yield
+    except OSError as error:
+        clear = type(error)(f"{doing}: {(error.strerror or str(error)).lower()}")
+        clear.errno = error.errno
+        raise clear from error
+
+
+@contextmanager
+def _whole(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Turn whatever a reader raises on a damaged file into one line with its path; readers raise almost anything."""
+    try:
+        yield
+    except Exception as error:
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise ValueError(f"cannot read {os.fspath(path)!r}: {reason}") from error

@@ -1,0 +1,200 @@
+"""Matrices, rows, points and damping as users give them: each is checked, and becomes an array of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from numbers import Integral, Real
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse
+
+from ..checks import instance, non_negative, within
+from .matrix_files import check_size
+from .modes import Array
+
+SYMMETRY = 1e-8
+
+# Rounding errors of the eigenvalues stay below 10 eps of the largest: see tests/unit/test_reduced_body.py.
+ROUND_OFF = 64.0 * float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True)
+class Rayleigh:
+    """Damping ``C = alpha M + beta K``: the ratio of a mode is ``alpha / (2 w) + beta w / 2``.
+
+    Parameters
+    ----------
+    mass : float
+        Share alpha of the mass matrix [1/s].
+    stiffness : float
+        Share beta of the stiffness matrix [s].
+
+    Raises
+    ------
+    ValueError
+        If a share is negative or not finite.
+    """
+
+    mass: float
+    stiffness: float
+
+    def __post_init__(self) -> None:
+        non_negative("mass", self.mass)
+        non_negative("stiffness", self.stiffness)
+
+
+def smallest_eigenvalue(matrix: Array) -> float:
+    """Return the smallest eigenvalue of a symmetric matrix."""
+    return float(scipy.linalg.eigvalsh(matrix, subset_by_index=[0, 0])[0])
+
+
+def check_mass(mass: Array) -> None:
+    """Raise ValueError if a mass matrix, scaled to a unit diagonal, is not positive definite beyond rounding."""
+    diagonal = np.diag(mass)
+    if diagonal.min() > 0.0:
+        scale = 1.0 / np.sqrt(diagonal)
+        try:
+            pivots = np.diag(np.linalg.cholesky(mass * np.outer(scale, scale))) ** 2
+        except np.linalg.LinAlgError:
+            pivots = np.zeros(1)
+        if pivots.min() > ROUND_OFF:
+            return
+    raise ValueError(
+        f"mass must be positive definite, got the smallest eigenvalue {smallest_eigenvalue(mass):.6g}; "
+        "condense degrees of freedom without mass"
+    )
+
+
+def check_damping(matrix: Array) -> None:
+    """Raise ValueError if a damping matrix is not positive semidefinite beyond rounding."""
+    largest = np.where(np.diag(matrix) > 0.0, np.diag(matrix), 1.0)
+    scale = 1.0 / np.sqrt(largest)
+    values = scipy.linalg.eigvalsh(matrix * np.outer(scale, scale))
+    if values[0] < -ROUND_OFF * np.abs(values).max():
+        raise ValueError(
+            f"damping must be positive semidefinite, got the smallest eigenvalue {smallest_eigenvalue(matrix):.6g}"
+        )
+
+
+def numbers(name: str, value: Any) -> Array:
+    """Return `value` as an array of floats of its own, or raise ValueError if it is not one of real numbers."""
+    try:
+        array = value.toarray() if scipy.sparse.issparse(value) else np.array(value)
+    except ValueError as error:
+        raise ValueError(f"{name} must be an array of numbers, got a ragged {type(value).__name__}") from error
+    if array.dtype.kind == "c":
+        raise ValueError(f"{name} must be real, got complex numbers")
+    if array.dtype.kind not in "iuf":
+        raise ValueError(f"{name} must be an array of numbers, got a {type(value).__name__} of {array.dtype}")
+    # Adding zero turns -0.0 into 0.0: equal arrays get the same digest.
+    return np.asarray(array, dtype=float, order="C") + 0.0
+
+
+def check_finite(name: str, array: Array) -> None:
+    """Raise ValueError at the first entry that is not finite."""
+    bad = np.argwhere(~np.isfinite(array))
+    if bad.size:
+        words = ("row", "column") if array.ndim == 2 else ("number",)
+        where = ", ".join(f"{word} {index}" for word, index in zip(words, bad[0], strict=True))
+        raise ValueError(f"{name} must be finite, got {array[tuple(bad[0])]} at {where} (from 0)")
+
+
+def square(name: str, value: Any, size: int | None = None) -> Array:
+    """Return a matrix as an array after a check of its size, which comes before anything large is made."""
+    matrix = value if hasattr(value, "shape") else numbers(name, value)
+    if len(matrix.shape) != 2 or matrix.shape[0] != matrix.shape[1]:
+        raise ValueError(f"{name} must be a square matrix, got the shape {tuple(matrix.shape)}")
+    if matrix.shape[0] == 0:
+        raise ValueError(f"{name} must have at least one degree of freedom, got an empty matrix")
+    check_size(name, matrix.shape[0])
+    if size is not None and matrix.shape[0] != size:
+        raise ValueError(f"{name} must have as many degrees of freedom as mass, {size}, got {matrix.shape[0]}")
+    array = numbers(name, matrix)
+    check_finite(name, array)
+    return array
+
+
+def symmetric(name: str, matrix: Array) -> Array:
+    """Return a matrix made exactly symmetric, or raise ValueError if it is not so to a hundred-millionth."""
+    skew = np.abs(matrix - matrix.T)
+    if skew.max() > SYMMETRY * np.abs(matrix).max():
+        row, column = np.unravel_index(np.argmax(skew), skew.shape)
+        raise ValueError(
+            f"{name} must be symmetric, got {matrix[row, column]} at row {row}, column {column} (from 0) but "
+            f"{matrix[column, row]} at row {column}, column {row}"
+        )
+    return 0.5 * (matrix + matrix.T)
+
+
+def rows_of(name: str, value: Any, size: int) -> Array:
+    """Return rows on the degrees of freedom as an array of shape (2, size)."""
+    rows = value if hasattr(value, "shape") else numbers(name, value)
+    if tuple(rows.shape) != (2, size):
+        raise ValueError(f"{name} must have the shape (2, {size}), got {tuple(rows.shape)}")
+    array = numbers(name, rows)
+    check_finite(name, array)
+    return array
+
+
+def points_of(points: Any, size: int) -> dict[str, Array]:
+    """Return the rows of every point by its name."""
+    instance("points", points, Mapping)
+    if not points:
+        raise ValueError("points must have at least one point, got none")
+    rows = {}
+    for name, value in points.items():
+        if not isinstance(name, str) or not name:
+            raise ValueError(f"points must have names that are text, got {name!r}")
+        rows[name] = point_rows(f"points[{name!r}]", value, size)
+        rows[name].flags.writeable = False
+    return rows
+
+
+def point_rows(word: str, value: Any, size: int) -> Array:
+    """Return the rows of a point given by rows or by two numbers of degrees of freedom."""
+    if not is_pair(value, Integral):
+        return rows_of(word, value, size)
+    rows = np.zeros((2, size))
+    for row, number in zip(rows, value, strict=True):
+        if number is not None:
+            if isinstance(number, bool) or not 0 <= number < size:
+                raise ValueError(f"{word} must name degrees of freedom from 0 to {size - 1}, got {number!r}")
+            row[int(number)] = 1.0
+    return rows
+
+
+def is_pair(value: Any, kind: type | tuple[type, ...]) -> bool:
+    """Return whether `value` is a pair of things of a kind, either of which may be None."""
+    pair = isinstance(value, (tuple, list)) or (isinstance(value, np.ndarray) and value.shape == (2,))
+    return pair and len(value) == 2 and all(entry is None or isinstance(entry, kind) for entry in value)
+
+
+def damping_of(value: Any, size: int) -> float | Array | Rayleigh:
+    """Return a damping as a ratio, ratios per mode, shares of mass and stiffness, or a symmetric matrix."""
+    if isinstance(value, Rayleigh):
+        return value
+    if isinstance(value, (Real, str)) or value is None:
+        return _ratio(value)
+    damping = value if hasattr(value, "shape") else numbers("damping", value)
+    if len(damping.shape) == 0:
+        return _ratio(damping.item())
+    if len(damping.shape) == 1:
+        ratios = numbers("damping", damping)
+        for mode, ratio in enumerate(ratios):
+            within(f"damping[{mode}]", float(ratio), 0.0, 1.0)
+            if ratio == 1.0:
+                raise ValueError(f"damping[{mode}] must be below 1 (critical), got 1.0")
+        return ratios
+    matrix = symmetric("damping", square("damping", damping, size))
+    check_damping(matrix)
+    return matrix
+
+
+def _ratio(value: Any) -> float:
+    ratio = non_negative("damping", value)
+    if ratio >= 1.0:
+        raise ValueError(f"damping must be below 1 (critical), got {value!r}")
+    return ratio

@@ -1,0 +1,80 @@
+"""A mass without shape or stiffness."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..checks import choice, instance, positive
+from .modes import Array, BodyPoint, Modes
+
+POINTS = ("centre",)
+
+
+@dataclass(frozen=True)
+class PointMass:
+    """A mass that moves freely along world x and y and does not turn.
+
+    Parameters
+    ----------
+    mass : float
+        Mass [kg].
+    name : str, optional
+        What it is called in records; tells equal bodies apart.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+
+    mass: float
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        positive("mass", self.mass)
+        instance("name", self.name, str)
+
+    @property
+    def centre(self) -> BodyPoint:
+        """Its only point."""
+        return BodyPoint(self, "centre")
+
+    def at(self, position: str) -> BodyPoint:
+        """Return the point called `position`, which must be "centre"."""
+        return BodyPoint(self, position)
+
+    def check_position(self, position: str) -> None:
+        """Raise ValueError if `position` is not "centre"."""
+        choice("position", position, POINTS)
+
+    @property
+    def axes(self) -> Array:
+        """World components of its two axes, which are x and y, shape (2, 2)."""
+        return np.eye(2)
+
+    @property
+    def total_mass(self) -> float:
+        """Mass [kg]."""
+        return float(self.mass)
+
+    def modes(self, held_x: bool = False) -> Modes:
+        """Return the two rigid modes, along x and along y; `held_x` is for bodies with a driven end, must be false."""
+        if held_x:
+            raise ValueError("held_x must be False for a PointMass: it has no driven end, got True")
+        return Modes(np.zeros(2), np.zeros(2), np.eye(2) * np.sqrt(self.mass))
+
+    def trace(self, position: str, held_x: bool = False) -> Array:
+        """Return the rows that give the displacement (x, y) from the modes, shape (2, 2)."""
+        self.check_position(position)
+        self.modes(held_x)
+        return np.eye(2) / np.sqrt(self.mass)
+
+    def modal_coordinates(self, vector: Any) -> Array:
+        """Return the modal coordinates of a displacement [m] or a velocity [m/s] along (x, y), shape (2,)."""
+        values = np.asarray(vector)
+        if values.dtype.kind not in "iuf" or values.shape != (2,) or not np.isfinite(values).all():
+            raise ValueError(f"vector must be two finite numbers, along x and y, got {vector!r}")
+        return np.sqrt(self.mass) * values

@@ -1,0 +1,289 @@
+"""A body given by its mass and stiffness matrices, as a finite-element program exports them."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from ..checks import choice, instance, positive
+from .matrix_arguments import from_container, from_matrices
+from .matrix_files import POINT, read_container, read_matrices, write_npz
+from .matrix_input import (
+    Rayleigh,
+    check_finite,
+    check_mass,
+    damping_of,
+    numbers,
+    points_of,
+    rows_of,
+    square,
+    symmetric,
+)
+from .modes import Array, BodyPoint, Modes
+from .reduction import Reduction, reduce_body
+
+FILES = ("path", "mass", "stiffness")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ReducedBody:
+    """A linear body given by matrices, its mode shapes found from ``K phi = w² M phi``.
+
+    A mode is rigid, its frequency exactly zero, if its computed w² is below 64 eps = 1.4e-14 of the largest one, what
+    rounding may leave of a zero: a mode slower than 1.2e-7 of the fastest cannot be told from a rigid one. Bodies are
+    compared and hashed by content and cannot be changed.
+
+    Parameters
+    ----------
+    mass, stiffness : array_like or scipy sparse, shape (n, n)
+        Mass matrix, positive definite, and stiffness matrix, positive semidefinite; real and symmetric, in SI units for
+        displacements in metres. Asymmetry up to 1e-8 of the largest entry, as text files have it, is averaged away. At
+        most 4000 degrees of freedom.
+    points : mapping
+        What each point's displacement along world (x, y) is made of, by its name: rows on the degrees of freedom,
+        shape (2, n), or the numbers of two of them from 0, such as ``(0, 1)``; None for a direction in which the point
+        does not move.
+    damping : float, sequence of float, Rayleigh or array_like, optional
+        One damping ratio [1] for every elastic mode, one for each mode kept in the order of rising frequency (of no
+        effect on rigid modes), shares of mass and stiffness, or a symmetric positive semidefinite matrix C [N s/m],
+        shape (n, n). If a cutoff leaves modes out, ``Phi^T C Phi`` of the modes kept is taken: what C couples to the
+        others is lost.
+    translation : array_like, shape (2, n), optional
+        Displacement of every degree of freedom when the body moves by 1 m along x (first row) and along y. Gravity
+        and uniform initial velocities need it.
+    cutoff : float, optional
+        Keep the modes up to this frequency [Hz], rigid ones always; all modes if left out.
+    name : str, optional
+        What it is called in records; tells equal bodies apart.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range or does not fit the others, or if no mode is left.
+    """
+
+    mass: Array
+    stiffness: Array
+    points: Mapping[str, Any]
+    damping: float | Sequence[float] | Array | Rayleigh = 0.0
+    translation: Array | None = None
+    cutoff: float | None = None
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        instance("name", self.name, str)
+        if self.cutoff is not None:
+            self._set("cutoff", positive("cutoff", self.cutoff))
+        self._set("mass", symmetric("mass", square("mass", self.mass)))
+        size = self.mass.shape[0]
+        self._set("stiffness", symmetric("stiffness", square("stiffness", self.stiffness, size)))
+        self._set("points", MappingProxyType(points_of(self.points, size)))
+        self._set("damping", damping_of(self.damping, size))
+        if self.translation is not None:
+            self._set("translation", rows_of("translation", self.translation, size))
+        check_mass(self.mass)
+        # Found now, since only the modes tell whether stiffness, damping and cutoff are fit.
+        self.modes()
+
+    @classmethod
+    def read(
+        cls,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        mass: str | os.PathLike[str] | None = None,
+        stiffness: str | os.PathLike[str] | None = None,
+        points: Mapping[str, Any] | None = None,
+        damping: Any = None,
+        translation: Any = None,
+        cutoff: float | None = None,
+        name: str = "",
+    ) -> ReducedBody:
+        """Read a body from one file with everything, or from one file for each matrix.
+
+        One file with everything is given as `path`:
+
+        - ``.npz`` with the arrays `mass`, `stiffness` and, if there, `damping`, `translation` and ``point_<name>``,
+          shape (2, n), one for each point; what `save` writes.
+        - MATLAB ``.mat`` up to version 7 with variables of the same names, matrices full or sparse; M, K and C also
+          stand for mass, stiffness and damping.
+
+        One file for each matrix is given as `mass`, `stiffness` and perhaps `damping`:
+
+        - Matrix Market.
+        - Text of Abaqus' ``*MATRIX GENERATE``, assembled: ``FORMAT=MATRIX INPUT``, lines "node, dof, node, dof, value",
+          or ``FORMAT=COORDINATE``, lines "row column value", rows from 1. Lines that start with ``*`` are left out. If
+          no entry has its mirror image in the file, the file holds one triangle and the other is filled in. Degrees of
+          freedom of all files are taken together and sorted by (node, dof); internal nodes, with negative numbers, are
+          kept.
+
+        Degrees of freedom that Abaqus constrained (1e30 and more on the diagonal of the stiffness, it writes 1e36) are
+        removed: points do not move along them. The translation of the others is chosen so that gravity still acts on
+        them through the mass that they share with the removed ones.
+
+        Parameters
+        ----------
+        path, mass, stiffness : str or Path, optional
+            The files.
+        points : mapping, optional
+            As in `ReducedBody`, before degrees of freedom are removed; they replace those of the same name in `path`.
+            With labels, a point is a pair of them: ``{"tip": ((101, 1), (101, 2))}`` moves along x with the first
+            degree of freedom of node 101 and along y with the second.
+        damping : str or Path, or as in `ReducedBody`, optional
+            File of the damping matrix, or what replaces the damping in `path`.
+        translation : array_like, shape (2, n), or pair of int, optional
+            As in `ReducedBody`, before degrees of freedom are removed. With labels, the numbers of the degrees of
+            freedom that are displacements along x and y at every node, usually ``(1, 2)``.
+        cutoff : float, optional
+            As in `ReducedBody`.
+        name : str, optional
+            As in `ReducedBody`.
+
+        Returns
+        -------
+        ReducedBody
+            The body.
+
+        Raises
+        ------
+        OSError
+            If a file cannot be read.
+        ValueError
+            If a file is damaged, of another kind or too large (2 GiB, 4000 degrees of freedom), or as in `ReducedBody`.
+        """
+        given_files = {
+            word: file for word, file in zip(FILES, (path, mass, stiffness), strict=True) if file is not None
+        }
+        if tuple(given_files) not in (FILES[:1], FILES[1:]):
+            raise ValueError(
+                "path must be one file with everything, or mass and stiffness must be one file each, "
+                f"got {' and '.join(given_files) or 'none of them'}"
+            )
+        for word, file in given_files.items():
+            instance(word, file, (str, os.PathLike))
+        options = {"damping": damping, "translation": translation, "cutoff": cutoff, "name": name or None}
+        given = {word: value for word, value in options.items() if value is not None}
+        added = {} if points is None else points
+        instance("points", added, Mapping)
+        if path is not None:
+            held = from_container(read_container(path))
+            return cls(**{**held, **given, "points": {**held["points"], **added}})
+        if isinstance(damping, (str, os.PathLike)):
+            given_files["damping"] = given.pop("damping")
+        return cls(**given | from_matrices(read_matrices(given_files), added, given.get("translation")))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the body to an ``.npz`` file that `read` takes; what is read back is equal.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written; nothing half-written is left under its name.
+        """
+        arrays: dict[str, Any] = {"mass": self.mass, "stiffness": self.stiffness, "name": self.name}
+        arrays |= {POINT + name: rows for name, rows in self.points.items()}
+        if isinstance(self.damping, Rayleigh):
+            arrays["rayleigh"] = (self.damping.mass, self.damping.stiffness)
+        else:
+            arrays["damping"] = self.damping
+        arrays |= {word: getattr(self, word) for word in ("translation", "cutoff") if getattr(self, word) is not None}
+        write_npz(path, arrays)
+
+    def at(self, position: str) -> BodyPoint:
+        """Return the point called `position`."""
+        return BodyPoint(self, position)
+
+    def check_position(self, position: str) -> None:
+        """Raise ValueError if no point is called `position`."""
+        choice("position", position, tuple(self.points))
+
+    @property
+    def axes(self) -> Array:
+        """World components of its two axes, which are x and y, shape (2, 2)."""
+        return np.eye(2)
+
+    @property
+    def has_translation(self) -> bool:
+        """Whether it is known how a translation moves it, which gravity and uniform initial velocities need."""
+        return self.translation is not None
+
+    @property
+    def total_mass(self) -> float:
+        """Mass that takes part in a translation along x or along y, the larger [kg]; nan without a translation."""
+        if self.translation is None:
+            return float("nan")
+        return float(np.max(np.sum(self.translation @ self.mass * self.translation, axis=1)))
+
+    @property
+    def shapes(self) -> Array:
+        """Mass-normalised mode shapes Phi, shape (n, modes)."""
+        return self._reduction.shapes
+
+    def modes(self, held_x: bool = False) -> Modes:
+        """Return the modes, without translation zeros for it; `held_x` is for bodies with a driven end, must be false.
+
+        The damping is a matrix if it does not come down to one ratio below 1 for every elastic mode: if C couples
+        modes by more than 1e-10 of their own damping and by more than rounding does, brakes a rigid mode or overdamps
+        one.
+        """
+        if held_x:
+            raise ValueError("held_x must be False for a ReducedBody: it has no driven end, got True")
+        return self._reduction.modes
+
+    def trace(self, position: str, held_x: bool = False) -> Array:
+        """Return the rows that give the displacement (x, y) of a point from the modes, shape (2, modes)."""
+        self.check_position(position)
+        self.modes(held_x)
+        return self.points[position] @ self.shapes
+
+    def modal_coordinates(self, vector: Any) -> Array:
+        """Return ``Phi^T M x`` of the displacements or velocities x of all degrees of freedom, shape (modes,)."""
+        values = numbers("vector", vector)
+        if values.shape != (self.mass.shape[0],):
+            raise ValueError(f"vector must have the shape ({self.mass.shape[0]},), got {values.shape}")
+        check_finite("vector", values)
+        return self.shapes.T @ (self.mass @ values)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ReducedBody) and self._digest == other._digest
+
+    def __hash__(self) -> int:
+        return hash(self._digest)
+
+    def __repr__(self) -> str:
+        name = f", name={self.name!r}" if self.name else ""
+        return f"ReducedBody({self.mass.shape[0]} degrees of freedom, points {', '.join(self.points)}{name})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        values = (dict(value) if isinstance(value, Mapping) else value for value in self._values)
+        return ReducedBody, tuple(values)
+
+    @property
+    def _values(self) -> tuple[Any, ...]:
+        return tuple(getattr(self, field.name) for field in fields(self))
+
+    @cached_property
+    def _digest(self) -> bytes:
+        content = hashlib.sha256()
+        for value in self._values:
+            parts = sorted(value.items()) if isinstance(value, Mapping) else [("", value)]
+            for name, part in parts:
+                is_array = isinstance(part, np.ndarray)
+                content.update(repr((name, part.shape if is_array else part, len(parts))).encode())
+                content.update(part.tobytes() if is_array else b"")
+        return content.digest()
+
+    @cached_property
+    def _reduction(self) -> Reduction:
+        return reduce_body(self)
+
+    def _set(self, name: str, value: Any) -> None:
+        if isinstance(value, np.ndarray):
+            value.flags.writeable = False
+        object.__setattr__(self, name, value)

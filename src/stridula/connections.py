@@ -1,0 +1,85 @@
+"""What joins bodies for good: springs and dashpots."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .bodies import BodyPoint
+from .bodies.modes import Array
+from .checks import choice, instance, positive
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A massless linear spring between two points, or between a point and the ground, unstressed at the start.
+
+    Parameters
+    ----------
+    first : BodyPoint
+        One end.
+    second : BodyPoint, optional
+        The other end, of the same or another body; the ground if left out.
+    stiffness : float
+        Force per unit of relative displacement [N/m].
+    direction : {"x", "y"}, optional
+        World direction along which it acts.
+    """
+
+    first: BodyPoint
+    second: BodyPoint | None = None
+    stiffness: float = field(kw_only=True)
+    direction: str = field(default="x", kw_only=True)
+
+    def __post_init__(self) -> None:
+        _check_ends(self.first, self.second, self.direction)
+        positive("stiffness", self.stiffness)
+
+
+@dataclass(frozen=True)
+class Dashpot:
+    """A massless viscous damper between two points, or between a point and the ground.
+
+    Parameters
+    ----------
+    first : BodyPoint
+        One end.
+    second : BodyPoint, optional
+        The other end, of the same or another body; the ground if left out.
+    coefficient : float
+        Force per unit of relative velocity [N s/m].
+    direction : {"x", "y"}, optional
+        World direction along which it acts.
+    """
+
+    first: BodyPoint
+    second: BodyPoint | None = None
+    coefficient: float = field(kw_only=True)
+    direction: str = field(default="x", kw_only=True)
+
+    def __post_init__(self) -> None:
+        _check_ends(self.first, self.second, self.direction)
+        positive("coefficient", self.coefficient)
+
+
+Connection = Spring | Dashpot
+
+
+def unit(connection: Connection) -> Array:
+    """Return the world direction of a connection, shape (2,)."""
+    return np.array([1.0, 0.0]) if connection.direction == "x" else np.array([0.0, 1.0])
+
+
+def ends(connection: Connection) -> tuple[BodyPoint, ...]:
+    """Return the points that a connection joins, the ground left out."""
+    return (connection.first,) if connection.second is None else (connection.first, connection.second)
+
+
+def _check_ends(first: BodyPoint, second: BodyPoint | None, direction: str) -> None:
+    instance("first", first, BodyPoint)
+    if second is not None:
+        instance("second", second, BodyPoint)
+        if second == first:
+            raise ValueError(f"second must be another point than first (equal bodies need names), got {second!r}")
+    choice("direction", direction, ("x", "y"))

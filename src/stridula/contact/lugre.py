@@ -1,0 +1,67 @@
+"""LuGre's law: friction as the mean deflection of elastic bristles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from ..bodies.modes import Array
+from ..checks import non_negative, positive
+from .coulomb import check_static
+from .weakening import stribeck_curve
+
+
+@dataclass(frozen=True)
+class LuGre:
+    """LuGre friction (Canudas de Wit, Olsson, Åström & Lischinsky 1995, IEEE Trans. Automatic Control 40).
+
+    With the slip velocity v and the bristles' deflection z::
+
+        z' = v - stiffness |v| z / g(v),    g(v) = kinetic + (static - kinetic) exp(-(v / velocity)²)
+        tangential force = normal force * (stiffness z + damping z' + viscous v)
+
+    All coefficients are per unit of normal force. The deflection moves exactly over a step at constant slip velocity
+    and the force is solved for together with the contact, so that the step need not resolve the bristles. There is no
+    exact sticking: a contact counts as sticking while its slip speed is below `velocity`. An open contact forgets its
+    bristles. `friction_loss` includes what the bristles store.
+
+    Parameters
+    ----------
+    static : float
+        Coefficient of friction at which the bristles give way at low speed [1], at least `kinetic`.
+    kinetic : float
+        Coefficient of friction in fast sliding [1], above 0.
+    velocity : float
+        Stribeck's velocity [m/s].
+    stiffness : float
+        Stiffness of the bristles, sigma0 [1/m].
+    damping : float, optional
+        Damping of the bristles, sigma1 [s/m].
+    viscous : float, optional
+        Rise with speed, sigma2 [s/m].
+    """
+
+    law: ClassVar[str] = "lugre"
+    static: float
+    kinetic: float
+    velocity: float
+    stiffness: float
+    damping: float = 0.0
+    viscous: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_static(self.static, positive("kinetic", self.kinetic))
+        positive("velocity", self.velocity)
+        positive("stiffness", self.stiffness)
+        non_negative("damping", self.damping)
+        non_negative("viscous", self.viscous)
+
+    def coefficient_at(self, velocity: Array | float) -> Array:
+        """Return tangential over normal force [1] in steady sliding at `velocity` [m/s], 0 at rest."""
+        curve = stribeck_curve(self.static, self.kinetic, self.velocity, 2.0, self.viscous, velocity)
+        return np.where(np.asarray(velocity) == 0.0, 0.0, curve)
+
+    def __str__(self) -> str:
+        return f"LuGre, {self.static:.4g} to {self.kinetic:.4g}, bristles {self.stiffness:.3g} 1/m"

@@ -1,0 +1,28 @@
+"""How several contacts are solved together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..checks import count, within
+
+
+@dataclass(frozen=True)
+class GaussSeidel:
+    """Block Gauss-Seidel over the exact solve of one contact: each in turn, until no force changes.
+
+    Parameters
+    ----------
+    tolerance : float, optional
+        Largest change of a force in the last sweep, relative to the largest force [1].
+    sweeps : int, optional
+        Largest number of sweeps a step. Steps that need more are counted in ``unsolved_steps``; a run stops where the
+        forces still change by more than 1e-3.
+    """
+
+    tolerance: float = 1e-10
+    sweeps: int = 1000
+
+    def __post_init__(self) -> None:
+        within("tolerance", self.tolerance, 1e-15, 1e-4)
+        count("sweeps", self.sweeps)

@@ -1,0 +1,149 @@
+"""The state of modes and contacts at the start of a march."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .._kernels import layout as at
+from .._kernels.contact import SEPARATED, STICKING
+from .._kernels.friction import next_state
+from .._kernels.gauss_seidel import solve_all
+from ..assembly import Assembly, ContactRows
+from ..bodies import ModalBeam
+from ..bodies.modes import Array
+from ..contact import FrictionLaw, RateAndState
+from .blocks import ContactBlocks, Recurrence, keeps_state
+from .contact_solve import GaussSeidel
+from .schemes import Scheme
+
+# Share of the terms of a gap, within which it counts as closed.
+ROUND_OFF = 1e-14
+
+
+def at_start(
+    arrays: Assembly, scheme: Scheme, step: float, modes: Recurrence, contacts: ContactBlocks, solve: GaussSeidel
+) -> tuple[Array, Array]:
+    """Return modes and contacts at the start.
+
+    The first increment is that of a motion under the loads and the forces of closed contacts, so that the scheme is of
+    second order from the first step on. A contact that is closed and does not slide sticks.
+
+    Raises
+    ------
+    ValueError
+        If a contact overlaps.
+    """
+    start = _Start(arrays, scheme, step, contacts)
+    force = start.factors @ arrays.loads
+    first = start.increment(force)
+    carried = start.carried(first)
+    closed = np.flatnonzero(start.gaps == 0.0)
+    if closed.size:
+        pushes = start.rows[closed].reshape(-1, arrays.mode_count)
+        gap, slip = start.at_first_step(modes.free(arrays.position, first) + start.factors @ modes.loads)
+        forces, solved = np.zeros((len(arrays.contacts), 2)), np.zeros((closed.size, 2))
+        solve_all(
+            gap[closed],
+            slip[closed],
+            start.compliance(modes, pushes),
+            contacts.constants[closed],
+            contacts.laws[closed],
+            carried[closed],
+            step,
+            solve.tolerance,
+            solve.sweeps,
+            solved,
+            np.zeros(closed.size, dtype=np.int64),
+            np.zeros(closed.size, dtype=np.bool_),
+        )
+        forces[closed] = solved
+        first = start.increment(force + (solved * [1.0, -1.0]).ravel() @ pushes)
+        carried = start.carried(first)
+        carried[:, [at.LAST_NORMAL, at.LAST_TANGENTIAL]] = forces
+    return np.stack([arrays.position, first]), carried
+
+
+class _Start:
+    """A system about its start: from one step before to one step after."""
+
+    def __init__(self, arrays: Assembly, scheme: Scheme, step: float, contacts: ContactBlocks) -> None:
+        times = np.array([-step, 0.0, step])
+        self.arrays, self.scheme, self.step, self.contacts = arrays, scheme, step, contacts
+        self.before, self.after = np.diff(arrays.motion(times, step), axis=0)
+        self.factors = np.array([signal(times[1:2], step)[0] for signal in arrays.signals[: len(arrays.loads)]])
+        self.fixed = np.array([one.fixed for one in arrays.contacts])
+        self.rows = np.array([_rows(one) for one in arrays.contacts])
+        self.gaps = np.array(
+            [_gap(one, row, arrays.position) for one, row in zip(arrays.contacts, self.rows, strict=True)]
+        )
+
+    def increment(self, force: Array) -> Array:
+        """Return the increment before the start of motion under constant modal forces."""
+        return self._increment(self.arrays.position, self.arrays.velocity, force)
+
+    def _increment(self, position: Array, velocity: Array, force: Array) -> Array:
+        arrays, size = self.arrays, self.arrays.coupled
+        first = self.scheme.first_increment(
+            arrays.angular_frequency, arrays.damping, self.step, position, velocity, force
+        )
+        if size:
+            first[:size] = self.scheme.coupled_first_increment(
+                arrays.stiffness, arrays.dissipation, self.step, position[:size], velocity[:size], force[:size]
+            )
+        return first
+
+    def carried(self, first: Array) -> Array:
+        """Return what each contact carries, after a first increment."""
+        carried = np.zeros((len(self.arrays.contacts), at.CARRIED))
+        tip, track = self.before[:, 0], self.before[:, 1]
+        speed = self.rows[:, 1] @ self.arrays.velocity + (self.before + self.after)[:, :2] @ [0.5, -0.5] / self.step
+        for i, one in enumerate(self.arrays.contacts):
+            carried[i, at.MATERIAL] = one.contact.at + self.rows[i, 1] @ self.arrays.position
+            carried[i, at.ABSCISSA] = one.contact.at + self.fixed[i, 1] @ self.arrays.position
+            carried[i, at.STATUS] = STICKING if self.gaps[i] == 0.0 and speed[i] == 0.0 else SEPARATED
+            carried[i, at.FRICTION_STATE] = self._state_before(i, one.contact.friction, float(speed[i]))
+        carried[:, at.ANCHOR] = carried[:, at.MATERIAL]
+        carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - self.fixed[:, 1] @ first - tip
+        carried[:, at.LAST_SLIP] = self.rows[:, 1] @ first + tip - track
+        return carried
+
+    def _state_before(self, i: int, law: FrictionLaw, velocity: float) -> float:
+        """Return the internal state of a law half a step before the start: the march keeps it between the steps."""
+        if not keeps_state(law):
+            return 0.0
+        state = law.state_at_start if isinstance(law, RateAndState) else 0.0
+        code = int(self.contacts.constants[i, at.LAW])
+        # The mirror image of the half step after it, which does not grow as motion backwards in time does.
+        before = 2.0 * state - float(next_state(code, self.contacts.laws, i, state, velocity, self.step / 2.0))
+        # The age of a contact stays above zero.
+        return max(before, state / 2.0) if isinstance(law, RateAndState) else before
+
+    def at_first_step(self, increments: Array) -> tuple[Array, Array]:
+        """Return gaps and slips after the first step, without contact force."""
+        gaps = self.gaps + self.rows[:, 0] @ increments + self.after[:, 2]
+        return gaps, self.rows[:, 1] @ increments + self.after[:, 0] - self.after[:, 1]
+
+    def compliance(self, modes: Recurrence, pushes: Array) -> Array:
+        """Return how far rows have moved after the first step under unit forces on them since before the start."""
+        still = np.zeros(self.arrays.mode_count)
+        answers = [modes.free(still, self._increment(still, still, push)) + modes.mobility(push) for push in pushes]
+        moved = np.array(answers) @ pushes.T
+        return np.ascontiguousarray(0.5 * (moved + moved.T))
+
+
+def _rows(one: ContactRows) -> Array:
+    """Return the rows of a contact along normal and tangent, those of a beam's harmonics at its first abscissa."""
+    if not isinstance(one.contact.track, ModalBeam):
+        return one.fixed
+    full = one.fixed.copy()
+    full[:, one.bending[0] : one.axial[1]] -= one.contact.track.trace(one.contact.at)[::-1]
+    return full
+
+
+def _gap(one: ContactRows, rows: Array, position: Array) -> float:
+    """Return the gap of a contact at the start, exactly zero where it is closed."""
+    gap = float(one.contact.gap + rows[0] @ position)
+    scale = one.contact.gap + float(np.abs(rows[0]) @ np.abs(position))
+    if gap < -ROUND_OFF * scale:
+        raise ValueError(f"gap must leave the bodies apart at the start, got an overlap of {-gap:.3g} m")
+    return gap if gap > ROUND_OFF * scale else 0.0

@@ -1,0 +1,108 @@
+"""Why a run stops before its end, in words."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from .._kernels import layout as at
+from ..bodies.modes import Array
+from ..records.variables import STATUS_WORDS
+
+ENDED = {
+    at.FINISHED: "finished",
+    at.OFF_TRACK: "off the track",
+    at.NOT_FINITE: "not finite",
+    at.CONTACT_UNSOLVED: "contact unsolved",
+    at.ENERGY_CREATED: "energy created",
+}
+WHAT = {
+    "not finite": "the state is no longer finite",
+    "contact unsolved": "the contact forces were not found",
+    "energy created": "energy came from nowhere",
+}
+CAUSE = {
+    "not finite": "an instability that grows without bound, or drives far too large",
+    "contact unsolved": "several contacts whose friction is too high for a unique answer, or too few sweeps",
+    "energy created": "a step too long for the friction law, or a fault of the model",
+}
+# Share of the largest energy that round-off may make of the ledger, of the stored energy below zero and of friction's
+# loss running back.
+LEDGER_TOLERANCE = 1e-8
+# Share of the largest energy that the contacts may seem to give: their work is centred over a step, their loss is not.
+CONTACT_TOLERANCE = 1e-2
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during a run; what was recorded so far is in `record`."""
+
+    def __init__(self, record: xr.Dataset) -> None:
+        super().__init__(f"interrupted at t = {_end(record):.6g} s; see .record")
+        self.record = record
+
+
+class Diverged(RuntimeError):
+    """A run whose result can no longer be believed; what was recorded before is in `record`."""
+
+    def __init__(self, record: xr.Dataset, contacts: str) -> None:
+        ended, step = record.attrs["ended"], record.attrs["step"]
+        super().__init__(
+            f"{WHAT[ended]} after t = {_end(record):.6g} s (step {step:.3g} s); {contacts}; "
+            f"likely cause: {CAUSE[ended]}"
+        )
+        self.record = record
+
+
+def _end(record: xr.Dataset) -> float:
+    return float(record.sizes["time"] * record.attrs["sample_interval"])
+
+
+def contact_words(names: tuple[str, ...], carried: Array) -> str:
+    """Return the last state of every contact, in words."""
+    lines = [
+        f"{name} {STATUS_WORDS[int(one[at.STATUS])]} at {one[at.ABSCISSA]:.6g} m with {one[at.LAST_NORMAL]:.4g} N "
+        f"normal, {one[at.LAST_TANGENTIAL]:.4g} N tangential"
+        for name, one in zip(names, carried, strict=True)
+    ]
+    return ", ".join(lines)
+
+
+def energy_created(
+    energies: Array, before: Array, initial: float, largest: float, of_loads: float, dissipative: bool
+) -> int | None:
+    """Return the first sample at which energy came from nowhere, or None.
+
+    The ledger must close, the stored energy stay above zero, the contacts take energy on the whole, and friction under
+    laws without internal state at every step.
+
+    Parameters
+    ----------
+    energies : ndarray, shape (energies, samples)
+        The record of a chunk.
+    before : ndarray, shape (energies,)
+        The sample before it.
+    initial : float
+        Stored energy at the start [J].
+    largest : float
+        Largest energy met before the chunk [J].
+    of_loads : float
+        What the loads give to modes at rest in one step [J]: less is nothing.
+    dissipative : bool
+        Whether friction must take energy at every step.
+    """
+    terms = np.abs(energies[: at.DAMPING_LOSS + 1])
+    largest_yet = np.maximum(np.maximum.accumulate(terms.max(axis=0)), max(largest, of_loads))
+    scale = LEDGER_TOLERANCE * largest_yet
+    residual = (
+        energies[at.STORED] - initial + energies[at.DAMPING_LOSS] - energies[at.DRIVE_WORK] - energies[at.CONTACT_WORK]
+    )
+    given = energies[at.CONTACT_WORK] - energies[at.CONVECTION_WORK]
+    wrong = (
+        (np.abs(residual) > scale)
+        | (energies[at.STORED] < -scale)
+        | (given > CONTACT_TOLERANCE * largest_yet + of_loads)
+    )
+    if dissipative:
+        wrong |= np.diff(energies[at.FRICTION_LOSS], prepend=before[at.FRICTION_LOSS]) < -scale
+    found = np.flatnonzero(wrong)
+    return int(found[0]) if found.size else None

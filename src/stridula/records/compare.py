@@ -1,0 +1,189 @@
+"""Two records side by side: how far they are apart, since when, and what they differ in."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..bodies.modes import Array
+from ..checks import instance, non_negative
+from .export import Column, columns
+from .variables import ENERGY, SOLVE, STATUS
+
+# Told by the shares of the states, and what the solver did to get there.
+LEFT_OUT = (STATUS.name, *(variable.name for variable in SOLVE))
+# Variables that hover about zero where all is well are held against their kind: the ledger's residual against the
+# largest energy, the gap against the height of the tip.
+KINDS = (tuple(variable.name for variable in ENERGY), ("gap", "contact_height"))
+UNLIKE = ("wall_time", "scenario", "last_step")
+NOT_THERE = "not there"
+
+
+def compare(a: xr.Dataset, b: xr.Dataset, tolerance: float = 1e-6) -> xr.Dataset:
+    """Compare two records sample by sample over the time that both have.
+
+    Parameters
+    ----------
+    a, b : xarray.Dataset
+        Records of `simulate` with the same sample interval.
+    tolerance : float, optional
+        Difference, relative to the largest value of `a`, from which a variable counts as different [1].
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``variable`` (each contact, probe and status on its own): ``difference``, the largest one, in ``units``;
+        ``relative_difference`` to the largest value of `a`, energies to the largest energy and the gap to the height of
+        the tip if that is larger; ``first_time`` [s] at which it is above the tolerance, NaN if never. The dominant
+        status and the sweeps of the solver are left out. Over ``variable`` and ``record`` (a, b): ``mean`` and ``rms``;
+        the means of ``status_share`` are the shares of the states. Over ``attribute`` and ``record``: ``value``, of
+        attributes and of keys of the scenario that differ. Attributes: ``within_tolerance`` (1 or 0), ``samples``, how
+        many were compared, ``samples_a`` and ``samples_b``.
+
+    Raises
+    ------
+    ValueError
+        If they are no records, their sample intervals differ, or they have no time or no variable in common.
+    """
+    non_negative("tolerance", tolerance)
+    first, second = _common(a, b)
+    ours = {column.name: column for column in columns(first) if column.variable not in LEFT_OUT}
+    theirs = {column.name: column for column in columns(second) if column.variable not in LEFT_OUT}
+    names = [name for name in ours if name in theirs]
+    if not names:
+        raise ValueError(f"b must have a variable of a, got {', '.join(theirs) or 'none'}")
+    scales = _scales(ours)
+    time = first["time"].values
+    rows = [_difference(ours[name], theirs[name], scales[name], time, tolerance) for name in names]
+    difference, relative, since = (np.array(column) for column in zip(*rows, strict=True))
+    result = xr.Dataset(coords={"variable": names, "record": ["a", "b"]})
+    result["units"] = ("variable", [ours[name].units for name in names])
+    result["difference"] = ("variable", difference, {"long_name": "largest difference"})
+    result["relative_difference"] = ("variable", relative, {"units": "1", "long_name": "relative to a's largest value"})
+    result["first_time"] = ("variable", since, {"units": "s", "long_name": "when it is first above the tolerance"})
+    for word, measure in (("mean", np.nanmean), ("rms", _rms)):
+        values = [[_statistic(measure, side[name].values) for side in (ours, theirs)] for name in names]
+        result[word] = (("variable", "record"), np.array(values))
+    unlike = _unlike(a, b) | _one_sided(ours, theirs)
+    result.coords["attribute"] = ("attribute", np.array(list(unlike), dtype=str))
+    result["value"] = (("attribute", "record"), np.array(list(unlike.values()), dtype=str).reshape(-1, 2))
+    result.attrs = {
+        "tolerance": float(tolerance),
+        "within_tolerance": int(bool(np.all(relative <= tolerance))),
+        "samples": int(time.size),
+        "samples_a": int(a.sizes["time"]),
+        "samples_b": int(b.sizes["time"]),
+    }
+    return result
+
+
+def _common(a: xr.Dataset, b: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
+    """Return the two records over the time that both have."""
+    numbers: list[Array] = []
+    intervals = []
+    for name, record in (("a", a), ("b", b)):
+        instance(name, record, xr.Dataset)
+        if "time" not in record.dims or "sample_interval" not in record.attrs:
+            raise ValueError(f"{name} must be a record of simulate, got variables {list(record)}")
+        intervals.append(float(record.attrs["sample_interval"]))
+        numbers.append(np.rint(record["time"].values / intervals[-1]).astype(np.int64))
+    if abs(intervals[1] - intervals[0]) > 1e-9 * intervals[0]:
+        raise ValueError(f"b must have the sample interval of a, {intervals[0]:.9g} s, got {intervals[1]:.9g} s")
+    _, ours, theirs = np.intersect1d(numbers[0], numbers[1], return_indices=True)
+    if ours.size == 0:
+        spans = [
+            f"{r['time'].values[0]:.6g} to {r['time'].values[-1]:.6g} s" if r.sizes["time"] else "none" for r in (a, b)
+        ]
+        raise ValueError(f"b must have a time of a, {spans[0]}, got {spans[1]}")
+    return a.isel(time=ours), b.isel(time=theirs)
+
+
+def _difference(
+    ours: Column, theirs: Column, scale: float, time: Array, tolerance: float
+) -> tuple[float, float, float]:
+    """Return the largest difference, the same relative to the scale, and when it first exceeds the tolerance."""
+    first, second = (np.asarray(column.values, dtype=float) for column in (ours, theirs))
+    same = (first == second) | (np.isnan(first) & np.isnan(second))
+    apart = np.where(same, 0.0, np.abs(np.where(same, 0.0, second) - np.where(same, 0.0, first)))
+    apart = np.where(np.isnan(apart), np.inf, apart)
+    largest = float(apart.max())
+    relative = np.divide(apart, scale, out=np.where(apart > 0.0, np.inf, 0.0), where=scale > 0.0)
+    beyond = np.flatnonzero(relative > tolerance)
+    return largest, float(relative.max()), float(time[beyond[0]]) if beyond.size else float("nan")
+
+
+def _scales(table: Mapping[str, Column]) -> dict[str, float]:
+    """Return the largest value of each column, or of its kind."""
+    own = {name: _largest(column.values) for name, column in table.items()}
+    kinds = {word: kind for kind in KINDS for word in kind}
+
+    def scale(column: Column) -> float:
+        kind = kinds.get(column.variable, (column.variable,))
+        beside = [name for name, c in table.items() if c.variable in kind and c.labels == column.labels]
+        return max(own[name] for name in beside)
+
+    return {name: scale(column) for name, column in table.items()}
+
+
+def _largest(values: Array) -> float:
+    finite = values[np.isfinite(values)]
+    return float(np.abs(finite).max(initial=0.0))
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.nanmean(np.square(values))))
+
+
+def _statistic(measure: Any, values: Array) -> float:
+    plain = np.asarray(values, dtype=float)
+    return float("nan") if np.isnan(plain).all() else float(measure(plain))
+
+
+def _unlike(a: xr.Dataset, b: xr.Dataset) -> dict[str, tuple[str, str]]:
+    """Return the attributes and the keys of the scenarios that differ, with both values."""
+    sides = [dict(record.attrs) for record in (a, b)]
+    flat = [{str(k): v for k, v in side.items() if k not in UNLIKE} for side in sides]
+    for one, side in zip(flat, sides, strict=True):
+        one |= {f"scenario.{key}": value for key, value in _keys(_scenario(side))}
+    names = dict.fromkeys((*flat[0], *flat[1]))
+    missing = object()
+    pairs = {name: (flat[0].get(name, missing), flat[1].get(name, missing)) for name in names}
+    return {
+        name: (_shown(first, missing), _shown(second, missing))
+        for name, (first, second) in pairs.items()
+        if first is missing or second is missing or first != second
+    }
+
+
+def _one_sided(ours: Mapping[str, Column], theirs: Mapping[str, Column]) -> dict[str, tuple[str, str]]:
+    """Return the variables that only one of the records has."""
+    only = {f"variable {name}": ("recorded", NOT_THERE) for name in ours if name not in theirs}
+    return only | {f"variable {name}": (NOT_THERE, "recorded") for name in theirs if name not in ours}
+
+
+def _scenario(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    try:
+        return tomllib.loads(str(attributes.get("scenario", "")))
+    except tomllib.TOMLDecodeError:
+        return {}
+
+
+def _keys(table: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Go through the values of nested tables and lists of tables, by their full keys."""
+    if isinstance(table, dict):
+        for name, value in table.items():
+            yield from _keys(value, f"{path}.{name}" if path else name)
+    elif isinstance(table, list) and table and all(isinstance(entry, dict) for entry in table):
+        for number, value in enumerate(table):
+            yield from _keys(value, f"{path}.{number}")
+    else:
+        yield path, table
+
+
+def _shown(value: Any, missing: object) -> str:
+    text = NOT_THERE if value is missing else str(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,247 @@
+"""Ensembles: one system from starts that differ by next to nothing, and what its measures come to on average."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from dataclasses import replace
+from numbers import Real
+from typing import Any
+
+import numpy as np
+import scipy.stats
+import xarray as xr
+
+from ..analysis import status_share
+from ..bodies import ReducedBody
+from ..bodies.modes import Array
+from ..checks import count, instance, positive, within
+from ..contact import RigidTrack
+from ..drives import Drive, ImposedVelocity, InitialVelocity
+from ..drives import InitialState as State
+from ..integration import Diverged, Progress, simulate
+from ..system import System
+
+Measure = Callable[[xr.Dataset], float]
+OWN = ("perturbation", "ended", "message", "run", "bound")
+
+
+def ensemble(
+    system: System,
+    duration: float,
+    measures: Mapping[str, Measure],
+    *,
+    runs: int = 8,
+    perturbation: float = 1e-6,
+    seed: int = 0,
+    confidence: float = 0.95,
+    workers: int | None = None,
+    **options: Any,
+) -> xr.Dataset:
+    """Run a system from slightly different starts and return the mean of each measure with its confidence interval.
+
+    Run 0 starts as the system says. The others are moved by shares s drawn evenly from ``-perturbation`` to
+    ``perturbation``: where the first contact starts open, its gap becomes ``gap (1 + s)``; where it starts closed, its
+    slider gets the velocity ``s v`` along the track, with v the largest velocity prescribed by drives and rigid tracks,
+    or 1 m/s if there is none. A slider that cannot be moved along the track gets it across. One without a known
+    translation gets it in every degree of freedom.
+
+    Parameters
+    ----------
+    system : System
+        What to simulate.
+    duration : float
+        Time to simulate [s].
+    measures : mapping
+        Functions of a record that return a number, by name. They run in threads.
+    runs : int, optional
+        Number of runs, at least 2.
+    perturbation : float, optional
+        Largest relative change of the start [1], from 0 to 0.1.
+    seed : int, optional
+        Seed of the shares: equal seeds give equal ensembles, whatever the number of workers.
+    confidence : float, optional
+        Level of the interval [1], strictly between 0 and 1.
+    workers : int, optional
+        Runs at a time; as many as there are processors if left out.
+    **options
+        Arguments of `simulate` such as `scheme`, `step`, `sample_rate` and `probes`.
+
+    Returns
+    -------
+    xarray.Dataset
+        For each measure its value over ``run``, its mean ``<name>_mean`` and Student's interval ``<name>_interval``
+        over ``bound`` (low, high), both of the values that are finite; the interval takes at least 2. Beside them
+        ``perturbation``, ``ended`` and ``message`` over ``run``. A run that diverged has NaN and its message.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or a measure returns what is not a number.
+    """
+    instance("system", system, System)
+    positive("duration", duration)
+    named = _checked(measures)
+    count("runs", runs, low=2)
+    within("perturbation", perturbation, 0.0, 0.1)
+    within("confidence", confidence, 0.0, 1.0, ends=False)
+    count("seed", seed, low=0)
+    if workers is not None:
+        count("workers", workers)
+    for word in ("start", "watchers"):
+        if word in options:
+            raise ValueError(f"{word} must be left out of an ensemble, which sets its own, got {options[word]!r}")
+    shares = np.random.default_rng(seed).uniform(-perturbation, perturbation, runs)
+    shares[0] = 0.0
+    systems = [_perturbed(system, float(share)) for share in shares]
+    results = _run_all(systems, duration, named, options, workers or os.cpu_count() or 1)
+    return _dataset(named, shares, results, confidence)
+
+
+def share_of(status: str, contact: str | None = None) -> Measure:
+    """Return a measure: the share of the time in which a contact has a status.
+
+    Parameters
+    ----------
+    status : {"separated", "sticking", "sliding"}
+        Which one.
+    contact : str, optional
+        Name of the contact where there are several.
+    """
+
+    def share(run: xr.Dataset) -> float:
+        return status_share(run if contact is None else run.sel(contact=contact), status)
+
+    return share
+
+
+def mean_and_interval(values: Sequence[float] | Array, confidence: float = 0.95) -> tuple[float, float]:
+    """Return the mean of the finite values and the half width of Student's interval, NaN where there are too few.
+
+    Parameters
+    ----------
+    values : array_like
+        The values.
+    confidence : float, optional
+        Level of the interval [1].
+    """
+    given = np.asarray(values, dtype=float)
+    known = given[np.isfinite(given)]
+    if known.size < 2:
+        return (float(known[0]) if known.size else float("nan")), float("nan")
+    quantile = scipy.stats.t.ppf(0.5 + confidence / 2.0, known.size - 1)
+    return float(known.mean()), float(quantile * known.std(ddof=1) / np.sqrt(known.size))
+
+
+def _checked(measures: Any) -> dict[str, Measure]:
+    instance("measures", measures, Mapping)
+    if not measures:
+        raise ValueError("measures must hold at least one function of a record, got none")
+    for name, measure in measures.items():
+        if not isinstance(name, str) or not name or not callable(measure):
+            raise ValueError(f"measures must be functions of a record by name, got {name!r}: {measure!r}")
+    taken = {*OWN, *(f"{name}{end}" for name in measures for end in ("_mean", "_interval"))}
+    clash = next((name for name in measures if name in taken), None)
+    if clash is not None:
+        raise ValueError(f"measures must have names other than {', '.join(OWN)} and results of others, got {clash!r}")
+    return dict(measures)
+
+
+def _perturbed(system: System, share: float) -> System:
+    """Return the system with its start moved by a share."""
+    if share == 0.0:
+        return system
+    first, *others = system.contacts
+    if first.gap > 0.0:
+        moved = replace(first, gap=first.gap * (1.0 + share))
+        return replace(system, contact=(moved, *others) if others else moved)
+    return replace(system, drives=(*system.drives, _push(system, share * _prescribed(system))))
+
+
+def _prescribed(system: System) -> float:
+    """Return the largest velocity that is prescribed [m/s], 1 if there is none."""
+    found = [0.0]
+    for drive in system.drives:
+        if isinstance(drive, ImposedVelocity):
+            found.append(drive.velocity)
+        elif isinstance(drive, InitialVelocity):
+            found += [drive.x, drive.y]
+    for contact in system.contacts:
+        if isinstance(contact.track, RigidTrack):
+            found += [contact.track.velocity, contact.track.normal_velocity]
+    return max(abs(velocity) for velocity in found) or 1.0
+
+
+def _push(system: System, velocity: float) -> Drive:
+    """Return what gives the slider a small velocity."""
+    slider = system.slider
+    if isinstance(slider, ReducedBody) and not slider.has_translation:
+        return State(slider, velocity=(velocity,) * slider.mass.shape[0])
+    held = system.is_held(slider)
+    normal, tangent = system.contacts[0].frame
+    # Its root's x is prescribed under an imposed velocity: only y is left.
+    direction = np.array([0.0, 1.0]) if held else tangent
+    if not held and not np.any(direction @ slider.modes().translation):
+        direction = normal
+    x, y = velocity * direction
+    return InitialVelocity(slider, x=float(x), y=float(y))
+
+
+class _Cancelled(Exception):
+    """A run that was stopped because another one failed."""
+
+
+def _run_all(
+    systems: Sequence[System], duration: float, measures: Mapping[str, Measure], options: dict[str, Any], workers: int
+) -> list[tuple[list[float], str, str]]:
+    """Return the values of the measures of each run, how it ended, and its message."""
+    stop = threading.Event()
+
+    def watch(progress: Progress) -> None:
+        if stop.is_set():
+            raise _Cancelled
+
+    def one(system: System) -> tuple[list[float], str, str]:
+        try:
+            record = simulate(system, duration, watchers=[watch], **options)
+        except Diverged as error:
+            return [float("nan")] * len(measures), str(error.record.attrs["ended"]), str(error)
+        return [_number(name, measure(record)) for name, measure in measures.items()], str(record.attrs["ended"]), ""
+
+    # The march is compiled and lets other threads run.
+    with ThreadPoolExecutor(min(workers, len(systems))) as pool:
+        futures = [pool.submit(one, system) for system in systems]
+        try:
+            wait(futures, return_when=FIRST_EXCEPTION)
+            for future in futures:
+                if future.done() and future.exception() is not None:
+                    return [future.result()]
+            return [future.result() for future in futures]
+        finally:
+            stop.set()
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _number(name: str, value: Any) -> float:
+    plain = value.item() if getattr(value, "size", 0) == 1 and hasattr(value, "item") else value
+    if isinstance(plain, bool) or not isinstance(plain, Real):
+        raise ValueError(f"measures[{name!r}] must return a number, got a {type(value).__name__}")
+    return float(plain)
+
+
+def _dataset(
+    measures: Mapping[str, Measure], shares: Array, results: list[tuple[list[float], str, str]], confidence: float
+) -> xr.Dataset:
+    found = xr.Dataset(coords={"run": np.arange(len(results)), "bound": ["low", "high"]})
+    for number, name in enumerate(measures):
+        values = np.array([result[0][number] for result in results])
+        mean, half = mean_and_interval(values, confidence)
+        found[name] = ("run", values)
+        found[f"{name}_mean"] = ((), mean)
+        found[f"{name}_interval"] = ("bound", [mean - half, mean + half], {"confidence": confidence})
+    found["perturbation"] = ("run", shares, {"units": "1", "long_name": "relative change of the start"})
+    found["ended"] = ("run", [result[1] for result in results])
+    found["message"] = ("run", [result[2] for result in results])
+    return found

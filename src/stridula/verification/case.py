@@ -1,0 +1,163 @@
+"""What a verification case is: a run whose answer is known, and the rows that hold it against the answer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..bodies.modes import Array
+from ..integration import SCHEMES
+from ..integration.schemes import Scheme
+
+
+@dataclass(frozen=True)
+class Row:
+    """One quantity of a case, expected and obtained.
+
+    Attributes
+    ----------
+    quantity : str
+        What is compared.
+    expected, obtained : float
+        The known answer and ours.
+    tolerance : float
+        Largest distance between the two at which the row is good; in the unit of the quantity.
+    reason : str
+        Where the tolerance comes from: theory or the literature, never from what was obtained.
+    units : str, optional
+        Unit of the quantity.
+    scheme : str, optional
+        Name of the scheme, where one was used.
+    """
+
+    quantity: str
+    expected: float
+    obtained: float
+    tolerance: float
+    reason: str
+    units: str = "1"
+    scheme: str = ""
+
+    @property
+    def error(self) -> float:
+        """Distance of what was obtained from what was expected."""
+        return self.obtained - self.expected
+
+    @property
+    def holds(self) -> bool:
+        """Whether the row is within its tolerance."""
+        return abs(self.error) <= self.tolerance
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A line of a figure, or marks where `marks` is true.
+
+    Attributes
+    ----------
+    x, y : ndarray
+        Abscissas and ordinates.
+    label : str
+        What it is.
+    marks : bool, optional
+        Whether to draw marks.
+    """
+
+    x: Array
+    y: Array
+    label: str
+    marks: bool = False
+
+
+@dataclass(frozen=True)
+class Sketch:
+    """What the small figure of a case shows.
+
+    Attributes
+    ----------
+    x, y : str
+        Labels of the axes.
+    curves : list of Curve
+        The lines.
+    logarithmic : bool, optional
+        Whether both axes are logarithmic.
+    """
+
+    x: str
+    y: str
+    curves: list[Curve]
+    logarithmic: bool = False
+
+
+@dataclass
+class Outcome:
+    """What a case yields.
+
+    Attributes
+    ----------
+    rows : list of Row
+        Its quantities.
+    sketch : Sketch
+        Its figure.
+    notes : list of str, optional
+        What else was seen, without a verdict.
+    """
+
+    rows: list[Row]
+    sketch: Sketch
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A case whose answer is known.
+
+    Attributes
+    ----------
+    name : str
+        Its short name, which also names its figure.
+    title : str
+        What it is, in a phrase.
+    source : str
+        Where the answer comes from.
+    run : callable
+        Runs it and returns an `Outcome`.
+    """
+
+    name: str
+    title: str
+    source: str
+    run: Callable[[], Outcome] = field(repr=False)
+
+
+def schemes() -> list[Scheme]:
+    """Return every time scheme."""
+    return [scheme() for scheme in SCHEMES.values()]
+
+
+def table_row(case: Case, row: Row) -> dict[str, Any]:
+    """Return a row as it stands in `verification.json`."""
+    return {
+        "case": case.name,
+        "quantity": row.quantity,
+        "scheme": row.scheme,
+        "expected": _number(row.expected),
+        "obtained": _number(row.obtained),
+        "error": _number(row.error),
+        "tolerance": _number(row.tolerance),
+        "reason": row.reason,
+        "units": row.units,
+        "holds": bool(row.holds),
+        "source": case.source,
+    }
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def by_scheme(rows_of: Callable[[Scheme], Sequence[Row]]) -> list[Row]:
+    """Return the rows of a function of the scheme, for every scheme."""
+    return [row for scheme in schemes() for row in rows_of(scheme)]

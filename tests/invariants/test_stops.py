@@ -1,0 +1,268 @@
+"""Refuse to lie: every end is reached, says when, where and why, and keeps what was recorded before."""
+
+from __future__ import annotations
+
+from math import radians
+
+import numpy as np
+import pytest
+from physics.cases import SCHEME_NAMES, SCHEMES
+
+import stridula as st
+from stridula._kernels import layout
+from stridula.integration import run as run_module
+from stridula.integration.stops import CAUSE, ENDED, WHAT, energy_created
+
+BOTH = pytest.mark.parametrize("scheme", SCHEMES, ids=SCHEME_NAMES)
+STEP = 1e-4
+MASS = st.PointMass(0.2)
+
+
+def oscillator(law=None, history=None, size=0.0) -> st.System:
+    """A mass on a belt on a spring; a force of `size` along x from a history."""
+    contact = st.PointContact(MASS.centre, st.RigidTrack(0.1), friction=law or st.Coulomb(0.3), name="shoe", gap=1e-6)
+    drives = [st.Force(MASS.centre, y=-2.0), st.Force(MASS.centre, x=size, history=history or st.Constant())]
+    joints = [st.Spring(MASS.centre, stiffness=500.0), st.Dashpot(MASS.centre, coefficient=0.5)]
+    return st.System(contact, drives, joints)
+
+
+def stopped(system, duration=0.2, **words):
+    """The exception that a run ends with; its message is one line."""
+    with pytest.raises(st.Diverged) as caught:
+        st.simulate(system, duration, **{"step": STEP, "sample_rate": 1e4, "probes": []} | words)
+    assert "\n" not in str(caught.value)
+    return caught.value
+
+
+def check(stop, ended, until, name="shoe"):
+    """The end is named in record and message, with time, contact and cause; the record before it is whole."""
+    record, message = stop.record, str(stop)
+    assert record.attrs["ended"] == ended
+    assert WHAT[ended] in message
+    assert f"likely cause: {CAUSE[ended]}" in message
+    assert f"step {STEP:.3g} s" in message
+    assert f"after t = {record.sizes['time'] * STEP:.6g} s" in message
+    assert f"{name} s" in message
+    for word in (" at ", "N normal", "N tangential"):
+        assert word in message
+    assert until[0] <= record.sizes["time"] <= until[1]
+    for column in record.data_vars:
+        if "time" in record[column].dims:
+            assert np.all(np.isfinite(record[column])), column
+
+
+def check_refused(stop, system, **words):
+    with pytest.raises(
+        ValueError, match=rf"^start must be a run that can go on, got one that ended '{ended_of(stop)}'"
+    ):
+        st.simulate(system, 0.1, **{"step": STEP, "sample_rate": 1e4, "probes": [], "start": stop.record} | words)
+
+
+def ended_of(stop):
+    return stop.record.attrs["ended"]
+
+
+def test_every_way_to_end_badly_has_its_words():
+    for ended in ENDED.values():
+        assert (ended in WHAT) == (ended in CAUSE) == (ended not in ("finished", "off the track"))
+
+
+@BOTH
+def test_not_finite(scheme):
+    """A force that overflows at 0.1 s."""
+    system = oscillator(history=st.Sampled((0.0, 0.1, 0.101), (0.0, 0.0, 1.0)), size=1e200)
+    stop = stopped(system, scheme=scheme)
+    check(stop, "not finite", (990, 1010))
+    check_refused(stop, system, scheme=scheme)
+
+
+def faulty(monkeypatch, change):
+    """Put a fault into the arrays that the march reads."""
+    recurrence = run_module.recurrence
+
+    def wrong(*arguments):
+        modes = recurrence(*arguments)
+        change(modes)
+        return modes
+
+    monkeypatch.setattr(run_module, "recurrence", wrong)
+
+
+def chain() -> st.System:
+    """Two masses coupled by a spring and a dashpot."""
+    other = st.PointMass(0.1, "other")
+    joints = [st.Spring(MASS.centre, other.centre, stiffness=800.0), st.Dashpot(other.centre, coefficient=1.0)]
+    alone = oscillator()
+    return st.System(alone.contact, alone.drives, [*alone.connections, *joints])
+
+
+def damping_below_zero(modes):
+    """A dashpot that gives: increments that grow by themselves."""
+    modes.block[layout.B, 0] += 0.02 * (modes.block[layout.B, 0] > 0)
+    modes.matrices[layout.KEPT, :1, :1] += 0.02
+
+
+def heavier_answer(modes):
+    """Contact forces that move what they push by more than its mass allows."""
+    modes.block[layout.CH] *= 1.001
+    modes.matrices[layout.MOBILITY] *= 1.001
+
+
+def leaking_energy(modes):
+    """A kinetic energy that is not that of the march."""
+    modes.block[layout.HALF_OVER_CH] *= 1.0 + 1e-6
+    modes.matrices[layout.KINETIC] *= 1.0 + 1e-6
+
+
+@BOTH
+@pytest.mark.parametrize("fault", [damping_below_zero, heavier_answer, leaking_energy])
+@pytest.mark.parametrize("make", [oscillator, chain])
+def test_energy_from_nowhere(make, fault, scheme, monkeypatch):
+    """A fault in the recurrence shows in the ledger, long before anything overflows."""
+    system = make()
+    st.simulate(system, 0.2, scheme=scheme, step=STEP, sample_rate=1e4, probes=[])
+    faulty(monkeypatch, fault)
+    stop = stopped(system, scheme=scheme)
+    check(stop, "energy created", (0, 1000))
+    monkeypatch.undo()
+    check_refused(stop, system, scheme=scheme)
+
+
+def test_energy_from_nowhere_keeps_the_samples_before(monkeypatch):
+    """The record kept is that of the sound run, bit for bit, up to the sample that is wrong."""
+    system = oscillator(history=st.Harmonic(20.0), size=1.0)
+    words = {"step": STEP, "sample_rate": 1e4, "probes": [st.Velocity(MASS.centre, "x")]}
+    whole = st.simulate(system, 0.2, **words)
+    march = run_module.march
+
+    def wrong(*arguments):
+        done = march(*arguments)
+        arguments[-3][700:, layout.DRIVE_WORK] += 1.0
+        return done
+
+    monkeypatch.setattr(run_module, "march", wrong)
+    stop = stopped(system, probes=words["probes"])
+    check(stop, "energy created", (700, 700))
+    for name in ("normal_force", "tangential_force", "kinetic_and_elastic", "velocity"):
+        # The last sample of a probe has nothing beyond it to be filtered with.
+        np.testing.assert_array_equal(stop.record[name][:699], whole[name][:699])
+
+
+@pytest.mark.parametrize(
+    ("change", "wrong"),
+    [
+        (lambda e: None, None),
+        (lambda e: e[layout.DRIVE_WORK].__setitem__(slice(30, None), 2.0), 30),
+        (lambda e: e[layout.STORED].__setitem__(slice(40, None), -1e-3), 40),
+        (lambda e: e[layout.FRICTION_LOSS].__setitem__(slice(50, None), -1e-3), 50),
+    ],
+)
+def test_what_counts_as_energy_from_nowhere(change, wrong):
+    """A ledger that does not close, stored energy below zero, friction that gives some back."""
+    energies = np.zeros((layout.ENERGIES, 100))
+    energies[layout.STORED] = energies[layout.DRIVE_WORK] = np.linspace(0.0, 1.0, 100)
+    change(energies)
+    assert energy_created(energies, np.zeros(layout.ENERGIES), 0.0, 1.0, 0.0, True) == wrong
+
+
+def test_friction_of_a_law_with_state_may_give_back_what_it_stored():
+    energies = np.zeros((layout.ENERGIES, 100))
+    energies[layout.STORED] = energies[layout.DRIVE_WORK] = 1.0
+    energies[layout.FRICTION_LOSS, :50] = 1e-3
+    assert energy_created(energies, np.zeros(layout.ENERGIES), 0.0, 1.0, 0.0, True) == 50
+    assert energy_created(energies, np.zeros(layout.ENERGIES), 0.0, 1.0, 0.0, False) is None
+
+
+def groove(opening, mu=0.0) -> st.System:
+    """A mass pressed by 1 N into a groove whose walls stand `opening` degrees apart."""
+    steep = radians(90.0 - opening / 2.0)
+    walls = [
+        st.PointContact(MASS.centre, st.RigidTrack(), inclination=lean, friction=st.Coulomb(mu), name=name)
+        for name, lean in (("left", -steep), ("right", steep))
+    ]
+    return st.System(walls, [st.Force(MASS.centre, y=-1.0)])
+
+
+def test_a_wide_groove_is_solved():
+    """Each wall carries 1 / (2 sin(half the opening)) N."""
+    run = st.simulate(groove(20.0), 0.01, step=STEP, sample_rate=1e4, probes=[])
+    assert not run.unsolved_steps.any()
+    assert run.contact_sweeps.max() > 1
+    np.testing.assert_allclose(run.normal_force.values[-1], 0.5 / np.sin(radians(10.0)), rtol=1e-9)
+
+
+@pytest.mark.parametrize("opening", [1.0, 0.3, 0.1, 0.01])
+@pytest.mark.parametrize("mu", [0.0, 0.01])
+def test_a_narrow_groove_is_counted_or_stopped_or_right(opening, mu):
+    """Far more sweeps than the most would be needed. No force may pass for found that leaves the walls overlapped.
+
+    An exact answer, a step counted as unsolved with forces right to the tolerance of a stop, or a stop; never a run
+    that goes on with a hundredth of the force.
+    """
+    try:
+        run = st.simulate(groove(opening, mu), 0.01, step=STEP, sample_rate=1e4, probes=[])
+    except st.Diverged as stop:
+        check(stop, "contact unsolved", (0, 99), name="left")
+        check_refused(stop, groove(opening, mu))
+        return
+    fall = STEP**2 / 0.2 * np.sin(radians(opening / 2.0))
+    assert run.gap.values.min() > -1e-2 * fall
+    if mu == 0.0:
+        np.testing.assert_allclose(run.normal_force.values[-1], 0.5 / np.sin(radians(opening / 2.0)), rtol=1e-2)
+
+
+def test_too_few_sweeps_are_counted():
+    """Three sweeps are no solution: every step in which both walls press is counted, or the run stops."""
+    try:
+        run = st.simulate(
+            groove(60.0),
+            0.01,
+            step=STEP,
+            sample_rate=1e4,
+            probes=[],
+            contact_solve=st.GaussSeidel(sweeps=3),
+        )
+    except st.Diverged as stop:
+        check(stop, "contact unsolved", (0, 99), name="left")
+        return
+    assert run.unsolved_steps.values[:2].sum() > 0
+    assert run.contact_sweeps.max() == 3
+
+
+def test_a_stop_in_the_first_sample_keeps_an_empty_record():
+    """Nothing was recorded before; the message still says where the contacts are."""
+    with pytest.raises(st.Diverged) as caught:
+        st.simulate(groove(60.0), 0.01, step=STEP, sample_rate=1e4, probes=[], contact_solve=st.GaussSeidel(sweeps=1))
+    check(caught.value, "contact unsolved", (0, 0), name="left")
+
+
+def walking_block(law) -> st.System:
+    """A block on two feet that is pressed and shaken; each foot lets go where the other one holds."""
+    half, mass = 0.03, 0.5
+    points, k = {}, np.zeros((7, 7))
+    for n, place in enumerate((-half, half)):
+        own = slice(3 + 2 * n, 5 + 2 * n)
+        k[own, own] = [[1e5, 3e4], [3e4, 2e5]]
+        points[f"foot {n}"] = np.zeros((2, 7))
+        points[f"foot {n}"][:, :3] = [[1.0, 0.0, 0.02], [0.0, 1.0, place]]
+        points[f"foot {n}"][:, own] = np.eye(2)
+    points["back"] = np.zeros((2, 7))
+    points["back"][:, :3] = [[1.0, 0.0, -0.02], [0.0, 1.0, 0.0]]
+    m = np.diag([mass, mass, mass * 4e-4] + [0.05 * mass] * 4)
+    block = st.ReducedBody(m, k, points, damping=1e-4 * k, name="block")
+    feet = [st.PointContact(block.at(f"foot {n}"), st.RigidTrack(), friction=law, name=f"foot {n}") for n in range(2)]
+    drives = [
+        st.Force(block.at("back"), y=-20.0),
+        st.Force(block.at("back"), x=9.0, history=st.Harmonic(60.0)),
+    ]
+    return st.System(feet, drives, [st.Spring(block.at("back"), stiffness=1e4)])
+
+
+@BOTH
+@pytest.mark.parametrize("law", [st.Coulomb(0.6), st.StaticKinetic(0.6, 0.3), st.Stribeck(0.6, 0.3, 0.01)])
+def test_two_feet_that_let_go_find_their_forces(law, scheme):
+    """A foot that breaks away unloads by the drop from the static to the kinetic force, and what that does to the other
+    foot must not make the first one stick again: every step has a solution, whatever lets go first."""
+    run = st.simulate(walking_block(law), 0.3, scheme=scheme, step=5e-5, sample_rate=2e4, probes=[])
+    assert not run.unsolved_steps.any()
+    assert {1, 2} <= set(np.unique(run.status.values))

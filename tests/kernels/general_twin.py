@@ -1,0 +1,523 @@
+"""A slow twin of the march for everything: any bodies, connections, tracks and laws, several contacts.
+
+Written from the equations of the model in their two-position form, with one matrix for all modes of all bodies::
+
+    q[n+1] = A q[n] - B q[n-1] + L f[n] + C h g[n]
+
+for loads f and contact forces g. The exact scheme takes its matrices from the exponential of the state matrix over
+a step forwards and one backwards. The contacts are solved together by trying every combination of their states, the
+velocities of sliding from root finding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import combinations, product
+from types import SimpleNamespace
+
+import numpy as np
+from scipy.linalg import expm
+from scipy.optimize import brentq, root
+
+import stridula as st
+
+SEPARATED, STICKING, SLIDING = 0, 1, 2
+KEPT = ["normal", "tangential", "status", "position", "gap", "height", "state", "solutions"]
+KEPT += ["stored", "drive", "contact", "friction", "convection", "damping"]
+
+
+# The recurrence.
+
+
+def central(stiffness, damping, h):
+    """A, B, C, L of ``q'' + D q' + K q = f`` with centred differences."""
+    one = np.eye(len(stiffness))
+    left = np.linalg.inv(one / h**2 + damping / (2 * h))
+    return left @ (2 * one / h**2 - stiffness), left @ (one / h**2 - damping / (2 * h)), left / h, left
+
+
+def exact(stiffness, damping, h):
+    """A, B, C, L of exact motion: a step forwards and one backwards share the velocity in the middle."""
+    e, f, j = transition(stiffness, damping, h)
+    e_back, f_back, j_back = transition(stiffness, damping, -h)
+    turn = np.linalg.solve(f_back.T, f.T).T
+    return e - turn @ e_back, -turn, f, j - turn @ j_back
+
+
+def transition(stiffness, damping, h):
+    """What a time `h` makes of position, velocity and constant force in the position: three matrices."""
+    n = len(stiffness)
+    rate = np.zeros((3 * n, 3 * n))
+    rate[:n, n : 2 * n] = rate[n : 2 * n, 2 * n :] = np.eye(n)
+    rate[n : 2 * n, :n], rate[n : 2 * n, n : 2 * n] = -stiffness, -damping
+    # Scaled to displacements: velocities in units of 1/h, forces in units of 1/h².
+    units = np.repeat([1.0, abs(h), h**2], n)
+    passed = expm(rate * h * units[:, None] / units) / units[:, None] * units
+    return np.split(passed[:n], 3, axis=1)
+
+
+def before_start(scheme, stiffness, damping, h, q, v, f):
+    """Position a step before the start, of motion through `q` with `v` under the constant force `f`."""
+    a, b, _, load = scheme(stiffness, damping, h)
+    if scheme is central:
+        return np.linalg.solve(np.eye(len(q)) + b, a @ q + load @ f - 2 * h * v)
+    e, by_velocity, by_force = transition(stiffness, damping, -h)
+    return e @ q + by_velocity @ v + by_force @ f
+
+
+# The laws of friction.
+
+
+def has_state(law):
+    return isinstance(law, (st.LuGre, st.RateAndState))
+
+
+def held_up_to(law, was_sticking):
+    """Ratio of forces up to which a contact sticks."""
+    if isinstance(law, st.Coulomb):
+        return law.coefficient
+    if isinstance(law, st.StaticKinetic) and not was_sticking:
+        return law.kinetic
+    return law.static
+
+
+def curve(law, speed):
+    """Ratio of forces in sliding at `speed`."""
+    if isinstance(law, st.Coulomb):
+        return law.coefficient
+    if isinstance(law, st.StaticKinetic):
+        return law.kinetic
+    if isinstance(law, st.LinearWeakening):
+        return max(law.static - law.slope * speed, law.kinetic)
+    exponent, viscous = (law.exponent, law.viscous) if isinstance(law, st.Stribeck) else (1.0, 0.0)
+    return law.kinetic + (law.static - law.kinetic) * np.exp(-((speed / law.velocity) ** exponent)) + viscous * speed
+
+
+def state_after(law, state, v, h):
+    """Internal state after `h` at the constant slip velocity `v`."""
+    speed = abs(v)
+    if isinstance(law, st.LuGre):
+        limit = (law.kinetic + (law.static - law.kinetic) * np.exp(-((v / law.velocity) ** 2))) / law.stiffness
+        if speed * h < 1e-9 * limit:
+            return state + (v - speed * state / limit) * h
+        return np.sign(v) * limit + (state - np.sign(v) * limit) * np.exp(-speed * h / limit)
+    distance = law.slip_distance
+    if law.evolution == "aging":
+        if speed * h < 1e-9 * distance:
+            return state + (1 - speed * state / distance) * h
+        return distance / speed + (state - distance / speed) * np.exp(-speed * h / distance)
+    if speed == 0:
+        return state
+    return distance / speed * (speed * state / distance) ** np.exp(-speed * h / distance)
+
+
+def ratio_with_state(law, state, v, h):
+    """Ratio of forces over a step at slip velocity `v`: with the mean of the state, and its rate."""
+    new = state_after(law, state, v, h)
+    mean, rate = (state + new) / 2, (new - state) / h
+    if isinstance(law, st.LuGre):
+        return law.stiffness * mean + law.damping * rate + law.viscous * v
+    exponent = (law.reference + law.b * np.log(law.velocity * mean / law.slip_distance)) / law.a
+    return law.a * np.arcsinh(v / (2 * law.velocity) * np.exp(exponent))
+
+
+def bend(law, state):
+    """Slip speed above which the ratio of a law begins to bend."""
+    if isinstance(law, st.RateAndState):
+        exponent = (law.reference + law.b * np.log(law.velocity * state / law.slip_distance)) / law.a
+        return 2 * law.velocity * np.exp(-exponent)
+    return law.static / law.slope if isinstance(law, st.LinearWeakening) else law.velocity
+
+
+def state_of_new(law):
+    if isinstance(law, st.RateAndState):
+        return law.slip_distance / law.velocity if law.initial_state is None else law.initial_state
+    return 0.0
+
+
+# The contacts of one step.
+
+
+def solve_contacts(gaps, slips, strayed, w, before, h, guess=None, let_go=()):
+    """Return every consistent (combination, list of (status, normal, tangential)) of the contacts.
+
+    `gaps` and `slips` are what no contact force would lead to, ``w @ (N1, -T1, N2, ...)`` what forces add; `strayed` is
+    how far each stick has moved off its anchor. `before` has the law, last slip, state and last status of each. With a
+    `guess` that combination comes first, and the first that is consistent is enough. Contacts that `let_go` are held
+    by their kinetic coefficient, and slide where they could also stick.
+    """
+    states = [("open", "slide with state") if has_state(b.law) else ("open", "stick", 1, -1) for b in before]
+    found = []
+    for combination in ([] if guess is None else [guess]) + list(product(*states)):
+        tried = forces_of(combination, gaps, slips, strayed, w, before, h)
+        if tried is None or not np.all(np.isfinite(tried)):
+            continue
+        forces = tried
+        outcome = []
+        for i, kind in enumerate(combination):
+            others = forces.copy()
+            others[2 * i : 2 * i + 2] = 0.0
+            gap, slip = gaps[i] + w[2 * i] @ others, slips[i] + w[2 * i + 1] @ others
+            normal, tangential = forces[2 * i], -forces[2 * i + 1]
+            own = w[2 * i : 2 * i + 2, 2 * i : 2 * i + 2]
+            if (kind == "open") != (gap >= 0):
+                break
+            if kind == "open":
+                outcome.append((SEPARATED, 0.0, 0.0))
+                continue
+            velocity = (slips[i] + w[2 * i + 1] @ forces + before[i].last_slip) / (2 * h)
+            if kind == "slide with state":
+                small = before[i].law.velocity
+                outcome.append((STICKING if abs(velocity) < small else SLIDING, normal, tangential))
+                continue
+            hold = np.linalg.solve(own, [-gap, -slip - strayed[i]])
+            holds = (
+                abs(hold[1]) <= held_up_to(before[i].law, before[i].status == STICKING and i not in let_go) * hold[0]
+            )
+            after = slips[i] + w[2 * i + 1] @ forces
+            if kind == "stick" and holds:
+                outcome.append((STICKING, normal, tangential))
+            elif kind in (1, -1) and (not holds or i in let_go) and kind * (after + strayed[i]) > 0 and normal > 0:
+                outcome.append((SLIDING, normal, tangential))
+            else:
+                break
+        if len(outcome) == len(before):
+            found.append((combination, outcome))
+            if guess is not None:
+                break
+    return found
+
+
+def forces_of(combination, gaps, slips, strayed, w, before, h):
+    """Forces (N1, -T1, N2, ...) of a combination of states, or None; linear but for the velocities of sliding."""
+    laws = [b.law for b in before]
+    curved = [
+        i
+        for i, kind in enumerate(combination)
+        if kind not in ("open", "stick") and not isinstance(laws[i], (st.Coulomb, st.StaticKinetic))
+    ]
+
+    def given(velocities):
+        ratios = dict(zip(curved, velocities, strict=True))
+        left, right = np.eye(len(w)), np.zeros(len(w))
+        for i, kind in enumerate(combination):
+            if kind == "open":
+                continue
+            left[2 * i], right[2 * i] = w[2 * i], -gaps[i]
+            if kind == "stick":
+                left[2 * i + 1], right[2 * i + 1] = w[2 * i + 1], -slips[i] - strayed[i]
+                continue
+            if kind == "slide with state":
+                ratio = ratio_with_state(laws[i], before[i].state, ratios[i], h)
+            else:
+                ratio = kind * curve(laws[i], max(kind * ratios.get(i, 0.0), 0.0))
+            left[2 * i + 1] = 0.0
+            left[2 * i + 1, 2 * i : 2 * i + 2] = ratio, 1.0
+        try:
+            return np.linalg.solve(left, right)
+        except np.linalg.LinAlgError:
+            return np.full(len(w), np.nan)
+
+    def error(velocities):
+        forces = given(velocities)
+        reached = [(slips[i] + w[2 * i + 1] @ forces + before[i].last_slip) / (2 * h) for i in curved]
+        return np.array(velocities) - reached
+
+    if not curved:
+        return given([])
+    free = [(slips[i] + before[i].last_slip) / (2 * h) for i in curved]
+    if len(curved) == 1:
+        sense = combination[curved[0]]
+        if sense in (1, -1) and sense * error([0.0])[0] >= 0:
+            return given([0.0])  # Moved against the sense on average: it turned within the step.
+        reach = abs(free[0]) + 1e-12
+        for _ in range(60):
+            ends = (-reach, reach) if sense not in (1, -1) else tuple(sorted((0.0, sense * reach)))
+            values = [error([v])[0] for v in ends]
+            if not np.all(np.isfinite(values)):
+                return None
+            if values[0] * values[1] <= 0:
+                v = brentq(lambda v: error([v])[0], *ends, xtol=1e-30, rtol=4 * np.finfo(float).eps)
+                return given([v])
+            reach *= 2
+        return None
+    # v = s sinh(y), so that creep is on one line with sliding.
+    scales = np.array([bend(laws[i], before[i].state) for i in curved])
+    unit = np.abs(free).max() + max(abs(before[i].last_slip) / h for i in curved) + 1e-12
+    for start in ([before[i].last_slip / h for i in curved], free):
+        y = np.arcsinh(np.array(start) / scales)
+        solved = root(lambda y: error(scales * np.sinh(y)) / unit, y, method="hybr", tol=1e-15)
+        if np.abs(solved.fun).max() < 1e-10:
+            return given(scales * np.sinh(solved.x))
+    return None
+
+
+# The system as matrices.
+
+
+@dataclass
+class Matrices:
+    """A system in modal coordinates, body by body in any order."""
+
+    system: st.System
+    spans: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        size = 0
+        for body in self.system.bodies:
+            count = body.modes(self.held(body)).count
+            self.spans[body] = slice(size, size + count)
+            size += count
+        self.size = size
+        self.stiffness, self.damping = np.zeros((size, size)), np.zeros((size, size))
+        for body, span in self.spans.items():
+            modes = body.modes(self.held(body))
+            self.stiffness[span, span] = np.diag(modes.angular_frequency**2)
+            own = np.diag(2 * modes.damping * modes.angular_frequency)
+            self.damping[span, span] = own if modes.damping_matrix is None else modes.damping_matrix
+        for joint in self.system.connections:
+            axis = {"x": 0, "y": 1}[joint.direction]
+            row = self.trace(joint.first)[axis] - (self.trace(joint.second)[axis] if joint.second else 0.0)
+            if isinstance(joint, st.Spring):
+                self.stiffness += joint.stiffness * np.outer(row, row)
+            else:
+                self.damping += joint.coefficient * np.outer(row, row)
+
+    def held(self, body):
+        return any(isinstance(d, st.ImposedVelocity) and d.point.body == body for d in self.system.drives)
+
+    def spread(self, body, row):
+        out = np.zeros((*np.shape(row)[:-1], self.size))
+        out[..., self.spans[body]] = row
+        return out
+
+    def trace(self, point):
+        return self.spread(point.body, point.body.trace(point.position, self.held(point.body)))
+
+    def loads(self, h):
+        """Modal force of all drives as a function of time; position and velocity at the start."""
+        parts, q, v = [], np.zeros(self.size), np.zeros(self.size)
+
+        def moved(body):
+            return self.spread(body, body.modes(self.held(body)).translation)
+
+        for drive in self.system.drives:
+            if isinstance(drive, st.Force):
+                body = drive.point.body
+                along, across = np.array([1.0, 0.0]), np.array([0.0, 1.0])
+                if isinstance(body, st.FiniteElementBeam):
+                    s, c = np.sin(body.angle), np.cos(body.angle)
+                    along, across = np.array([s, c]), np.array([c, -s])
+                world = drive.axial * along + drive.transverse * across + np.array([drive.x, drive.y])
+                parts.append((world @ self.trace(drive.point), drive.history.factor))
+            elif isinstance(drive, st.ImposedVelocity):
+                parts.append((-drive.normal_load * self.trace(drive.point)[1], np.ones_like))
+                factor = drive.history.factor
+                inertia = -drive.velocity * moved(drive.point.body)[0]
+                parts.append((inertia, lambda t, f=factor: (f(t + h / 2) - f(t - h / 2)) / h))
+            elif isinstance(drive, st.Gravity):
+                parts += [(-drive.acceleration * moved(body)[1], np.ones_like) for body in self.spans]
+            elif isinstance(drive, st.InitialVelocity):
+                v += np.array([drive.x, drive.y]) @ moved(drive.body)
+            elif isinstance(drive, st.InitialState):
+                for into, values in ((q, drive.displacement), (v, drive.velocity)):
+                    if values is not None:
+                        into += self.spread(drive.body, drive.body.modal_coordinates(values))
+
+        def force(t):
+            return sum((factor(np.array([t]))[0] * row for row, factor in parts), np.zeros(self.size))
+
+        return force, q, v
+
+
+class Touch:
+    """One contact: its rows at an abscissa, its imposed motions, and what it carries."""
+
+    def __init__(self, contact, matrices):
+        self.contact, self.matrices = contact, matrices
+        a = contact.inclination
+        self.normal, self.tangent = np.array([-np.sin(a), np.cos(a)]), np.array([np.cos(a), np.sin(a)])
+        self.tip = matrices.trace(contact.tip)
+        self.along_beam = isinstance(contact.track, st.ModalBeam)
+        self.law = contact.friction
+        self.status, self.state, self.anchor = SEPARATED, state_of_new(self.law), 0.0
+        self.material = self.place = self.place_before = self.last_slip = 0.0
+
+    def rows(self, x):
+        """Rows of gap and of tangential displacement with the track at abscissa `x`, and slopes of the track."""
+        track, m = self.contact.track, self.matrices
+        against, slopes = np.zeros((2, m.size)), np.zeros((2, m.size))
+        if isinstance(track, st.BodyPoint):
+            against = m.trace(track)
+        if self.along_beam:
+            first, (bending, axial) = m.spans[track].start, track.harmonics
+            size = np.sqrt(2 / track.total_mass)
+            for side, start, count in ((1, first, bending), (0, first + bending, axial)):
+                k = np.pi / track.length * np.arange(1, count + 1)
+                against[side, start : start + count] = size * np.sin(k * x)
+                slopes[side, start : start + count] = size * k * np.cos(k * x)
+        return self.normal @ (self.tip - against), self.tangent @ (self.tip - against), slopes
+
+    def motions(self, t):
+        """Imposed motions: of the tip and of the track along the tangent, and of the gap."""
+        tip, track = np.zeros(2), np.zeros(2)
+        t = np.array([t])
+        for drive in self.matrices.system.drives:
+            if isinstance(drive, st.ImposedVelocity):
+                shift = np.array([drive.velocity * drive.history.integral(t)[0], 0.0])
+                tip += shift * (self.contact.tip.body == drive.point.body)
+                track += shift * (self.contact.track_body == drive.point.body)
+        other = self.contact.track
+        if isinstance(other, st.RigidTrack):
+            track += other.velocity * other.history.integral(t)[0] * self.tangent
+            track += other.normal_velocity * other.normal_history.integral(t)[0] * self.normal
+        return self.tangent @ tip, self.tangent @ track, self.normal @ (tip - track)
+
+    def abscissa(self, q, t):
+        """Abscissa of the tip; of a frozen contact, displacement against the other point."""
+        row = self.tip
+        if isinstance(self.contact.track, st.BodyPoint):
+            row = row - self.matrices.trace(self.contact.track)
+        return self.contact.at + self.tangent @ row @ q + self.motions(t)[0]
+
+
+def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
+    """March `steps` steps of `h` [s] and return everything; contact columns of shape (steps, contacts)."""
+    m = Matrices(system)
+    a, b, c, load = scheme(m.stiffness, m.damping, h)
+    force, q, velocity = m.loads(h)
+    impulse = np.linalg.solve(c, load)
+    touches = [Touch(contact, m) for contact in system.contacts]
+
+    def begin(q_before):
+        """What the contacts carry at the start; return those that are closed."""
+        for one in touches:
+            x = one.contact.at
+            gap_row, slip_row, _ = one.rows(x)
+            tip, track, _ = one.motions(0.0)
+            tip_before, track_before, _ = one.motions(-h)
+            tip_after, track_after, _ = one.motions(h)
+            one.material = one.anchor = x + slip_row @ q
+            one.last_slip = slip_row @ (q - q_before) + (tip - tip_before) - (track - track_before)
+            one.place, one.place_before = one.abscissa(q, 0.0), one.abscissa(q_before, -h)
+            speed = slip_row @ velocity + (tip_after - tip_before - track_after + track_before) / (2 * h)
+            if has_state(one.law):
+                # The state is kept between the steps: half a step back along the line, never below half of it.
+                new = state_of_new(one.law)
+                one.state = 2 * new - state_after(one.law, new, speed, h / 2)
+                one.state = max(one.state, new / 2) if isinstance(one.law, st.RateAndState) else one.state
+            one.closed = one.contact.gap + gap_row @ q == 0.0
+            one.status = STICKING if one.closed and speed == 0.0 else SEPARATED
+        return [one for one in touches if one.closed]
+
+    def start_under(f, q=q, velocity=velocity):
+        return before_start(scheme, m.stiffness, m.damping, h, q, velocity, f)
+
+    q_before = start_under(force(0.0))
+    closed = begin(q_before)
+    if closed:
+        # Forces of closed contacts that act before the start as they do in the first step.
+        rows = np.array([row for one in closed for row in one.rows(one.contact.at)[:2]])
+        still = np.zeros(m.size)
+        answers = np.array([h * c @ row - b @ start_under(row, still, still) for row in rows])
+        first = a @ q - b @ q_before + load @ force(0.0)
+        moved = [np.subtract(one.motions(h), one.motions(0.0)) for one in closed]
+        gaps = [one.contact.gap + rows[2 * i] @ first + moved[i][2] for i, one in enumerate(closed)]
+        slips = [rows[2 * i + 1] @ (first - q) + moved[i][0] - moved[i][1] for i in range(len(closed))]
+        _, found = solve_contacts(gaps, slips, [0.0] * len(closed), answers @ rows.T, closed, h)[0]
+        pushes = np.array([value for _, normal, tangential in found for value in (normal, -tangential)])
+        q_before = start_under(force(0.0) + pushes @ rows)
+        begin(q_before)
+
+    out = SimpleNamespace(**{name: [] for name in KEPT})
+    guess = None
+    work = dict.fromkeys(("drive", "contact", "friction", "convection", "damping"), 0.0)
+    for n in range(steps):
+        now, then = n * h, (n + 1) * h
+        f = force(now)
+        trial = a @ q - b @ q_before + load @ f
+        traces = [one.rows(one.abscissa(trial, then)) for one in touches]
+        motions = [one.motions(then) for one in touches]
+        rows = np.array([row for trace in traces for row in trace[:2]])
+        gaps = [
+            one.contact.gap + motion[2] + trace[0] @ trial
+            for one, motion, trace in zip(touches, motions, traces, strict=True)
+        ]
+        slips = [
+            one.contact.at + motion[0] - motion[1] + trace[1] @ trial - one.material
+            for one, motion, trace in zip(touches, motions, traces, strict=True)
+        ]
+        strayed = [one.material - one.anchor if one.status == STICKING else 0.0 for one in touches]
+        # Every combination is tried at one step in ten, to count those that are consistent.
+        found = solve_contacts(gaps, slips, strayed, h * rows @ c @ rows.T, touches, h, guess if n % 10 else None)
+        if not found:
+            # A foot that slides may be brought back under its static limit by the answer of another: it lets go.
+            feet = range(len(touches))
+            for let_go in (subset for size in range(1, len(feet) + 1) for subset in combinations(feet, size)):
+                found = solve_contacts(gaps, slips, strayed, h * rows @ c @ rows.T, touches, h, None, let_go)
+                if found:
+                    break
+        out.solutions.append(len(found))
+        if not found:
+            raise RuntimeError(f"no consistent state of the contacts at step {n}")
+        guess, found = found[0][0], found[0][1]
+        forces = np.array([value for _, normal, tangential in found for value in (normal, -tangential)])
+        push = rows.T @ forces
+        q_new = trial + h * c @ push
+
+        middle = (q_new - q_before) / 2
+        work["drive"] += impulse @ f @ middle / h
+        work["contact"] += push @ middle
+        for one, motion, trace, (status, normal, tangential) in zip(touches, motions, traces, found, strict=True):
+            tip, track, lift = np.subtract(motion, one.motions(now - h)) / 2
+            frame = tangential * (tip - track) - normal * lift
+            work["drive"] += frame
+            work["contact"] -= frame
+            material = one.contact.at + motion[0] - motion[1] + trace[1] @ q_new
+            slip, place = material - one.material, one.abscissa(q_new, then)
+            work["friction"] += tangential * slip
+            slope = (normal * trace[2][1] - tangential * trace[2][0]) @ q_new
+            work["convection"] += slope * (place - one.place_before) / 2
+            if status == STICKING and one.status != STICKING:
+                one.anchor = one.material
+            if has_state(one.law):
+                velocity_seen = (slip + one.last_slip) / (2 * h)
+                one.state = (
+                    state_of_new(one.law) if status == SEPARATED else state_after(one.law, one.state, velocity_seen, h)
+                )
+            one.status, one.material, one.last_slip = status, material, slip
+            one.place_before, one.place = one.place, place
+        d = q_new - q
+        if scheme is central:
+            work["damping"] += middle @ m.damping @ middle / h
+            stored = (d @ d / h**2 + q_new @ m.stiffness @ q) / 2
+        else:
+            inverse, one_ = np.linalg.inv(c), np.eye(m.size)
+            work["damping"] += middle @ inverse @ (one_ - b) @ middle / h
+            stored = d @ inverse @ (one_ + b) @ d / (4 * h) + q_new @ inverse @ (one_ - a + b) @ q / (2 * h)
+        out.stored.append(stored)
+        for name, value in work.items():
+            getattr(out, name).append(value)
+        out.normal.append([normal for _, normal, _ in found])
+        out.tangential.append([tangential for _, _, tangential in found])
+        out.status.append([status for status, _, _ in found])
+        out.position.append([one.place for one in touches])
+        out.state.append([one.state for one in touches])
+        out.gap.append(
+            [
+                one.contact.gap + motion[2] + trace[0] @ q_new
+                for one, motion, trace in zip(touches, motions, traces, strict=True)
+            ]
+        )
+        heights = []
+        for one, motion in zip(touches, motions, strict=True):
+            frozen = isinstance(one.contact.track, st.BodyPoint)
+            row = one.rows(0.0)[0] if frozen else one.normal @ one.tip
+            heights.append(one.contact.gap + motion[2] + row @ q_new)
+        out.height.append(heights)
+        q_before, q = q, q_new
+    out.last = (q_before, q)
+    for name, values in vars(out).items():
+        if name != "last":
+            setattr(out, name, np.array(values))
+    return out

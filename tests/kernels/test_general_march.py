@@ -1,0 +1,186 @@
+"""The compiled march against its general twin, step by step, for everything that a system may hold.
+
+The twin follows the two-position form with one matrix for all modes; see `test_march` for what its cancellation costs:
+1e-8 of the peak for positions and energies, 1e-6 for forces. A height is compared on the scale of all displacements.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from physics.cases import CASES, SCHEMES, STEP
+
+import stridula as st
+from kernels import general_twin as twin
+from kernels import systems
+from kernels.systems import SYSTEMS
+
+STEPS = 1000
+BOTH = [pytest.param(SCHEMES[0], twin.central, id="central"), pytest.param(SCHEMES[1], twin.exact, id="exact")]
+COLUMNS = {
+    "normal_force": ("normal", 1e-6),
+    "tangential_force": ("tangential", 1e-6),
+    "contact_position": ("position", 1e-8),
+    "kinetic_and_elastic": ("stored", 1e-8),
+    "drive_work": ("drive", 1e-8),
+    "contact_work": ("contact", 1e-6),
+    "friction_loss": ("friction", 1e-6),
+    "convection_work": ("convection", 1e-6),
+    "damping_loss": ("damping", 1e-8),
+    "friction_state": ("state", 1e-8),
+}
+ENERGIES = ("contact_work", "friction_loss", "convection_work", "damping_loss")
+
+
+def both(system, scheme, form, step, steps=STEPS):
+    run = st.simulate(system, steps * step, scheme=scheme, step=step, sample_rate=1 / step, probes=[])
+    return run, twin.march(system, form, step, steps)
+
+
+def disagreements(run, trail) -> dict[str, float]:
+    """Largest difference of each recorded column over its peak, where above its tolerance."""
+    found = {}
+    # A loss of nothing is round-off of the energy in play.
+    least = 1e-14 * max(np.abs(trail.stored).max(), np.abs(trail.drive).max())
+    for name, (attribute, tolerance) in COLUMNS.items():
+        if name not in run:
+            continue
+        expected = getattr(trail, attribute)
+        values = run[name].values.reshape(expected.shape)
+        peak = np.abs(expected[np.isfinite(values)]).max()
+        off = np.nanmax(np.abs(values - expected))
+        if off > tolerance * peak + least * (name in ENERGIES):
+            found[name] = off / max(peak, 1e-300)
+    # A height may be zero all along: on the scale of what moves.
+    moved = max(np.abs(trail.height).max(), np.ptp(trail.position))
+    for name in ("gap", "contact_height"):
+        expected = trail.gap if name == "gap" else trail.height
+        off = np.abs(run[name].values.reshape(expected.shape) - expected).max()
+        if off > 1e-8 * moved:
+            found[name] = off / moved
+    status = run.status.values.reshape(trail.status.shape)
+    if np.any(status != trail.status):
+        found["status"] = float(np.mean(status != trail.status))
+    return found
+
+
+@pytest.mark.parametrize(("scheme", "form"), BOTH)
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_kernel_and_twin_agree_at_every_step(name, scheme, form):
+    make, step = SYSTEMS[name]
+    run, trail = both(make(), scheme, form, step)
+    assert disagreements(run, trail) == {}
+    # Every combination of states was tried at one step in ten: never more than one held.
+    assert set(trail.solutions) == {1}
+    assert "unsolved_steps" not in run or not run.unsolved_steps.any()
+    assert set(np.unique(trail.status)) - {0}, "no contact in the steps compared: the case tests nothing"
+
+
+def test_the_systems_visit_all_states():
+    """Each state fills a tenth of some contact, sticking and separation under laws with and without state."""
+    shares = {}
+    for make, step in SYSTEMS.values():
+        system = make()
+        run = st.simulate(system, STEPS * step, step=step, sample_rate=1 / step, probes=[])
+        parts = run.status_share.values.reshape(STEPS, -1, 3).mean(axis=0)
+        for contact, part in zip(system.contacts, parts, strict=True):
+            kind = type(contact.friction)
+            shares[kind] = np.maximum(shares.get(kind, 0.0), part)
+    assert np.all(shares[st.Coulomb] > 0.1)
+    assert np.all(shares[st.StaticKinetic] > 0.1)
+    assert np.all(shares[st.LuGre] > 0.05)
+    assert np.all(shares[st.RateAndState] > 0.02)
+    for kind in (st.Stribeck, st.LinearWeakening):
+        assert np.all(shares[kind][1:] > 0.1)
+    assert shares[st.ExponentialWeakening][2] > 0.1
+
+
+@pytest.mark.parametrize(("scheme", "form"), BOTH)
+@pytest.mark.parametrize("name", CASES)
+def test_both_twins_follow_the_same_model(name, scheme, form):
+    """The cases of one slider on one beam, which `twin` marches mode by mode, by matrices."""
+    system = CASES[name]()
+    system = replace(system, contact=replace(system.contact, gap=1e-8))
+    run, trail = both(system, scheme, form, STEP, 300)
+    assert disagreements(run, trail) == {}
+
+
+def slightly(change, system):
+    """The system with one number or one part changed, or left out."""
+    contacts, joints = list(system.contacts), list(system.connections)
+    law = contacts[0].friction
+    if change == "damping of the bristles":
+        contacts[0] = replace(contacts[0], friction=replace(law, damping=law.damping * (1 + 1e-3)))
+    elif change == "effect of age":
+        contacts[0] = replace(contacts[0], friction=replace(law, b=law.b * (1 + 1e-4)))
+    elif change == "velocity of weakening":
+        contacts[0] = replace(contacts[0], friction=replace(law, velocity=law.velocity * (1 + 1e-4)))
+    elif change == "velocity of the belt":
+        contacts[0] = replace(contacts[0], track=replace(contacts[0].track, velocity=0.02 * (1 + 1e-5)))
+    elif change == "inclination":
+        contacts[0] = replace(contacts[0], inclination=contacts[0].inclination * (1 + 1e-5))
+    elif change == "dashpot left out":
+        joints = [joint for joint in joints if not isinstance(joint, st.Dashpot)]
+    elif change == "spring":
+        joints[0] = replace(joints[0], stiffness=joints[0].stiffness * (1 + 1e-5))
+    return st.System(contacts, system.drives, joints)
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [
+        ("damping of the bristles", "mass on a belt, bristles"),
+        ("effect of age", "mass on a belt, aging"),
+        ("velocity of weakening", "chain on a belt"),
+        ("velocity of the belt", "mass on a belt, static and kinetic"),
+        ("inclination", "inclined plane"),
+        ("inclination", "groove"),
+        ("dashpot left out", "beam on a spring"),
+        ("dashpot left out", "chain on a belt"),
+        ("spring", "frozen contact"),
+    ],
+)
+def test_comparison_rejects_a_wrong_twin(change, name):
+    """Negative control: what both should share is a little different in the twin."""
+    make, step = SYSTEMS[name]
+    system = make()
+    run, _ = both(system, SCHEMES[1], twin.exact, step, 1)
+    run = st.simulate(system, STEPS * step, step=step, sample_rate=1 / step, probes=[])
+    assert disagreements(run, twin.march(slightly(change, system), twin.exact, step, STEPS))
+
+
+def test_comparison_tells_an_exact_damping_matrix_from_its_diagonal():
+    """Negative control: the block's damping, which couples its modes, projected on the diagonal."""
+    make, step = SYSTEMS["thrown block"]
+    system = make()
+    block = system.contacts[0].tip.body
+    diagonal = np.diag(np.diag(block.modes().damping_matrix))
+    inverse = np.linalg.inv(block.shapes)
+    projected = replace(block, damping=inverse.T @ diagonal @ inverse)
+    ratios = projected.modes()
+    assert ratios.damping_matrix is None
+    np.testing.assert_allclose(2 * ratios.damping * ratios.angular_frequency, np.diag(diagonal), atol=1e-9)
+    moved = [
+        replace(contact, tip=projected.at(contact.tip.position), friction=contact.friction)
+        for contact in system.contacts
+    ]
+    drives = [replace(system.drives[0], body=projected), system.drives[1]]
+    other = st.System(moved, drives, [replace(system.connections[0], first=projected.at("back"))])
+    run = st.simulate(other, STEPS * step, step=step, sample_rate=1 / step, probes=[])
+    assert disagreements(run, twin.march(other, twin.exact, step, STEPS)) == {}
+    assert disagreements(run, twin.march(system, twin.exact, step, STEPS))
+
+
+def test_comparison_tells_the_mean_of_the_state_from_its_last_value(monkeypatch):
+    """Negative control: bristles whose force takes the deflection at the start of the step, explicit Euler's."""
+
+    def at_start(law, state, v, h):
+        new = twin.state_after(law, state, v, h)
+        return law.stiffness * state + law.damping * (new - state) / h + law.viscous * v
+
+    run, trail = both(systems.oscillator(systems.BRISTLES), SCHEMES[1], twin.exact, 2e-4)
+    assert disagreements(run, trail) == {}
+    monkeypatch.setattr(twin, "ratio_with_state", at_start)
+    assert disagreements(run, twin.march(systems.oscillator(systems.BRISTLES), twin.exact, 2e-4, STEPS))

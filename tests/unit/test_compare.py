@@ -1,0 +1,126 @@
+"""Two records side by side: differences that are put in are found, where and when they were put in."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stridula as st
+
+
+@pytest.fixture(scope="module")
+def record():
+    return st.load_scenario("squeal", {"duration": "5 ms", "gap": 0.0}).simulate()
+
+
+def test_a_record_is_equal_to_itself(record):
+    found = st.compare(record, record, tolerance=0.0)
+    assert found.attrs["within_tolerance"] == 1
+    assert float(found["difference"].max()) == float(found["relative_difference"].max()) == 0.0
+    assert np.isnan(found["first_time"]).all()
+    assert found.sizes["attribute"] == 0
+
+
+def test_a_difference_is_found_where_it_was_put(record):
+    other = record.copy(deep=True)
+    largest = float(np.abs(record["normal_force"]).max())
+    other["normal_force"][300] += 1e-4 * largest
+    other["normal_force"][200] -= 1e-8 * largest
+    found = st.compare(record, other, tolerance=1e-6)
+    force = found.sel(variable="normal_force")
+    assert float(force["difference"]) == pytest.approx(1e-4 * largest, rel=1e-6)
+    assert float(force["relative_difference"]) == pytest.approx(1e-4, rel=1e-6)
+    assert float(force["first_time"]) == record["time"].values[300]
+    assert str(force["units"].item()) == "N"
+    assert found.attrs["within_tolerance"] == 0
+    others = found.drop_sel(variable="normal_force")
+    assert float(others["difference"].max()) == 0.0
+    assert st.compare(record, other, tolerance=1e-3).attrs["within_tolerance"] == 1
+    earlier = st.compare(record, other, tolerance=1e-9).sel(variable="normal_force")
+    assert float(earlier["first_time"]) == record["time"].values[200]
+
+
+def test_statistics_are_those_of_each_record(record):
+    other = record.copy(deep=True)
+    other["normal_force"] *= 2.0
+    force = st.compare(record, other).sel(variable="normal_force")
+    mean = float(record["normal_force"].mean())
+    np.testing.assert_allclose(force["mean"], [mean, 2.0 * mean])
+    np.testing.assert_allclose(force["rms"], np.sqrt((record["normal_force"] ** 2).mean().item()) * np.array([1, 2]))
+    shares = st.compare(record, other).sel(variable="status_share [sliding]")["mean"]
+    np.testing.assert_allclose(shares, record["status_share"].sel(contact_status="sliding").mean())
+
+
+def test_nan_is_equal_to_nan_and_far_from_a_number(record):
+    one, other = record.copy(deep=True), record.copy(deep=True)
+    one["gap"][:] = other["gap"][:] = np.nan
+    assert st.compare(one, other).attrs["within_tolerance"] == 1
+    other["gap"][7] = 0.0
+    found = st.compare(one, other).sel(variable="gap")
+    assert float(found["difference"]) == np.inf
+    assert float(found["first_time"]) == record["time"].values[7]
+
+
+def test_what_was_set_otherwise_is_told_by_key(record):
+    other = st.load_scenario("squeal", {"duration": "5 ms", "gap": 0.0, "friction": 1.4}).simulate(
+        scheme=st.CentralDifference(), probes=[]
+    )
+    found = st.compare(record, other)
+    values = {str(k): tuple(v) for k, v in zip(found["attribute"].values, found["value"].values, strict=True)}
+    assert values["scenario.contact.friction.coefficient"] == ("1.5", "1.4")
+    assert values["scheme"] == ("exact modal", "central difference")
+    assert "step" in values
+    assert values["variable acceleration [track centre y]"] == ("recorded", "not there")
+    assert "wall_time" not in values
+    assert "scenario.contact.at" not in values
+
+
+def test_round_off_about_zero_is_no_difference(record):
+    other = record.copy(deep=True)
+    other["ledger_residual"] += 1e-9 * float(record["kinetic_and_elastic"].max())
+    other["gap"] += 1e-9 * float(np.abs(record["contact_height"]).max())
+    assert st.compare(record, other).attrs["within_tolerance"] == 1
+
+
+def test_records_of_other_lengths_are_compared_over_what_both_have(record):
+    part = record.isel(time=slice(100, 400))
+    for pair in ((record, part), (part, record)):
+        found = st.compare(*pair)
+        assert (found.attrs["samples"], found.attrs["within_tolerance"]) == (300, 1)
+    other = part.copy(deep=True)
+    other["normal_force"][5] += 1.0
+    assert float(st.compare(record, other).sel(variable="normal_force")["first_time"]) == record["time"].values[105]
+
+
+def test_each_contact_is_compared_on_its_own():
+    mass, floor = st.PointMass(1.0), st.RigidTrack()
+    contacts = [
+        st.PointContact(mass.centre, floor, name="low"),
+        st.PointContact(mass.centre, floor, inclination=np.pi / 2.0, at=1.0, name="wall"),
+    ]
+    run = st.simulate(st.System(contacts, [st.Gravity(), st.InitialVelocity(mass, x=1.0)]), 1e-3)
+    other = run.copy(deep=True)
+    other["normal_force"][3, 1] += 1.0
+    found = st.compare(run, other)
+    assert float(found.sel(variable="normal_force [low]")["difference"]) == 0.0
+    assert float(found.sel(variable="normal_force [wall]")["difference"]) == 1.0
+    assert not any("sweeps" in str(name) for name in found["variable"].values)
+
+
+def test_what_cannot_be_compared_is_told(record):
+    for other, message in [
+        (
+            st.load_scenario("squeal", {"duration": "5 ms", "sample_rate": 5e4}).simulate(),
+            "b must have the sample inter",
+        ),
+        (record.assign_coords(time=record["time"] + 1.0), "b must have a time of a"),
+        (record.isel(time=slice(0, 0)), "b must have a time of a"),
+        (xr.Dataset(), "b must be a record of simulate"),
+        ("run.nc", "b must be a Dataset"),
+    ]:
+        with pytest.raises(ValueError, match=message) as caught:
+            st.compare(record, other)
+        assert "\n" not in str(caught.value)
+    with pytest.raises(ValueError, match="tolerance must be 0 or above"):
+        st.compare(record, record, tolerance=-1.0)

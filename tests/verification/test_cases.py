@@ -1,0 +1,121 @@
+"""Every case within its tolerance; and a wrong law, mass, body or scheme falls short."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stridula as st
+from stridula.verification import falling, impacts, instabilities, jams, laws, orders, sliders
+from stridula.verification.case import schemes
+from stridula.verification.cases import CASES
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_case(case):
+    short = [row for row in case.run().rows if not row.holds]
+    assert not short, "\n".join(f"{row.quantity} {row.scheme}: {row.obtained} for {row.expected}" for row in short)
+
+
+def missed(outcome) -> set[str]:
+    return {row.quantity for row in outcome.rows if not row.holds}
+
+
+def test_a_slider_with_another_friction_falls_short(monkeypatch):
+    """Negative control: friction 1 % off moves the turning points by 2 n 1e-6 m."""
+    run = sliders.Slider.run
+    off = st.Coulomb(0.101)
+    monkeypatch.setattr(sliders.Slider, "run", lambda self, *words: run(replace(self, friction=off), *words))
+    assert {"turning point 1", "turning point 2", "turning point 3"} <= missed(sliders.sdnd100())
+
+
+def test_stick_slip_without_a_static_friction_falls_short(monkeypatch):
+    run = sliders.Slider.run
+    off = st.StaticKinetic(0.39, 0.25)
+    monkeypatch.setattr(sliders.Slider, "run", lambda self, *words: run(replace(self, friction=off), *words))
+    assert missed(sliders.belt()) >= {"time of slip", "time of stick", "period", "lowest", "highest", "least velocity"}
+
+
+def test_falling_friction_of_another_slope_falls_short(monkeypatch):
+    right = falling.laws()
+    law, ratio, slope = right["linear weakening"]
+    off = st.LinearWeakening(law.static + 0.001 * falling.BELT, slope=slope + 0.001, kinetic=law.kinetic)
+    monkeypatch.setattr(falling, "laws", lambda: {"linear weakening": (off, ratio, slope)})
+    assert "linear weakening: growth" in missed(falling.falling())
+
+
+def test_mode_coupling_with_a_softer_contact_falls_short(monkeypatch):
+    model = instabilities.hoffmann()
+    softer = model.stiffness.copy()
+    softer[1:, 1:] -= 0.001 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    monkeypatch.setattr(instabilities, "hoffmann", lambda: replace(model, stiffness=softer))
+    assert {"friction 0.9: growth", "coefficient of friction at flutter"} <= missed(instabilities.hoffmann_case())
+
+
+def test_mode_coupling_with_other_dampers_falls_short(monkeypatch):
+    """Negative control: one damper 1 % off."""
+    model, words = instabilities.sinou((0.02, 0.06)), (0.3, schemes()[0], 1e-5, 0.06)
+    off = replace(model, damping=model.damping @ np.diag([1.0, 1.01, 1.0, 1.0]))
+    assert all(row.holds for row in instabilities._rows(model, *words))
+    seen = instabilities.Coupled.seen
+    monkeypatch.setattr(instabilities.Coupled, "seen", lambda self, *rest: seen(off, *rest))
+    short = {row.quantity for row in instabilities._rows(model, *words) if not row.holds}
+    assert "friction 0.3: growth" in short
+
+
+@pytest.mark.parametrize("scheme", schemes(), ids=lambda scheme: scheme.name)
+def test_the_closed_form_of_the_impact_tells_masses_apart(scheme):
+    """Negative control: the march of a consistent mass is far from the closed form of a lumped one."""
+    run = impacts.hit("consistent", scheme, 0.5)
+    rows = impacts._impact_rows(run, "lumped", scheme, 0.5)
+    assert "force at every step" in next(row.quantity for row in rows if not row.holds).partition(": ")[2]
+
+
+def test_a_softer_bar_falls_short(monkeypatch):
+    """Negative control: 3 % less stiff, its plateau is 1.5 % lower."""
+    softer = replace(impacts.WALL, young=0.97 * impacts.WALL.young).body("lumped")
+    monkeypatch.setattr(impacts.Bar, "body", lambda self, mass: softer)
+    scheme = schemes()[0]
+    rows = impacts._impact_rows(impacts.hit("lumped", scheme, 0.5), "lumped", scheme, 0.5)
+    assert any("mean force" in row.quantity and not row.holds for row in rows)
+
+
+def test_another_gravity_moves_the_bouncing_bar(monkeypatch):
+    real = impacts.Gravity
+    monkeypatch.setattr(impacts, "Gravity", lambda acceleration: real(1.02 * acceleration))
+    run = impacts.drop(impacts.BALL, "lumped", schemes()[0], 0.9, impacts.PERIOD)
+    short = {row.quantity for row in impacts._bounce_rows(run, "lumped", 0.9, schemes()[0]) if not row.holds}
+    assert {"lumped mass: touches", "lumped mass: height at 0.5 s"} <= short
+
+
+def test_a_rod_of_another_angle_jams_elsewhere():
+    found = jams.found_limit(np.radians(45.5), schemes()[0], 1e-3)
+    assert abs(found - jams.painleve_limit(np.radians(45.0))) > 0.01
+
+
+def test_bristles_of_another_strength_fall_short(monkeypatch):
+    off = replace(laws.PULL, friction=replace(laws.BRISTLES, static=1.49))
+    known = laws.lugre_reference()
+    monkeypatch.setattr(laws, "PULL", off)
+    monkeypatch.setattr(laws, "lugre_reference", lambda: known)
+    assert {"step 0.001 s: peak force", "step 0.001 s: period"} <= missed(laws.lugre())
+
+
+def test_the_wrong_law_of_evolution_falls_short(monkeypatch):
+    stepped = laws._stepped
+    monkeypatch.setattr(laws, "_stepped", lambda word, *rest: stepped("slip" if word == "aging" else "aging", *rest))
+    assert {"aging law: coefficient after D", "slip law: coefficient after D"} <= missed(laws.age_steps())
+
+
+class LazyStart(st.CentralDifference):
+    """Central differences that forget the force in the first increment: a velocity off by f h / 2, of first order."""
+
+    def first_increment(self, angular, damping, step, position, velocity, force):
+        return super().first_increment(angular, damping, step, position, velocity, 0 * force)
+
+
+def test_a_scheme_of_first_order_falls_short(monkeypatch):
+    monkeypatch.setattr(orders, "schemes", lambda: [LazyStart()])
+    assert {"order, forced beam", "order, thrown slider"} <= missed(orders.smooth())
