@@ -212,7 +212,7 @@ def march(
         moving = spans[i, at.BENDING_END] > spans[i, at.BENDING]
         n_harmonic += moving
         simple = simple and not (moving and spans[i, at.BENDING] < coupled)
-    sines, cosines, slopes = np.zeros(n_modes), np.zeros(n_modes), np.zeros((n_contacts, n_modes))
+    sines, cosines, slopes = np.zeros(2 * n_modes), np.zeros(2 * n_modes), np.zeros((n_contacts, n_modes))
     load, new, position = np.zeros(n_modes), np.empty(n_modes), np.empty(n_modes)
     push, work = np.empty(n_modes), np.empty(n_modes)
     gaps, slips, places = np.empty(n_contacts), np.empty(n_contacts), np.empty(n_contacts)
