@@ -39,6 +39,8 @@ def solve_contact(gap, slip, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_
         return 0.0, 0.0, SEPARATED, False
     if not set_valued(law):
         return slide_with_state(gap, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, step)
+    if w_tt == 0.0:
+        return slide_as_prescribed(gap, slip, freed, w_nn, law, laws, i, last_slip, step)
     determinant = w_nn * w_tt - w_nt * w_nt
     normal = (w_nt * slip - w_tt * gap) / determinant
     tangential = (w_nn * slip - w_nt * gap) / determinant
@@ -58,6 +60,16 @@ def solve_contact(gap, slip, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_
     ratio = sliding_ratio(law, laws, i, abs(velocity))
     normal = -gap / (w_nn - sense * ratio * w_nt)
     return normal, sense * ratio * normal, SLIDING, False
+
+
+@numba.njit(cache=True)
+def slide_as_prescribed(gap, slip, freed, w_nn, law, laws, i, last_slip, step):
+    """Return the contact of bodies that no force moves along the tangent: the slip is what it is."""
+    normal = -gap / w_nn
+    if abs(freed) == 0.0 or slip == 0.0:
+        return normal, 0.0, STICKING, False
+    ratio = sliding_ratio(law, laws, i, abs(freed + last_slip) / (2.0 * step))
+    return normal, math.copysign(ratio * normal, freed), SLIDING, False
 
 
 @numba.njit(cache=True)

@@ -284,7 +284,7 @@ def march(
                     if n_harmonic:
                         set_compliance(block, matrices, rows, work, w)
                     for i in range(n_contacts):
-                        forces[i, 0], forces[i, 1] = carried[i, at.LAST_NORMAL], carried[i, at.LAST_TANGENTIAL]
+                        forces[i, 0], forces[i, 1] = 0.0, 0.0
                     made, error = solve_all(
                         gaps, slips, w, contacts, laws, carried, step, tolerance, sweeps, forces, statuses, jammed
                     )

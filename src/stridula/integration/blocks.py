@@ -138,6 +138,11 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
             constants[i, at.LENGTH] = track.length
         constants[i, at.LAW], parameters = _law(one.contact.friction)
         laws[i, : len(parameters)] = parameters
+        if not one.fixed[0].any() and one.bending[0] == one.bending[1]:
+            raise ValueError(
+                f"contact {one.contact.name or i + 1} must be between bodies of which one moves along its normal, "
+                "got a tip that does not"
+            )
     flat = rows.reshape(2 * count, -1)
     return ContactBlocks(constants, laws, spans, rows, np.ascontiguousarray(modes.mobility(flat) @ flat.T))
 

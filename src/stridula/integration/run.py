@@ -176,6 +176,9 @@ class Run:
             record,
             raw,
         )
+        bad = np.flatnonzero(~np.isfinite(energy_record[:completed]).all(axis=1))
+        if bad.size:
+            completed, ended = int(bad[0]), at.NOT_FINITE
         done = energy_record[:completed].T
         wrong = energy_created(
             done, before, self.initial_energy, self.largest_energy, self.energy_of_loads, self.dissipative

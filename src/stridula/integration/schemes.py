@@ -18,6 +18,9 @@ import scipy.linalg
 
 from ..bodies.modes import Array
 
+# Damping times step, up to which the start of coupled modes is followed back in time.
+FOLLOWED_BACK = 2.0
+
 
 @dataclass(frozen=True)
 class Coefficients:
@@ -200,7 +203,16 @@ class ExactModal:
     def coupled_first_increment(
         self, stiffness: Array, damping: Array, step: float, position: Array, velocity: Array, force: Array
     ) -> Array:
-        """Return ``q(0) - q(-h)`` of the exact motion, followed back."""
+        """Return ``q(0) - q(-h)`` of the exact motion, followed back, or of a centred velocity.
+
+        Strongly damped motion grows without bound when it is followed back. Where damping takes more than
+        ``1 - exp(-2)`` of a velocity in a step, that at the start is taken as ``(q(h) - q(-h)) / 2h``.
+        """
+        if step * float(np.max(np.abs(damping).sum(axis=1), initial=0.0)) > FOLLOWED_BACK:
+            k = self.coupled_coefficients(stiffness, damping, step)
+            return np.linalg.solve(
+                np.eye(len(stiffness)) + k.b, 2.0 * step * velocity + k.r @ position - k.load @ force
+            )
         size = len(stiffness)
         back = _transition(stiffness, damping, -step)[:size]
         return position - back @ np.concatenate([position, velocity, force])

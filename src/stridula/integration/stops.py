@@ -23,8 +23,8 @@ WHAT = {
 }
 CAUSE = {
     "not finite": "an instability that grows without bound, or drives far too large",
-    "contact unsolved": "several contacts whose friction is too high for a unique answer, or too few sweeps",
-    "energy created": "a step too long for the friction law, or a fault of the model",
+    "contact unsolved": "bodies squeezed between others, too much friction in several contacts, or too few sweeps",
+    "energy created": "a step too long for the contact, numbers at the limits of arithmetic, or a fault of the model",
 }
 # Share of the largest energy that round-off may make of the ledger, of the stored energy below zero and of friction's
 # loss running back.
