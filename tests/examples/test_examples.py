@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import runpy
+import textwrap
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.linalg
+
+import stridula as st
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
@@ -96,6 +99,25 @@ def test_example(path, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     names = runpy.run_path(str(path), run_name="__main__")
     CHECKS[path.name](names, capsys.readouterr().out, tmp_path)
+
+
+def test_what_the_start_page_shows_of_other_systems_runs(tmp_path, monkeypatch):
+    """A mass on a belt, a body from a file against a wall, an ensemble: the code of the page, as it stands."""
+    page = (ROOT / "docs" / "start.rst").read_text(encoding="utf-8")
+    section = page.partition("Other bodies, other tracks\n")[2].partition("\nRead a record\n")[0]
+    blocks = [textwrap.dedent(b) for b in re.findall(r"code-block:: python\n\n((?: {3}.*\n|\n)+)", section)]
+    assert len(blocks) == 3
+    monkeypatch.chdir(tmp_path)
+    stiffness = np.kron([[1e6, -1e6], [-1e6, 1.1e6]], np.eye(2))
+    st.ReducedBody(0.1 * np.eye(4), stiffness, {"tip": (0, 1), "back": (2, 3)}).save("pad.npz")
+    names: dict[str, Any] = {}
+    for block in blocks:
+        exec(block, names)
+    run = names["run"]
+    # The wall and the spring of 0.1 MN/m together hold the drag: at least the kinetic and at most the static friction.
+    reach = 1e5 * 1e-4
+    assert 0.3 * 200.0 - reach < float(run.normal_force.sel(contact="stop").sel(time=slice(0.02, None)).mean())
+    assert 0.0 < names["found"].sliding_mean <= 1.0
 
 
 def test_the_readme_shows_the_ten_lines():

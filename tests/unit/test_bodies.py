@@ -78,6 +78,13 @@ def test_bad_arguments_are_named_with_value_and_range(make, name, value):
     assert "\n" not in message
 
 
+@pytest.mark.parametrize("mass", [5e-324, 1e-320, 1e-101])
+def test_a_mass_too_small_for_arithmetic_is_refused(mass):
+    with pytest.raises(ValueError, match=rf"^mass must be at least 1e-100, got {mass!r}$"):
+        st.PointMass(mass)
+    assert st.PointMass(1e-100).mass == 1e-100
+
+
 def test_no_mode_left_says_so_when_modes_are_asked_for():
     with pytest.raises(ValueError, match="cutoff must leave at least one mode"):
         beam(root_support="clamped", cutoff=1.0).modes()

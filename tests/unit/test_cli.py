@@ -37,7 +37,7 @@ def test_version_and_help(stridula):
     assert stridula("--version") == (0, f"stridula {st.__version__}\n", "")
     code, out, err = stridula("--help")
     assert (code, err) == (0, "")
-    assert all(verb in out for verb in ("list", "show", "schema", "run", "export", "compare", "paper"))
+    assert all(verb in out for verb in ("list", "show", "schema", "run", "export", "compare", "paper", "verify"))
     assert stridula()[:1] == (0,)
 
 
@@ -286,6 +286,57 @@ def test_a_failed_run_is_one_line_and_keeps_its_record(stridula, monkeypatch):
     assert err.count("\n") == 1
     assert "failed" in out
     assert st.load("part.nc").attrs["ended"] == "not finite"
+
+
+@pytest.mark.parametrize("samples", [0, 1, 2, 100])
+def test_a_failed_run_is_drawn_as_far_as_it_went(stridula, monkeypatch, tmp_path, samples):
+    record = st.load_scenario("squeal", {"duration": "1 ms"}).simulate().isel(time=slice(samples))
+    record.attrs["ended"] = "not finite"
+    if samples > 2:
+        for name in ("normal_force", "gap", "acceleration", "contact_height", "contact_position"):
+            record[name][-1] = np.nan
+            record[name][-2] = np.inf
+
+    def fail(self, **kwargs):
+        raise st.Diverged(record, "contact sliding")
+
+    monkeypatch.setattr(st.Scenario, "simulate", fail)
+    code, _, err = stridula("run", "squeal", "--plot", "part.png")
+    assert (code, err.count("\n")) == (1, 1)
+    assert (tmp_path / "part.png").exists() == (samples > 1)
+    words = (
+        "it is drawn in part.png" if samples > 1 else f"no figure was drawn: a figure takes two samples, got {samples}"
+    )
+    assert err.endswith(f"; nothing was asked to be kept (no --out); {words}\n")
+
+
+def test_an_interrupted_run_says_that_nothing_was_drawn(stridula, monkeypatch, tmp_path):
+    monkeypatch.setattr(running.Progress, "update", interrupt)
+    code, _, err = stridula("run", "squeal", "--duration", "0.25", "--plot", "part.png")
+    assert (code, err.endswith("; no figure was drawn\n")) == (130, True)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_closing_words_of_a_comparison_name_what_differs(stridula):
+    run = st.load_scenario("belt", {"duration": "50 ms"}).simulate()
+    other = run.copy(deep=True)
+    other["normal_force"] *= 1.01
+    other["gap"] += 1e-22
+    st.save(run, "a.nc")
+    st.save(other, "b.nc")
+    code, out, _ = stridula("compare", "a.nc", "b.nc")
+    assert code == 1
+    assert out.rstrip().splitlines()[-1].startswith("Beyond 1e-06: normal_force by ")
+    assert out.rstrip().endswith(" N, 0.01 relative.")
+    other["tangential_force"] *= 1.001
+    st.save(other, "b.nc")
+    _, out, _ = stridula("compare", "a.nc", "b.nc")
+    assert " ".join(out.split()).endswith(" N, 0.01 relative; 1 more is beyond it.")
+    st.save(run.isel(time=slice(0, 0)), "empty.nc")
+    for pair in (("a.nc", "empty.nc"), ("empty.nc", "a.nc")):
+        word = "ab"[pair.index("empty.nc")]
+        message = f"stridula: {word} must have samples to compare, got a record without any\n"
+        assert stridula("compare", *pair) == (2, "", message)
 
 
 @pytest.mark.parametrize("shell", ["{0} show squeal | head -1", "{0} list | head -1"])

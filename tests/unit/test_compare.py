@@ -83,6 +83,38 @@ def test_round_off_about_zero_is_no_difference(record):
     assert st.compare(record, other).attrs["within_tolerance"] == 1
 
 
+def on_a_belt():
+    mass = st.PointMass(1.0)
+    contact = st.PointContact(mass.centre, st.RigidTrack(velocity=0.1), friction=st.Coulomb(0.3))
+    return st.System(contact, [st.Gravity()])
+
+
+def test_round_off_on_a_rigid_floor_is_held_against_the_largest_length():
+    record = st.simulate(on_a_belt(), 0.01)
+    other = record.copy(deep=True)
+    reach = float(np.ptp(record["contact_position"].values))
+    for name in ("gap", "contact_height"):
+        assert float(np.abs(record[name]).max()) < 1e-20
+        other[name] += 1e-22
+    assert st.compare(record, other).attrs["within_tolerance"] == 1
+    other["gap"][7] += 1e-3 * reach
+    found = st.compare(record, other)
+    assert found.attrs["within_tolerance"] == 0
+    assert float(found.sel(variable="gap")["relative_difference"]) == pytest.approx(1e-3)
+    assert float(found.sel(variable="contact_height")["relative_difference"]) < 1e-15
+
+
+def test_a_displacement_counts_as_a_length():
+    mass = st.PointMass(1.0)
+    system = st.System(st.PointContact(mass.centre, st.RigidTrack()), [st.InitialVelocity(mass, y=1.0)])
+    record = st.simulate(system, 0.01, probes=[st.Displacement(mass.centre, "y")])
+    record["gap"][:] = record["contact_height"][:] = record["contact_position"][:] = 0.0
+    other = record.copy(deep=True)
+    largest = float(np.abs(record["displacement"]).max())
+    other["gap"] += 1e-3 * largest
+    assert float(st.compare(record, other).sel(variable="gap")["relative_difference"]) == pytest.approx(1e-3)
+
+
 def test_records_of_other_lengths_are_compared_over_what_both_have(record):
     part = record.isel(time=slice(100, 400))
     for pair in ((record, part), (part, record)):
@@ -115,7 +147,7 @@ def test_what_cannot_be_compared_is_told(record):
             "b must have the sample inter",
         ),
         (record.assign_coords(time=record["time"] + 1.0), "b must have a time of a"),
-        (record.isel(time=slice(0, 0)), "b must have a time of a"),
+        (record.isel(time=slice(0, 0)), "b must have samples to compare, got a record without any"),
         (xr.Dataset(), "b must be a record of simulate"),
         ("run.nc", "b must be a Dataset"),
     ]:

@@ -97,10 +97,10 @@ def test_a_body_that_cannot_be_written_is_named_and_leaves_nothing(tmp_path):
     body = ReducedBody(np.eye(2), np.eye(2), TIP)
     with pytest.raises(OSError, match=r"^cannot write '.*nowhere/body.npz': no such file or directory$"):
         body.save(tmp_path / "nowhere" / "body.npz")
-    (tmp_path / "folder").mkdir()
-    with pytest.raises(OSError, match=r"^cannot write '.*folder': is a directory$"):
-        body.save(tmp_path / "folder")
-    assert [path.name for path in tmp_path.iterdir()] == ["folder"]
+    (tmp_path / "folder.npz").mkdir()
+    with pytest.raises(OSError, match=r"^cannot write '.*folder.npz': is a directory$"):
+        body.save(tmp_path / "folder.npz")
+    assert [path.name for path in tmp_path.iterdir()] == ["folder.npz"]
 
 
 # MATLAB.
@@ -266,7 +266,19 @@ TEXTS = {
     "cut labels": ("**\n1,1,1,1,5.0\n2,1,2,", "line 3 must be 'node, dof, node, dof, value', got '2,1,2,'"),
     "cut coordinate": ("1 1 5.0\n2 2\n", "line 2 must be 'row column value', got '2 2'"),
     "cut number": ("1 1 5.0\n2 2 1.0e\n", "line 2 must be 'row column value', got '2 2 1.0e'"),
-    "four columns": ("1,1,1,5.0\n", "line 1 must be 'row column value', got '1,1,1,5.0'"),
+    "four columns": ("1,1,1,5.0\n", "line 1 must be 'node, dof, node, dof, value', got '1,1,1,5.0'"),
+    "first line damaged": (
+        "** a\n*MATRIX INPUT, NAME=M\n1,1,1\n2,1,2,1,5.0\n",
+        "line 3 must be 'node, dof, node, dof, value', got '1,1,1'",
+    ),
+    "first line damaged, no keyword": (
+        "1,1,1 5.0\n2,1,2,1,5.0\n3,1,3,1,5.0\n",
+        "line 1 must be 'node, dof, node, dof, value', got '1,1,1 5.0'",
+    ),
+    "first line without commas": (
+        "1 1 5.0\n2,1,2,1,5.0\n3,1,3,1,5.0\n",
+        "line 1 must be 'node, dof, node, dof, value', got '1 1 5.0'",
+    ),
     "broken number": ("1.5 1 5.0\n", "line 1 must be 'row column value', got '1.5 1 5.0'"),
     "huge number": ("1e300 1 5.0\n", "line 1 must be 'row column value', got '1e300 1 5.0'"),
     "nan number": ("nan 1 5.0\n", "line 1 must be 'row column value', got 'nan 1 5.0'"),
@@ -364,6 +376,33 @@ def test_containers_must_hold_matrices_and_points(tmp_path):
     scipy.io.savemat(tmp_path / "b.mat", {"M": MASS, "K": "stiff", "point_tip": np.eye(SIZE)[:2]})
     with pytest.raises(ValueError, match=r"^stiffness must be"):
         ReducedBody.read(tmp_path / "b.mat")
+
+
+def test_npz_files_may_name_matrices_as_matlab_does(tmp_path):
+    points = {"point_tip": np.eye(SIZE)[:2]}
+    np.savez(tmp_path / "b.npz", M=MASS, K=STIFFNESS, C=DAMPING, **points)
+    wanted = ReducedBody(MASS, STIFFNESS, TIP, damping=DAMPING)
+    assert ReducedBody.read(tmp_path / "b.npz") == wanted
+    np.savez(tmp_path / "b.npz", M=MASS, mass=MASS, stiffness=STIFFNESS, C=DAMPING, **points)
+    assert ReducedBody.read(tmp_path / "b.npz") == wanted
+
+
+@pytest.mark.parametrize("other", [2.0 * MASS, MASS[:3, :3], scipy.sparse.csc_array(2.0 * MASS)])
+@pytest.mark.parametrize("kind", ["npz", "mat"])
+def test_a_container_with_two_different_mass_matrices_is_refused(kind, other, tmp_path):
+    path = tmp_path / f"b.{kind}"
+    full = other.toarray() if kind == "npz" and scipy.sparse.issparse(other) else other
+    held = {"mass": MASS, "M": full, "K": STIFFNESS, "point_tip": np.eye(SIZE)[:2]}
+    np.savez(path, **held) if kind == "npz" else scipy.io.savemat(path, held)
+    with pytest.raises(ValueError, match=r"it must hold mass once, it holds mass and M, which differ$"):
+        ReducedBody.read(path)
+
+
+@pytest.mark.parametrize("name", ["body.mat", "body", "body.npz.gz", ".npz"])
+def test_a_body_is_saved_as_npz_only(name, tmp_path):
+    with pytest.raises(ValueError, match=r"^path must end in \.npz, got '"):
+        ReducedBody(MASS, STIFFNESS, TIP).save(tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_which_files_go_together(tmp_path):

@@ -267,6 +267,92 @@ def test_a_change_that_cannot_be_says_why(overrides, message):
     assert "\n" not in str(caught.value)
 
 
+def test_unknown_keys_and_bad_values_are_told_at_once():
+    with pytest.raises(st.ScenarioError) as caught:
+        st.load_scenario("squeal", {"foo": 1, "slider.mass": "lump", "friction": "3 m"})
+    found = caught.value.problems
+    assert len(found) == 3
+    for words in ("got 'foo'", "slider.mass must be one of", "contact.friction.coefficient must be"):
+        assert any(words in problem for problem in found)
+
+
+BELT = """
+[bodies.m]
+kind = "point mass"
+mass = 1.0
+[[contacts]]
+name = "guide"
+tip = {body = "m"}
+track = {kind = "rigid"}
+[[contacts]]
+name = "leading"
+tip = {body = "m"}
+track = {kind = "rigid", velocity = 0.1}
+friction = 0.3
+[[connections]]
+kind = "spring"
+first = {body = "m"}
+stiffness = 100.0
+[simulation]
+duration = 0.01
+"""
+
+
+@pytest.mark.parametrize(
+    ("key", "nearest"),
+    [
+        ("leading.velocity", "contacts.1.track.velocity"),
+        ("guide.velocty", "contacts.0.track.velocity"),
+        ("leading.coefficient", "contacts.1.friction.coefficient"),
+        ("leading.xyz", "contacts.1"),
+    ],
+)
+def test_the_name_of_a_contact_leads_to_its_keys(key, nearest, tmp_path):
+    (found,) = problems(BELT, tmp_path, {key: 1.0})
+    assert found == f"key must be one of the scenario's, got {key!r}; did you mean {nearest!r}?"
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"bodies.m.mass": 1e-320}, "bodies.m.mass must be at least 1e-100, got 1e-320"),
+        ({"bodies.m.mass": 1e-90, "stiffness": 1e250}, "scenario must hold numbers of ordinary size"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:.*encountered in:RuntimeWarning")
+def test_numbers_out_of_range_are_named(changes, message, tmp_path):
+    (tmp_path / "case.toml").write_text(BELT)
+    with pytest.raises(st.ScenarioError, match=message) as caught:
+        st.load_scenario(tmp_path / "case.toml", changes).simulate()
+    assert "infs" not in str(caught.value)
+
+
+def test_bodies_out_of_range_are_named(tmp_path):
+    reduced = 'kind = "reduced"\nmass = [[1e-300]]\nstiffness = [[1e10]]\npoints = {a = {x = 0}}'
+    text = BELT.replace('kind = "point mass"\nmass = 1.0', reduced)
+    (found,) = problems(text, tmp_path)
+    assert found.startswith("bodies.m.stiffness must be of a size that mass can carry, got up to 1e+10 N/m on masses")
+    with pytest.raises(st.ScenarioError, match=r"must hold numbers of ordinary size: its modes overflow"):
+        st.load_scenario("squeal", {"density": 1e-320})
+
+
+def test_a_record_is_a_scenario():
+    run = st.load_scenario("squeal", {"duration": "1 ms"}).simulate()
+    again = st.load_scenario(run)
+    assert (again.system, again.duration) == (st.load_scenario("squeal").system, 0.001)
+    xr.testing.assert_identical(again.simulate().drop_attrs(deep=False), run.drop_attrs(deep=False))
+    assert again.title == run.attrs["title"]
+    assert st.load_scenario(run, {"duration": "2 ms"}).duration == 0.002
+    assert st.scenario_text(run).startswith("title")
+
+
+@pytest.mark.parametrize("given", [3, None, b"squeal", ["squeal"], {"title": "x"}, xr.Dataset()])
+def test_what_is_no_name_no_path_and_no_record_is_refused(given):
+    with pytest.raises(st.ScenarioError, match=r"^scenario must be a ") as caught:
+        st.load_scenario(given)
+    assert "\n" not in str(caught.value)
+
+
 def test_a_step_above_the_limit_names_its_key():
     with pytest.raises(st.ScenarioError, match=r"^simulation\.step must be below .* limit of .*, got 0.001$"):
         st.load_scenario("squeal", {"step": 1e-3}).simulate()

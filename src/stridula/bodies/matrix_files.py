@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import zipfile
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -181,15 +182,28 @@ def _npz(path: str | os.PathLike[str]) -> dict[str, Any]:
     if unpacked > LARGEST_FILE:
         raise ValueError(f"{unpacked / 1024**3:.1f} GiB when unpacked, at most 2 GiB are read")
     with np.load(path, allow_pickle=False) as file:
-        arrays = {name: file[name] for name in file.files if name in (*MATRICES, *OTHERS) or name.startswith(POINT)}
-    _check_held(arrays)
-    return arrays
+        wanted = [name for name in file.files if name in (*SYNONYMS, *MATRICES, *OTHERS) or name.startswith(POINT)]
+        return _by_words({name: file[name] for name in wanted})
 
 
-def _check_held(arrays: Mapping[str, Any]) -> None:
+def _by_words(held: Mapping[str, Any]) -> dict[str, Any]:
+    """Return arrays by the words of `ReducedBody`; a matrix may stand under both its names only if both are equal."""
+    arrays = {name: array for name, array in held.items() if name not in SYNONYMS}
+    for symbol, word in SYNONYMS.items():
+        if symbol not in held:
+            continue
+        if word in held and not _equal(held[symbol], held[word]):
+            raise ValueError(f"it must hold {word} once, it holds {word} and {symbol}, which differ")
+        arrays[word] = held[symbol]
     for name in MATRICES[:2]:
         if name not in arrays:
             raise ValueError(f"it must hold {name}, it holds {', '.join(sorted(arrays)) or 'nothing known'}")
+    return arrays
+
+
+def _equal(one: Any, other: Any) -> bool:
+    first, second = (part.toarray() if scipy.sparse.issparse(part) else np.asarray(part) for part in (one, other))
+    return np.array_equal(first, second)
 
 
 def _mat(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -198,9 +212,7 @@ def _mat(path: str | os.PathLike[str]) -> dict[str, Any]:
     for name in wanted:
         check_size(name, max(shapes[name], default=0))
     held = scipy.io.loadmat(os.fspath(path), appendmat=False, variable_names=wanted)
-    arrays = {SYNONYMS[name]: held[name] for name in wanted if name in SYNONYMS}
-    arrays |= {name: held[name] for name in wanted if name not in SYNONYMS}
-    _check_held(arrays)
+    arrays = _by_words({name: held[name] for name in wanted})
     damping = arrays.get("damping")
     if isinstance(damping, np.ndarray) and 1 in damping.shape and damping.shape != arrays["mass"].shape:
         # MATLAB keeps numbers and lists as matrices: one number is a ratio, a row or a column a list of them.
@@ -258,15 +270,16 @@ def _numbers(path: str | os.PathLike[str]) -> Array:
         with open(path, encoding="latin-1") as file:
             table = np.loadtxt(file, delimiter=comma, comments="*", ndmin=2)
     except ValueError as error:
-        raise ValueError(_bad_line(path, comma, width) or str(error)) from error
+        raise ValueError(_bad_line(path) or str(error)) from error
     numbers = table[:, :-1]
     if table.shape[1] != width or not ((numbers == np.round(numbers)) & (np.abs(numbers) < LARGEST_NUMBER)).all():
-        raise ValueError(_bad_line(path, comma, width) or "it is no matrix")
+        raise ValueError(_bad_line(path) or "it is no matrix")
     return table
 
 
-def _bad_line(path: str | os.PathLike[str], comma: str | None, width: int) -> str:
+def _bad_line(path: str | os.PathLike[str]) -> str:
     """Return what is wrong with the first line that is no entry of a matrix, nothing if all are."""
+    comma, width = _layout(path)
     with open(path, encoding="latin-1") as file:
         for number, line in enumerate(file, 1):
             text = line.partition("*")[0].strip()
@@ -274,6 +287,22 @@ def _bad_line(path: str | os.PathLike[str], comma: str | None, width: int) -> st
                 wanted = "'node, dof, node, dof, value'" if width == 5 else "'row column value'"
                 return f"line {number} must be {wanted}, got {text[:60]!r}"
     return ""
+
+
+def _layout(path: str | os.PathLike[str]) -> tuple[str | None, int]:
+    """Return the separator and the number of columns that a text file is meant to have, some lines damaged."""
+    counts: Counter[tuple[str | None, int]] = Counter()
+    with open(path, encoding="latin-1") as file:
+        for line in file:
+            text, _, remark = line.partition("*")
+            if not text.strip() and remark.upper().startswith("MATRIX INPUT"):
+                return ",", 5
+            if text.strip():
+                comma = "," if "," in text else None
+                counts[comma, len(text.split(comma))] += 1
+    known = [layout for layout, _ in counts.most_common() if layout[1] in (3, 5)]
+    # Where no line is whole, commas are those of MATRIX INPUT.
+    return known[0] if known else (",", 5) if any(comma for comma, _ in counts) else (None, 3)
 
 
 def _is_entry(words: list[str], width: int) -> bool:

@@ -11,6 +11,8 @@ from ..checks import choice, instance, positive
 from .modes import Array, BodyPoint, Modes
 
 POINTS = ("centre",)
+# Below, stiffness over mass overflows.
+SMALLEST_MASS = 1e-100
 
 
 @dataclass(frozen=True)
@@ -20,7 +22,7 @@ class PointMass:
     Parameters
     ----------
     mass : float
-        Mass [kg].
+        Mass [kg], at least 1e-100.
     name : str, optional
         What it is called in records; tells equal bodies apart.
 
@@ -34,7 +36,8 @@ class PointMass:
     name: str = ""
 
     def __post_init__(self) -> None:
-        positive("mass", self.mass)
+        if positive("mass", self.mass) < SMALLEST_MASS:
+            raise ValueError(f"mass must be at least {SMALLEST_MASS:g}, got {self.mass!r}")
         instance("name", self.name, str)
 
     @property

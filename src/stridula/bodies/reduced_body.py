@@ -7,6 +7,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -111,8 +112,9 @@ class ReducedBody:
 
         - ``.npz`` with the arrays `mass`, `stiffness` and, if there, `damping`, `translation` and ``point_<name>``,
           shape (2, n), one for each point; what `save` writes.
-        - MATLAB ``.mat`` up to version 7 with variables of the same names, matrices full or sparse; M, K and C also
-          stand for mass, stiffness and damping.
+        - MATLAB ``.mat`` up to version 7 with variables of the same names, matrices full or sparse.
+
+        In both M, K and C also stand for mass, stiffness and damping.
 
         One file for each matrix is given as `mass`, `stiffness` and perhaps `damping`:
 
@@ -185,7 +187,12 @@ class ReducedBody:
         ------
         OSError
             If the file cannot be written; nothing half-written is left under its name.
+        ValueError
+            If the name does not end in ``.npz``.
         """
+        instance("path", path, (str, os.PathLike))
+        if Path(path).suffix.lower() != ".npz":
+            raise ValueError(f"path must end in .npz, got {os.fspath(path)!r}")
         arrays: dict[str, Any] = {"mass": self.mass, "stiffness": self.stiffness, "name": self.name}
         arrays |= {POINT + name: rows for name, rows in self.points.items()}
         if isinstance(self.damping, Rayleigh):

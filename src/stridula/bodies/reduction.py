@@ -54,7 +54,14 @@ def _all_modes(body: Any) -> tuple[Array, Array]:
     # Scaled to a unit diagonal, so that rotations and translations have the same weight in rounding errors.
     scale = 1.0 / np.sqrt(np.diag(body.mass))
     both = np.outer(scale, scale)
-    squared, shapes = scipy.linalg.eigh(body.stiffness * both, body.mass * both)
+    with np.errstate(over="ignore", invalid="ignore"):
+        mass, stiffness = body.mass * both, body.stiffness * both
+    if not (np.isfinite(mass).all() and np.isfinite(stiffness).all()):
+        raise ValueError(
+            f"stiffness must be of a size that mass can carry, got up to {np.abs(body.stiffness).max():.6g} N/m on "
+            f"masses from {np.diag(body.mass).min():.6g} kg: frequencies overflow"
+        )
+    squared, shapes = scipy.linalg.eigh(stiffness, mass)
     threshold = ROUND_OFF * np.abs(squared).max()
     if squared[0] < -threshold:
         least = smallest_eigenvalue(body.stiffness)

@@ -73,8 +73,12 @@ def _closing(result: xr.Dataset) -> list[str]:
     if len(set(counts)) > 1:
         lines.append(f"Compared over the {counts[0]} samples that both have; a has {counts[1]}, b has {counts[2]}.")
     relative = result["relative_difference"].values
-    worst = str(result["variable"].values[int(np.argmax(relative))])
+    worst = result.isel(variable=int(np.argmax(relative)))
     tolerance = result.attrs["tolerance"]
     if result.attrs["within_tolerance"]:
         return [*lines, f"Within {tolerance:g} everywhere."]
-    return [*lines, f"Beyond {tolerance:g}: {worst} by {relative.max():.2g} of a's largest value."]
+    words = f"{worst['variable'].item()} by {float(worst['difference']):.2g} {worst['units'].item()}"
+    share = f"{relative.max():.2g} relative" if math.isfinite(relative.max()) else "where a has none"
+    others = int((relative > tolerance).sum()) - 1
+    beside = f"; {others} more {'is' if others == 1 else 'are'} beyond it" if others else ""
+    return [*lines, f"Beyond {tolerance:g}: {words}, {share}{beside}."]

@@ -38,10 +38,13 @@ def run_scenario(name: str, overrides: dict[str, Any], out: str | None, plot: st
         with _progress(scenario.title or name) as watcher:
             record = scenario.simulate(watchers=[watcher])
     except (Interrupted, Diverged) as stop:
-        kept = _finish(stop.record, scenario.title or name, out, None)
-        where = f"the record so far is in {', '.join(kept)}" if kept else "nothing was asked to be kept (no --out)"
-        message = str(stop).replace("; see .record", "")
-        raise Stopped(f"{message}; {where}", INTERRUPTED if isinstance(stop, Interrupted) else FAILED) from None
+        interrupted = isinstance(stop, Interrupted)
+        kept = _finish(stop.record, scenario.title or name, out, None if interrupted else plot)
+        words = [str(stop).replace("; see .record", "")]
+        words.append("nothing was asked to be kept (no --out)" if out is None else f"the record so far is in {out}")
+        if plot is not None:
+            words.append(f"it is drawn in {plot}" if plot in kept else f"no figure was drawn{_why(stop)}")
+        raise Stopped("; ".join(words), INTERRUPTED if interrupted else FAILED) from None
     _finish(record, scenario.title or name, out, plot)
 
 
@@ -76,6 +79,11 @@ def _finish(record: xr.Dataset, title: str, out: str | None, plot: str | None) -
     finally:
         print_card(record, title, written)
     return written
+
+
+def _why(stop: Interrupted | Diverged) -> str:
+    samples = stop.record.sizes["time"]
+    return f": a figure takes two samples, got {samples}" if samples < 2 else ""
 
 
 def _draw(record: xr.Dataset, path: str) -> None:

@@ -17,8 +17,10 @@ from .variables import ENERGY, SOLVE, STATUS
 # Told by the shares of the states, and what the solver did to get there.
 LEFT_OUT = (STATUS.name, *(variable.name for variable in SOLVE))
 # Variables that hover about zero where all is well are held against their kind: the ledger's residual against the
-# largest energy, the gap against the height of the tip.
-KINDS = (tuple(variable.name for variable in ENERGY), ("gap", "contact_height"))
+# largest energy, gap and height, round-off on a rigid floor, against the largest length that the record has.
+ENERGIES = tuple(variable.name for variable in ENERGY)
+DISTANCES = ("gap", "contact_height")
+LENGTHS = (*DISTANCES, "displacement")
 UNLIKE = ("wall_time", "scenario", "last_step")
 NOT_THERE = "not there"
 
@@ -37,17 +39,19 @@ def compare(a: xr.Dataset, b: xr.Dataset, tolerance: float = 1e-6) -> xr.Dataset
     -------
     xarray.Dataset
         Over ``variable`` (each contact, probe and status on its own): ``difference``, the largest one, in ``units``;
-        ``relative_difference`` to the largest value of `a`, energies to the largest energy and the gap to the height of
-        the tip if that is larger; ``first_time`` [s] at which it is above the tolerance, NaN if never. The dominant
-        status and the sweeps of the solver are left out. Over ``variable`` and ``record`` (a, b): ``mean`` and ``rms``;
-        the means of ``status_share`` are the shares of the states. Over ``attribute`` and ``record``: ``value``, of
-        attributes and of keys of the scenario that differ. Attributes: ``within_tolerance`` (1 or 0), ``samples``, how
-        many were compared, ``samples_a`` and ``samples_b``.
+        ``relative_difference`` to the largest value of `a`, energies to the largest energy, ``gap`` and
+        ``contact_height`` to the largest length of `a`, of all its contacts: heights, gaps, displacement probes and the
+        range of ``contact_position``, whichever is largest; ``first_time`` [s] at which it is above the tolerance, NaN
+        if never. The dominant status and the sweeps of the solver are left out. Over ``variable`` and ``record``
+        (a, b): ``mean`` and ``rms``; the means of ``status_share`` are the shares of the states. Over ``attribute`` and
+        ``record``: ``value``, of attributes and of keys of the scenario that differ. Attributes: ``within_tolerance``
+        (1 or 0), ``samples``, how many were compared, ``samples_a`` and ``samples_b``.
 
     Raises
     ------
     ValueError
-        If they are no records, their sample intervals differ, or they have no time or no variable in common.
+        If they are no records, have no samples, their sample intervals differ, or they have no time or no variable in
+        common.
     """
     non_negative("tolerance", tolerance)
     first, second = _common(a, b)
@@ -63,7 +67,7 @@ def compare(a: xr.Dataset, b: xr.Dataset, tolerance: float = 1e-6) -> xr.Dataset
     result = xr.Dataset(coords={"variable": names, "record": ["a", "b"]})
     result["units"] = ("variable", [ours[name].units for name in names])
     result["difference"] = ("variable", difference, {"long_name": "largest difference"})
-    result["relative_difference"] = ("variable", relative, {"units": "1", "long_name": "relative to a's largest value"})
+    result["relative_difference"] = ("variable", relative, {"units": "1", "long_name": "relative to a's largest"})
     result["first_time"] = ("variable", since, {"units": "s", "long_name": "when it is first above the tolerance"})
     for word, measure in (("mean", np.nanmean), ("rms", _rms)):
         values = [[_statistic(measure, side[name].values) for side in (ours, theirs)] for name in names]
@@ -89,15 +93,15 @@ def _common(a: xr.Dataset, b: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
         instance(name, record, xr.Dataset)
         if "time" not in record.dims or "sample_interval" not in record.attrs:
             raise ValueError(f"{name} must be a record of simulate, got variables {list(record)}")
+        if not record.sizes["time"]:
+            raise ValueError(f"{name} must have samples to compare, got a record without any")
         intervals.append(float(record.attrs["sample_interval"]))
         numbers.append(np.rint(record["time"].values / intervals[-1]).astype(np.int64))
     if abs(intervals[1] - intervals[0]) > 1e-9 * intervals[0]:
         raise ValueError(f"b must have the sample interval of a, {intervals[0]:.9g} s, got {intervals[1]:.9g} s")
     _, ours, theirs = np.intersect1d(numbers[0], numbers[1], return_indices=True)
     if ours.size == 0:
-        spans = [
-            f"{r['time'].values[0]:.6g} to {r['time'].values[-1]:.6g} s" if r.sizes["time"] else "none" for r in (a, b)
-        ]
+        spans = [f"{r['time'].values[0]:.6g} to {r['time'].values[-1]:.6g} s" for r in (a, b)]
         raise ValueError(f"b must have a time of a, {spans[0]}, got {spans[1]}")
     return a.isel(time=ours), b.isel(time=theirs)
 
@@ -119,19 +123,22 @@ def _difference(
 def _scales(table: Mapping[str, Column]) -> dict[str, float]:
     """Return the largest value of each column, or of its kind."""
     own = {name: _largest(column.values) for name, column in table.items()}
-    kinds = {word: kind for kind in KINDS for word in kind}
-
-    def scale(column: Column) -> float:
-        kind = kinds.get(column.variable, (column.variable,))
-        beside = [name for name, c in table.items() if c.variable in kind and c.labels == column.labels]
-        return max(own[name] for name in beside)
-
-    return {name: scale(column) for name, column in table.items()}
+    energy = max((own[name] for name, column in table.items() if column.variable in ENERGIES), default=0.0)
+    lengths = [own[name] for name, column in table.items() if column.variable in LENGTHS]
+    lengths += [_range(column.values) for column in table.values() if column.variable == "contact_position"]
+    length = max(lengths, default=0.0)
+    kinds = dict.fromkeys(ENERGIES, energy) | dict.fromkeys(DISTANCES, length)
+    return {name: kinds.get(column.variable, own[name]) for name, column in table.items()}
 
 
 def _largest(values: Array) -> float:
     finite = values[np.isfinite(values)]
     return float(np.abs(finite).max(initial=0.0))
+
+
+def _range(values: Array) -> float:
+    finite = values[np.isfinite(values)]
+    return float(np.ptp(finite)) if finite.size else 0.0
 
 
 def _rms(values: Array) -> float:

@@ -45,6 +45,8 @@ FRICTIONS: dict[str, Callable[..., Any]] = {law.law: law for law in LAWS}
 CONNECTIONS: dict[str, Callable[..., Any]] = {"spring": Spring, "dashpot": Dashpot}
 Tables = dict[str, Any]
 Place = tuple[str | int, ...]
+# What SciPy says of matrices that have overflowed.
+NOT_FINITE = "must not contain infs or NaNs"
 _ARGUMENT = re.compile(r"([a-z_]\w*(?:[.\[]\w+\]?)*) (must|and) ")
 
 
@@ -165,6 +167,7 @@ class Builder:
         if kind == "point mass":
             with self._within(*path):
                 return PointMass(**table)
+            return None
         if kind == "reduced":
             return self._reduced(path, table)
         return self._beam(path, FiniteElementBeam if kind == "finite-element beam" else ModalBeam, table)
@@ -330,9 +333,12 @@ class Builder:
         known = len(self.problems)
         try:
             yield
-        except OverflowError:
-            self.problems.append(f"{self.words(path) or 'scenario'} must hold smaller numbers: its modes overflow")
+        except (OverflowError, ZeroDivisionError):
+            self.problems.append(out_of_range(self.words(path)))
         except (ValueError, OSError) as error:
+            if NOT_FINITE in str(error):
+                self.problems.append(out_of_range(self.words(path)))
+                return
             if len(self.problems) == known and "got None" not in str(error):
                 self.problems.append(self._named(path, str(error)))
 
@@ -349,6 +355,11 @@ class Builder:
     def _stop_at_problems(self) -> None:
         if self.problems:
             raise ScenarioError(self.problems)
+
+
+def out_of_range(key: str) -> str:
+    """Return the problem of a table whose modes cannot be held in floating-point numbers."""
+    return f"{key or 'scenario'} must hold numbers of ordinary size: its modes overflow"
 
 
 def _unknown(key: str, name: Any, known: Any) -> str:

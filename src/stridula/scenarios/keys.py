@@ -13,8 +13,8 @@ from .errors import ScenarioError
 from .outline import Path
 
 
-def overridden(tables: dict[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the tables with values set by key.
+def overridden(tables: dict[str, Any], overrides: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """Return the tables with values set by key, and what is wrong with keys that are not known or fit several places.
 
     Parameters
     ----------
@@ -24,10 +24,6 @@ def overridden(tables: dict[str, Any], overrides: Mapping[str, Any]) -> dict[str
         From keys such as ``contact.friction.coefficient`` or ``coefficient`` to values; a text is read as TOML if it
         can be.
 
-    Raises
-    ------
-    ScenarioError
-        If a key is not known or fits several places.
     """
     changed = copy.deepcopy(tables)
     problems: list[str] = []
@@ -40,9 +36,7 @@ def overridden(tables: dict[str, Any], overrides: Mapping[str, Any]) -> dict[str
             _set(changed, find(key, changed, is_table=isinstance(value, dict)), value)
         except ScenarioError as error:
             problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
-    return changed
+    return changed, problems
 
 
 def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
@@ -59,7 +53,7 @@ def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
     beside = [path for path in ending if outline.look_up(tables, path[:-1]) is not None]
     candidates = full or present or beside or ending
     if not candidates:
-        raise ScenarioError([f"key must be one of the scenario's, got {key!r}{_nearest(asked, list(known))}"])
+        raise ScenarioError([f"key must be one of the scenario's, got {key!r}{_nearest(asked, list(known), tables)}"])
     if len(candidates) > 1:
         listed = ", ".join(".".join(_text(path)) for path in candidates)
         raise ScenarioError([f"key must mean one place, got {key!r}, which fits {listed}"])
@@ -110,11 +104,25 @@ def _value(text: str) -> Any:
         return text
 
 
+def _of_named(asked: tuple[str, ...], known: list[Path], tables: dict[str, Any]) -> str:
+    """Return the nearest key of the contact or connection with the name that a key begins with, if there is one."""
+    for path in known:
+        if len(asked) > 1 and path[-1] == "name" and outline.look_up(tables, path) == asked[0]:
+            below = [other for other in known if other[: len(path) - 1] == path[:-1] and len(other) >= len(path)]
+            endings = {".".join(_text(other)[-len(asked) + 1 :]): ".".join(_text(other)) for other in below[::-1]}
+            near = get_close_matches(".".join(asked[1:]), endings, n=1, cutoff=0.6)
+            return endings[near[0]] if near else ".".join(_text(path[:-1]))
+    return ""
+
+
 def _text(path: Path) -> tuple[str, ...]:
     return tuple(map(str, path))
 
 
-def _nearest(asked: tuple[str, ...], known: list[Path]) -> str:
+def _nearest(asked: tuple[str, ...], known: list[Path], tables: dict[str, Any]) -> str:
+    named = _of_named(asked, known, tables)
+    if named:
+        return f"; did you mean {named!r}?"
     full = [".".join(_text(path)) for path in known]
     endings = [".".join(_text(path)[-len(asked) :]) for path in known]
     near = get_close_matches(".".join(asked), dict.fromkeys([*endings, *full]), n=1, cutoff=0.6)

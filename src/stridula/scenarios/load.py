@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from ..integration import SCHEMES, CentralDifference, ExactModal, GaussSeidel, simulate
 from ..records import Probe
 from ..system import System
-from .build import Builder
+from .build import NOT_FINITE, Builder, out_of_range
 from .errors import ScenarioError, as_written, explain, wrong_form
 from .inheritance import shared_out
 from .keys import overridden
@@ -67,26 +67,28 @@ class Scenario:
         Raises
         ------
         ScenarioError
-            If the scenario's step, duration or sample rate is out of its range.
+            If the scenario's step, duration or sample rate is out of its range, or its coupled modes overflow.
         """
         names = ("duration", "scheme", "step", "sample_rate", "probes", "contact_solve", "title")
         own = {name: getattr(self, name) for name in names}
         try:
             return simulate(self.system, **(own | kwargs))
         except ValueError as error:
+            if NOT_FINITE in str(error):
+                raise ScenarioError([out_of_range("")]) from error
             word = str(error).partition(" ")[0]
             if word not in own or word in kwargs:
                 raise
             raise ScenarioError([f"simulation.{error}"]) from error
 
 
-def load_scenario(name_or_path: str | Path, overrides: Mapping[str, Any] | None = None) -> Scenario:
+def load_scenario(name_or_path: str | Path | xr.Dataset, overrides: Mapping[str, Any] | None = None) -> Scenario:
     """Read a scenario and check it.
 
     Parameters
     ----------
-    name_or_path : str or Path
-        Name of a shipped case, a TOML file, or a record that `save` wrote, to be run again.
+    name_or_path : str, Path or xarray.Dataset
+        Name of a shipped case, a TOML file, or a record to be run again, itself or the file that `save` wrote.
     overrides : mapping, optional
         Values to set by key: a full path such as ``contact.friction.coefficient``, or any unique ending of one.
 
@@ -101,9 +103,9 @@ def load_scenario(name_or_path: str | Path, overrides: Mapping[str, Any] | None 
     OSError
         If the file cannot be read.
     """
-    written = overridden(read_tables(name_or_path), overrides or {})
+    written, problems = overridden(read_tables(name_or_path), overrides or {})
     tables = shared_out(written)
-    problems = wrong_form(written)
+    problems += wrong_form(written)
     try:
         checked = ScenarioTable.model_validate(tables)
     except ValidationError as error:

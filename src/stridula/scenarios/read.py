@@ -7,10 +7,12 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+import xarray as xr
+
 from ..checks import suggestion
 from ..records.files import MAGIC, read, scenario_of
 from ..records.packed import is_packed
-from .errors import ScenarioError
+from .errors import ScenarioError, shown
 from .inheritance import merged, spelled_out
 from .quantities import is_quantity
 
@@ -25,16 +27,20 @@ def shipped(folder: str) -> dict[str, str]:
     return {name: texts[name].read_text(encoding="utf-8") for name in sorted(texts)}
 
 
-def read_tables(name_or_path: str | Path) -> dict[str, Any]:
+def read_tables(name_or_path: str | Path | xr.Dataset) -> dict[str, Any]:
     """Return the tables of a shipped case, a scenario file or a record, with those of its base.
 
     Raises
     ------
     ScenarioError
-        If it is not there, or is not TOML.
+        If it is not there, is not TOML, or is none of these.
     OSError
         If the file cannot be read.
     """
+    if isinstance(name_or_path, xr.Dataset):
+        return _record_tables(name_or_path)
+    if not isinstance(name_or_path, (str, Path)):
+        raise ScenarioError([f"scenario must be a name, a path or a record, got {shown(name_or_path)}"])
     cases = shipped("cases")
     if str(name_or_path) in cases:
         return _with_base(_parsed(cases[str(name_or_path)], str(name_or_path)), Path(), ())
@@ -47,6 +53,13 @@ def read_tables(name_or_path: str | Path) -> dict[str, Any]:
             ]
         )
     return _with_base(_file_tables(path), path.parent, (path.resolve(),))
+
+
+def _record_tables(record: xr.Dataset) -> dict[str, Any]:
+    text = record.attrs.get("scenario")
+    if not isinstance(text, str):
+        raise ScenarioError(["scenario must be a record of simulate, got a Dataset without the attribute scenario"])
+    return {"title": str(record.attrs.get("title", ""))} | _parsed(text, "the attribute scenario")
 
 
 def _file_tables(path: Path) -> dict[str, Any]:

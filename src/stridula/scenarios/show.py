@@ -9,6 +9,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 import tomli_w
+import xarray as xr
 
 from ..records.provenance import toml
 from .outline import TAGS, Path, node_at, properties
@@ -41,7 +42,7 @@ def list_scenarios() -> list[Case]:
     return sorted(cases, key=lambda case: case.source)
 
 
-def scenario_text(name_or_path: str | FilePath) -> str:
+def scenario_text(name_or_path: str | FilePath | xr.Dataset) -> str:
     """Return a scenario as complete TOML, its base merged in and every key explained, to copy and edit."""
     tables = read_tables(name_or_path)
     return "\n".join(_lines(tables, (), tables)).strip() + "\n"
