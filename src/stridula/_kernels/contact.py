@@ -39,6 +39,8 @@ def solve_contact(gap, slip, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_
         return 0.0, 0.0, SEPARATED, False
     if not set_valued(law):
         return slide_with_state(gap, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, step)
+    if law == at.COULOMB and w_tt > 0.0:
+        return solve_coulomb(gap, slip, w_nn, w_nt, w_tt, laws[i, 0])
     if w_tt == 0.0:
         return slide_as_prescribed(gap, slip, freed, w_nn, law, laws, i, last_slip, step)
     determinant = w_nn * w_tt - w_nt * w_nt
@@ -60,6 +62,20 @@ def solve_contact(gap, slip, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_
     ratio = sliding_ratio(law, laws, i, abs(velocity))
     normal = -gap / (w_nn - sense * ratio * w_nt)
     return normal, sense * ratio * normal, SLIDING, False
+
+
+@numba.njit(cache=True)
+def solve_coulomb(gap, slip, w_nn, w_nt, w_tt, mu):
+    """Return the contact that closes `gap` below zero under one coefficient of friction."""
+    determinant = w_nn * w_tt - w_nt * w_nt
+    normal = (w_nt * slip - w_tt * gap) / determinant
+    tangential = (w_nn * slip - w_nt * gap) / determinant
+    sense = 1.0 if tangential >= 0.0 else -1.0
+    free = w_nn - sense * mu * w_nt
+    if abs(tangential) <= mu * normal:
+        return normal, tangential, STICKING, free <= 0.0
+    normal = -gap / free
+    return normal, sense * mu * normal, SLIDING, False
 
 
 @numba.njit(cache=True)

@@ -6,9 +6,9 @@ import numba
 import numpy as np
 
 from . import layout as at
-from .contact import SEPARATED, STICKING
+from .contact import SEPARATED, STICKING, solve_coulomb
 from .friction import next_state, set_valued
-from .gauss_seidel import solve_all, solve_one
+from .gauss_seidel import solve_all, solve_one, strayed
 from .traces import FASTMATH, harmonics
 
 # Error of the contact forces, relative to the largest, beyond which none can be believed.
@@ -32,7 +32,7 @@ def stored_energy(block, matrices, state):
     return energy
 
 
-@numba.njit(cache=True, fastmath=FASTMATH)
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
 def set_load(loads, signals, n, load):
     """Put the sum of the load increments, each times its signal at step `n`, into `load`."""
     for k in range(load.size):
@@ -42,7 +42,7 @@ def set_load(loads, signals, n, load):
             load[k] += signals[n, j] * loads[j, k]
 
 
-@numba.njit(cache=True, fastmath=FASTMATH)
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
 def trial_increments(block, matrices, state, load, new, position):
     """Put increments and positions at the end of the step without contact force into `new` and `position`."""
     for k in range(new.size):
@@ -55,7 +55,7 @@ def trial_increments(block, matrices, state, load, new, position):
         position[k] = state[at.Q, k] + new[k]
 
 
-@numba.njit(cache=True, fastmath=FASTMATH)
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
 def along(rows, i, side, vector, first, last):
     """Return the displacement along a row of contact `i` over a span."""
     total = 0.0
@@ -64,7 +64,7 @@ def along(rows, i, side, vector, first, last):
     return total
 
 
-@numba.njit(cache=True, fastmath=FASTMATH)
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
 def set_harmonics(contacts, spans, i, place, rows, sines, cosines, slopes):
     """Put minus the track's trace at abscissa `place`, and its slope, into the harmonic spans of contact `i`."""
     first, first_axial = spans[i, at.BENDING], spans[i, at.AXIAL]
@@ -79,7 +79,7 @@ def set_harmonics(contacts, spans, i, place, rows, sines, cosines, slopes):
         slopes[i, k] = -amplitude * wavenumber * (k + 1.0) * cosines[k]
 
 
-@numba.njit(cache=True, fastmath=FASTMATH)
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
 def mobility_sum(block, rows, i, side, first, last):
     """Return the displacement along a row for a unit force on it, over a span of uncoupled modes."""
     total = 0.0
@@ -88,7 +88,7 @@ def mobility_sum(block, rows, i, side, first, last):
     return total
 
 
-@numba.njit(cache=True, fastmath=FASTMATH)
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
 def set_compliance(block, matrices, rows, response, compliance):
     """Put the relative displacements of all contacts for unit forces on each into `compliance`."""
     for i in range(rows.shape[0]):
@@ -105,7 +105,7 @@ def set_compliance(block, matrices, rows, response, compliance):
                     compliance[2 * j + other, 2 * i + side] = value
 
 
-@numba.njit(cache=True, fastmath=FASTMATH)
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
 def add_push(spans, rows, i, normal, tangential, push):
     """Add the modal forces of contact `i` to `push`."""
     for k in range(spans[i, at.FIXED], spans[i, at.FIXED_END]):
@@ -116,7 +116,18 @@ def add_push(spans, rows, i, normal, tangential, push):
         push[k] -= rows[i, at.TANGENTIAL, k] * tangential
 
 
-@numba.njit(cache=True, fastmath=FASTMATH)
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
+def set_push(spans, rows, normal, tangential, push):
+    """Put the modal forces of the only contact, whose spans leave no mode out, into `push`."""
+    for k in range(spans[0, at.FIXED], spans[0, at.FIXED_END]):
+        push[k] = rows[0, at.NORMAL, k] * normal - rows[0, at.TANGENTIAL, k] * tangential
+    for k in range(spans[0, at.BENDING], spans[0, at.BENDING_END]):
+        push[k] = rows[0, at.NORMAL, k] * normal
+    for k in range(spans[0, at.AXIAL], spans[0, at.AXIAL_END]):
+        push[k] = -rows[0, at.TANGENTIAL, k] * tangential
+
+
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
 def correct(block, matrices, state, load, push, new):
     """Add what the contact forces do to the increments; return the works of contact, loads and damping."""
     coupled = matrices.shape[1]
@@ -140,7 +151,26 @@ def correct(block, matrices, state, load, push, new):
     return 0.5 * exchanged, given, lost
 
 
-@numba.njit(cache=True, fastmath=FASTMATH)
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
+def ledger_of_free(block, matrices, state, load, new):
+    """Return the works of loads and damping in a step without contact force."""
+    coupled = matrices.shape[1]
+    given = lost = 0.0
+    for k in range(new.size):
+        both = new[k] + state[at.D, k]
+        given += load[k] * both * block[at.HALF_OVER_CH, k]
+        lost += block[at.HALF_LOSS, k] * both * both * block[at.HALF_OVER_CH, k]
+    for k in range(coupled):
+        impulse = loss = 0.0
+        for j in range(coupled):
+            impulse += matrices[at.IMPULSE, k, j] * load[j]
+            loss += matrices[at.LOSS, k, j] * (new[j] + state[at.D, j])
+        given += impulse * (new[k] + state[at.D, k])
+        lost += loss * (new[k] + state[at.D, k])
+    return given, lost
+
+
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
 def convecting_force(spans, i, slopes, normal, tangential, state, new):
     """Return the force along the track that its slopes make of the forces of contact `i`."""
     first, first_axial = spans[i, at.BENDING], spans[i, at.AXIAL]
@@ -152,7 +182,7 @@ def convecting_force(spans, i, slopes, normal, tangential, state, new):
     return tangential * stretch - normal * bend
 
 
-@numba.njit(cache=True, fastmath=FASTMATH)
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
 def keep_probes(rows, kinds, direct, shares, state, new, signals, n, forces, raw):
     """Put the values of the probes at step `n` into ``raw[n]``."""
     for p in range(rows.shape[0]):
@@ -208,10 +238,15 @@ def march(
     # One contact on an uncoupled beam needs the sums over its harmonics only.
     n_harmonic = 0
     simple = n_contacts == 1
+    coulomb = int(contacts[0, at.LAW]) == at.COULOMB
     for i in range(n_contacts):
         moving = spans[i, at.BENDING_END] > spans[i, at.BENDING]
         n_harmonic += moving
         simple = simple and not (moving and spans[i, at.BENDING] < coupled)
+    # Slider and track of a pair are all there is: their spans leave no mode out.
+    fixed_end, bending_end = spans[0, at.FIXED_END], spans[0, at.BENDING_END]
+    whole = n_contacts == 1 and spans[0, at.FIXED] == 0 and spans[0, at.BENDING] == fixed_end
+    whole = whole and spans[0, at.AXIAL] == bending_end and spans[0, at.AXIAL_END] == n_modes
     sines, cosines, slopes = np.zeros(2 * n_modes), np.zeros(2 * n_modes), np.zeros((n_contacts, n_modes))
     load, new, position = np.zeros(n_modes), np.empty(n_modes), np.empty(n_modes)
     push, work = np.empty(n_modes), np.empty(n_modes)
@@ -232,7 +267,10 @@ def march(
         for i in range(n_contacts):
             first_material[i] = carried[i, at.MATERIAL]
         for _ in range(steps_per_sample):
-            if loads.shape[0]:
+            changed = n == 0
+            for j in range(loads.shape[0]):
+                changed = changed or signals[n, j] != signals[n - 1, j]
+            if changed and loads.shape[0]:
                 set_load(loads, signals, n, load)
             trial_increments(block, matrices, state, load, new, position)
 
@@ -271,9 +309,15 @@ def march(
                         w[1, 1] = compliance[1, 1] + mobility_sum(
                             block, rows, 0, at.TANGENTIAL, spans[0, at.AXIAL], spans[0, at.AXIAL_END]
                         )
-                    forces[0, 0], forces[0, 1], statuses[0], jammed[0] = solve_one(
-                        0, gaps[0], slips[0], w[0, 0], w[0, 1], w[1, 1], contacts, laws, carried, False, step
-                    )
+                    if coulomb and w[1, 1] > 0.0:
+                        slip = slips[0] + strayed(carried, 0)
+                        forces[0, 0], forces[0, 1], statuses[0], jammed[0] = solve_coulomb(
+                            gaps[0], slip, w[0, 0], w[0, 1], w[1, 1], laws[0, 0]
+                        )
+                    else:
+                        forces[0, 0], forces[0, 1], statuses[0], jammed[0] = solve_one(
+                            0, gaps[0], slips[0], w[0, 0], w[0, 1], w[1, 1], contacts, laws, carried, False, step
+                        )
                 else:
                     forces[0, 0], forces[0, 1], statuses[0] = 0.0, 0.0, SEPARATED
             else:
@@ -299,16 +343,21 @@ def march(
                     for i in range(n_contacts):
                         forces[i, 0], forces[i, 1], statuses[i] = 0.0, 0.0, SEPARATED
 
-            for k in range(n_modes):
-                push[k] = 0.0
             if touching:
-                for i in range(n_contacts):
-                    if statuses[i] != SEPARATED:
-                        add_push(spans, rows, i, forces[i, 0], forces[i, 1], push)
-            exchanged, given, lost = correct(block, matrices, state, load, push, new)
+                if whole:
+                    set_push(spans, rows, forces[0, 0], forces[0, 1], push)
+                else:
+                    for k in range(n_modes):
+                        push[k] = 0.0
+                    for i in range(n_contacts):
+                        if statuses[i] != SEPARATED:
+                            add_push(spans, rows, i, forces[i, 0], forces[i, 1], push)
+                exchanged, given, lost = correct(block, matrices, state, load, push, new)
+                contact += exchanged
+            else:
+                given, lost = ledger_of_free(block, matrices, state, load, new)
             drive += given
             damping += lost
-            contact += exchanged
 
             for i in range(n_contacts):
                 normal, tangential = forces[i, 0], forces[i, 1]
@@ -362,7 +411,6 @@ def march(
             for k in range(n_modes):
                 state[at.D, k] = new[k]
                 state[at.Q, k] += new[k]
-                position[k] = state[at.Q, k]
             n += 1
 
         stored = stored_energy(block, matrices, state)
@@ -378,11 +426,10 @@ def march(
             for column in range(at.SLIDING + 1):
                 record[sample, i, column] = sums[i, column] / steps_per_sample
             record[sample, i, at.CONTACT_POSITION] = carried[i, at.ABSCISSA]
-            record[sample, i, at.CONTACT_HEIGHT] = (
-                contacts[i, at.GAP]
-                + motion[n + 1, i, at.GAP_MOTION]
-                + along(rows, i, at.NORMAL, position, spans[i, at.FIXED], spans[i, at.FIXED_END])
-            )
+            height = contacts[i, at.GAP] + motion[n + 1, i, at.GAP_MOTION]
+            for k in range(spans[i, at.FIXED], spans[i, at.FIXED_END]):
+                height += rows[i, at.NORMAL, k] * state[at.Q, k]
+            record[sample, i, at.CONTACT_HEIGHT] = height
             record[sample, i, at.CONTACT_GAP] = gaps[i]
             record[sample, i, at.SLIP_VELOCITY] = (carried[i, at.MATERIAL] - first_material[i]) / (
                 steps_per_sample * step

@@ -24,7 +24,7 @@ def sine_and_cosine(theta):
     return 1.0 - 2.0 * s * s, -2.0 * s * c
 
 
-@numba.njit(cache=True, fastmath=FASTMATH)
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
 def harmonics(theta, count, sines, cosines):
     """Fill `sines` and `cosines` with sin(k theta) and cos(k theta), k = 1 to `count`, by doubling the filled part.
 
