@@ -10,7 +10,7 @@ help:
 	@echo "make peers        the same systems in Siconos and here; needs Debian's python3-siconos, skipped without"
 	@echo "make test         lint, types, layers and tests (sets itself up)"
 	@echo "make docs         build the documentation into docs/_build/html, warnings are errors"
-	@echo "make bench        speed and memory, as ratios measured side by side"
+	@echo "make bench        speed and memory, as ratios measured side by side, also against C"
 	@echo "make convergence  the table of docs/convergence.rst and the figure of docs/trust.rst, in a few minutes"
 	@echo "make clean        remove .venv and everything built"
 
@@ -46,6 +46,7 @@ docs: .venv/installed-docs
 
 bench: .venv/installed
 	$(BIN)/python benchmarks/speed_and_memory.py
+	$(BIN)/python benchmarks/limit/against_c.py
 
 convergence: .venv/installed
 	$(BIN)/python examples/papers/laulagnet_2011/convergence.py

@@ -62,5 +62,6 @@ if __name__ == "__main__":
         st.simulate(squeal(), 2.0, step=1e-6)
     else:
         print("                                 min   median  max")
-        speed()
+        # Memory first: a child counts what its parent held when it was made.
         memory()
+        speed()
