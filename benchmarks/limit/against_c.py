@@ -51,7 +51,7 @@ def system(size: tuple[int, int, int], regime: str) -> st.System:
 class Pair:
     """One system, ready to be marched by the package and by C."""
 
-    def __init__(self, given: st.System, library: ctypes.CDLL) -> None:
+    def __init__(self, given: st.System, compiled: ctypes.CDLL) -> None:
         probe = st.Acceleration(given.track.centre, "y")
         self.arrays = assemble(given, (probe,))
         limit = SCHEME.limit(self.arrays.angular_frequency, self.arrays.damping)
@@ -59,7 +59,7 @@ class Pair:
         self.modes = recurrence(self.arrays, SCHEME, self.step)
         self.contacts = contact_blocks(self.arrays, self.modes)
         self.probes = probe_blocks(self.arrays, self.step)
-        self.given, self.library = given, library
+        self.given, self.compiled = given, compiled
 
     def start(self) -> tuple[np.ndarray, np.ndarray]:
         """Return modes and contact at the start."""
@@ -106,7 +106,7 @@ class Pair:
         sizes = [ctypes.c_int(number) for number in (slider, axial - bending, end - axial)]
 
         def run() -> None:
-            self.library.march(ctypes.c_long(STEPS), *sizes, *pointers)
+            self.compiled.march(ctypes.c_long(STEPS), *sizes, *pointers)
 
         def result() -> np.ndarray:
             return np.concatenate([q, sums[:5], sums[7:10]])
@@ -140,13 +140,13 @@ def main() -> None:
         print("SKIPPED: gcc is not installed, so there is no C to compare with")
         return
     with tempfile.TemporaryDirectory() as folder:
-        compiled = Path(folder) / "step.so"
-        subprocess.run(["gcc", *FLAGS, "-o", compiled, SOURCE, "-lm"], check=True)
-        library = ctypes.CDLL(str(compiled))
+        target = Path(folder) / "step.so"
+        subprocess.run(["gcc", *FLAGS, "-o", target, SOURCE, "-lm"], check=True)
+        compiled = ctypes.CDLL(str(target))
         print(f"time per step over C's (bar {BAR})      min   median  max")
         for size in SIZES:
             for regime in ("separated", "sticking", "sliding"):
-                pair = Pair(system(size, regime), library)
+                pair = Pair(system(size, regime), compiled)
                 taken, states = ratios(pair)
                 if not states[("separated", "sticking", "sliding").index(regime)] > 0.9 * STEPS:
                     raise SystemExit(f"{regime} must last, got {states} steps separated, sticking, sliding")

@@ -15,7 +15,7 @@ from .bodies.modes import Array
 from .checks import instance
 from .contact import ExponentialWeakening, FrictionLaw, LinearWeakening, LuGre, RateAndState, Stribeck
 from .contact.point_contact import LAWS
-from .records.files import write
+from .disk import write
 from .records.variables import STATUS_WORDS
 
 COLUMNS = 1600

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import stridula as st
-from stridula.records import files
+from stridula import disk
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +58,7 @@ def test_a_full_disk_leaves_the_old_file(record, tmp_path, monkeypatch):
     def full(descriptor):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(files.os, "fsync", full)
+    monkeypatch.setattr(disk.os, "fsync", full)
     with pytest.raises(OSError, match=r"^cannot write '.*run.nc': no space left on device$") as caught:
         st.save(record, path)
     assert caught.value.errno == errno.ENOSPC
@@ -86,7 +86,7 @@ def test_a_place_that_cannot_be_written_is_told(record, tmp_path, name, message)
 def test_a_write_protected_file_is_left_alone(record, tmp_path, monkeypatch):
     path = tmp_path / "run.nc"
     path.write_bytes(b"old")
-    monkeypatch.setattr(files.os, "access", lambda path, mode: False)
+    monkeypatch.setattr(disk.os, "access", lambda path, mode: False)
     with pytest.raises(PermissionError, match="permission denied"):
         st.save(record, path)
     assert path.read_bytes() == b"old"

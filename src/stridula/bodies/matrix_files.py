@@ -7,7 +7,7 @@ import os
 import zipfile
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
+from ..disk import one_line, write
 from .modes import Array
 
 LARGEST_FILE = 2 * 1024**3
@@ -131,15 +132,7 @@ def write_npz(path: str | os.PathLike[str], arrays: Mapping[str, Any]) -> None:
     content = io.BytesIO()
     plain: dict[str, Any] = dict(arrays)
     np.savez(content, **plain)
-    target = Path(path).resolve()
-    beside = target.parent / f".stridula-{os.getpid()}-{target.name}.part"
-    with _one_line(f"cannot write {os.fspath(path)!r}"):
-        try:
-            beside.write_bytes(content.getbuffer())
-            os.replace(beside, target)
-        finally:
-            with suppress(OSError):
-                beside.unlink()
+    write(path, content.getbuffer())
 
 
 @dataclass(frozen=True)
@@ -159,7 +152,7 @@ class _Entries:
 
 def _kind(path: str | os.PathLike[str]) -> str:
     """Return the kind of a file from its first bytes, after a check of its size."""
-    with _one_line(f"cannot read {os.fspath(path)!r}"):
+    with one_line(f"cannot read {os.fspath(path)!r}"):
         size = os.stat(path).st_size
         with open(path, "rb") as file:
             head = file.read(1024)
@@ -329,17 +322,6 @@ def _both_triangles(rows: Array, columns: Array, values: Array, labelled: bool) 
         return rows, columns, values
     both = np.append(rows, columns[beside]), np.append(columns, rows[beside])
     return *both, np.append(values, values[beside])
-
-
-@contextmanager
-def _one_line(doing: str) -> Iterator[None]:
-    """Turn an OSError into one of the same kind that says in one line what failed and why."""
-    try:
-        yield
-    except OSError as error:
-        clear = type(error)(f"{doing}: {(error.strerror or str(error)).lower()}")
-        clear.errno = error.errno
-        raise clear from error
 
 
 @contextmanager

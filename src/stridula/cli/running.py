@@ -11,10 +11,11 @@ import xarray as xr
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
+from ..disk import check_writable
 from ..integration import Diverged, Interrupted
 from ..integration.watchers import Progress as Report
 from ..integration.watchers import Watcher
-from ..records.files import check_writable, save
+from ..records.files import save
 from ..scenarios import load_scenario
 from .card import print_card
 from .exits import FAILED, INTERRUPTED, Stopped

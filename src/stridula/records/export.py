@@ -15,7 +15,7 @@ import xarray as xr
 
 from ..bodies.modes import Array
 from ..checks import instance
-from .files import check_writable, write
+from ..disk import check_writable, write
 
 SUFFIXES = (".csv", ".mat")
 # What MATLAB's version 5 files can hold of one variable, and in one name.

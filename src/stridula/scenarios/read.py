@@ -10,7 +10,8 @@ from typing import Any
 import xarray as xr
 
 from ..checks import suggestion
-from ..records.files import MAGIC, read, scenario_of
+from ..disk import read
+from ..records.files import MAGIC, scenario_of
 from ..records.packed import is_packed
 from .errors import ScenarioError, shown
 from .inheritance import merged, spelled_out

@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..disk import write
 from ..plot import save as save_figure
-from ..records.files import write
 from ..version import __version__
 from .case import Case, Outcome, Row, Sketch, table_row
 from .cases import CASES, WAITING

@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from ...disk import write
 from ...plot import overview
 from ...plot import save as save_figure
 from ...records.files import save as save_record
-from ...records.files import write
 from ...version import __version__
 from .claims import CLAIMS
 from .figures import FIGURES
