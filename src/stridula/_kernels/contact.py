@@ -26,14 +26,15 @@ NEARBY = 1e-6
 HALVINGS = 60
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, inline="always")
 def solve_contact(gap, slip, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, grip, step):
     """Return (normal force, tangential force, status, jammed) that close `gap` under a law of friction.
 
     `gap` is the gap [m] at the end of the step without contact force, `slip` how far the tip is then from where
     sticking would hold it, `freed` how far it is from where it was. The compliances [m/N] are the relative
     displacement of the tip against the track for unit forces (on the tip and its opposite on the track). The
-    tangential force acts on the track along the tangent. Velocity-dependent laws see the centred slip velocity.
+    tangential force acts on the track along the tangent. Velocity-dependent laws see the centred slip velocity. `grip`
+    says whether the static coefficient holds, or whether of two consistent states sliding is taken.
     """
     if gap >= 0.0:
         return 0.0, 0.0, SEPARATED, False
@@ -43,9 +44,7 @@ def solve_contact(gap, slip, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_
         return solve_coulomb(gap, slip, w_nn, w_nt, w_tt, laws[i, 0])
     if w_tt == 0.0:
         return slide_as_prescribed(gap, slip, freed, w_nn, law, laws, i, last_slip, step)
-    determinant = w_nn * w_tt - w_nt * w_nt
-    normal = (w_nt * slip - w_tt * gap) / determinant
-    tangential = (w_nn * slip - w_nt * gap) / determinant
+    normal, tangential = sticking_forces(gap, slip, w_nn, w_nt, w_tt)
     sense = 1.0 if tangential >= 0.0 else -1.0
     held = holding_ratio(law, laws, i, grip == HELD)
     velocity = 0.0
@@ -65,11 +64,16 @@ def solve_contact(gap, slip, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_
 
 
 @numba.njit(cache=True)
+def sticking_forces(gap, slip, w_nn, w_nt, w_tt):
+    """Return the normal and the tangential force that close `gap` and undo `slip`."""
+    determinant = w_nn * w_tt - w_nt * w_nt
+    return (w_nt * slip - w_tt * gap) / determinant, (w_nn * slip - w_nt * gap) / determinant
+
+
+@numba.njit(cache=True)
 def solve_coulomb(gap, slip, w_nn, w_nt, w_tt, mu):
     """Return the contact that closes `gap` below zero under one coefficient of friction."""
-    determinant = w_nn * w_tt - w_nt * w_nt
-    normal = (w_nt * slip - w_tt * gap) / determinant
-    tangential = (w_nn * slip - w_nt * gap) / determinant
+    normal, tangential = sticking_forces(gap, slip, w_nn, w_nt, w_tt)
     sense = 1.0 if tangential >= 0.0 else -1.0
     free = w_nn - sense * mu * w_nt
     if abs(tangential) <= mu * normal:
@@ -92,6 +96,7 @@ def slide_as_prescribed(gap, slip, freed, w_nn, law, laws, i, last_slip, step):
 def slide_with_state(gap, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, step):
     """Return the contact under a law with internal state, which never sticks exactly."""
     velocity = slip_velocity(gap, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, 0.0, step)
+    status = STICKING if abs(velocity) < sticking_speed(law, laws, i) else SLIDING
     # Where the ratio is flat in the velocity it gives the forces to round-off, where it is steep, in creep, the motion.
     ratio = state_ratio(law, laws, i, state, velocity, step)
     led_to = velocity_under(ratio, gap, freed, w_nn, w_nt, w_tt, last_slip, step)
@@ -99,12 +104,10 @@ def slide_with_state(gap, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_sli
     change = velocity_under(nearby, gap, freed, w_nn, w_nt, w_tt, last_slip, step) - led_to
     if abs(change) <= abs(NEARBY * velocity):
         normal = -gap / (w_nn - ratio * w_nt)
-        status = STICKING if abs(velocity) < sticking_speed(law, laws, i) else SLIDING
         return normal, ratio * normal, status, False
     slip = 2.0 * step * velocity - last_slip
     tangential = (freed - w_nt / w_nn * gap - slip) / (w_tt - w_nt * w_nt / w_nn)
     normal = (w_nt * tangential - gap) / w_nn
-    status = STICKING if abs(velocity) < sticking_speed(law, laws, i) else SLIDING
     return normal, tangential, status, False
 
 

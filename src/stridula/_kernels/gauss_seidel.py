@@ -17,13 +17,13 @@ PATIENCE = 24
 ROUND_OFF = 1e-14
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, inline="always")
 def displacement(compliance, row, j, forces):
     """Return the relative displacement along a row of the compliance that contact `j` makes."""
     return compliance[row, 2 * j] * forces[j, 0] - compliance[row, 2 * j + 1] * forces[j, 1]
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, inline="always")
 def strayed(carried, i):
     """Return how far contact `i` is from the anchor of its stick."""
     if int(carried[i, at.STATUS]) != STICKING:
@@ -31,7 +31,7 @@ def strayed(carried, i):
     return carried[i, at.MATERIAL] - carried[i, at.ANCHOR]
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, inline="always")
 def solve_one(i, gap, slip, w_nn, w_nt, w_tt, contacts, laws, carried, let_go, step):
     """Return (normal force, tangential force, status, jammed) of contact `i`.
 

@@ -6,9 +6,9 @@ import numba
 import numpy as np
 
 from . import layout as at
-from .contact import SEPARATED, STICKING, solve_coulomb
+from .contact import SEPARATED, STICKING
 from .friction import next_state, set_valued
-from .gauss_seidel import solve_all, solve_one, strayed
+from .gauss_seidel import displacement, solve_all, solve_one
 from .traces import FASTMATH, harmonics
 
 # Error of the contact forces, relative to the largest, beyond which none can be believed.
@@ -117,43 +117,21 @@ def add_push(spans, rows, i, normal, tangential, push):
 
 
 @numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def set_push(spans, rows, normal, tangential, push):
-    """Put the modal forces of the only contact, whose spans leave no mode out, into `push`."""
-    for k in range(spans[0, at.FIXED], spans[0, at.FIXED_END]):
-        push[k] = rows[0, at.NORMAL, k] * normal - rows[0, at.TANGENTIAL, k] * tangential
-    for k in range(spans[0, at.BENDING], spans[0, at.BENDING_END]):
-        push[k] = rows[0, at.NORMAL, k] * normal
-    for k in range(spans[0, at.AXIAL], spans[0, at.AXIAL_END]):
-        push[k] = -rows[0, at.TANGENTIAL, k] * tangential
-
-
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def correct(block, matrices, state, load, push, new):
-    """Add what the contact forces do to the increments; return the works of contact, loads and damping."""
-    coupled = matrices.shape[1]
-    exchanged = given = lost = 0.0
-    for k in range(coupled):
-        for j in range(coupled):
+def correct(block, matrices, state, push, new):
+    """Add what the contact forces do to the increments; return their work."""
+    for k in range(matrices.shape[1]):
+        for j in range(matrices.shape[1]):
             new[k] += matrices[at.MOBILITY, k, j] * push[j]
+    exchanged = 0.0
     for k in range(new.size):
         new[k] += block[at.CH, k] * push[k]
-        both = new[k] + state[at.D, k]
-        exchanged += push[k] * both
-        given += load[k] * both * block[at.HALF_OVER_CH, k]
-        lost += block[at.HALF_LOSS, k] * both * both * block[at.HALF_OVER_CH, k]
-    for k in range(coupled):
-        impulse = loss = 0.0
-        for j in range(coupled):
-            impulse += matrices[at.IMPULSE, k, j] * load[j]
-            loss += matrices[at.LOSS, k, j] * (new[j] + state[at.D, j])
-        given += impulse * (new[k] + state[at.D, k])
-        lost += loss * (new[k] + state[at.D, k])
-    return 0.5 * exchanged, given, lost
+        exchanged += push[k] * (new[k] + state[at.D, k])
+    return 0.5 * exchanged
 
 
 @numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def ledger_of_free(block, matrices, state, load, new):
-    """Return the works of loads and damping in a step without contact force."""
+def work_of_loads_and_damping(block, matrices, state, load, new):
+    """Return what the loads give and what damping takes in a step."""
     coupled = matrices.shape[1]
     given = lost = 0.0
     for k in range(new.size):
@@ -238,15 +216,10 @@ def march(
     # One contact on an uncoupled beam needs the sums over its harmonics only.
     n_harmonic = 0
     simple = n_contacts == 1
-    coulomb = int(contacts[0, at.LAW]) == at.COULOMB
     for i in range(n_contacts):
         moving = spans[i, at.BENDING_END] > spans[i, at.BENDING]
         n_harmonic += moving
         simple = simple and not (moving and spans[i, at.BENDING] < coupled)
-    # Slider and track of a pair are all there is: their spans leave no mode out.
-    fixed_end, bending_end = spans[0, at.FIXED_END], spans[0, at.BENDING_END]
-    whole = n_contacts == 1 and spans[0, at.FIXED] == 0 and spans[0, at.BENDING] == fixed_end
-    whole = whole and spans[0, at.AXIAL] == bending_end and spans[0, at.AXIAL_END] == n_modes
     sines, cosines, slopes = np.zeros(2 * n_modes), np.zeros(2 * n_modes), np.zeros((n_contacts, n_modes))
     load, new, position = np.zeros(n_modes), np.empty(n_modes), np.empty(n_modes)
     push, work = np.empty(n_modes), np.empty(n_modes)
@@ -309,15 +282,9 @@ def march(
                         w[1, 1] = compliance[1, 1] + mobility_sum(
                             block, rows, 0, at.TANGENTIAL, spans[0, at.AXIAL], spans[0, at.AXIAL_END]
                         )
-                    if coulomb and w[1, 1] > 0.0:
-                        slip = slips[0] + strayed(carried, 0)
-                        forces[0, 0], forces[0, 1], statuses[0], jammed[0] = solve_coulomb(
-                            gaps[0], slip, w[0, 0], w[0, 1], w[1, 1], laws[0, 0]
-                        )
-                    else:
-                        forces[0, 0], forces[0, 1], statuses[0], jammed[0] = solve_one(
-                            0, gaps[0], slips[0], w[0, 0], w[0, 1], w[1, 1], contacts, laws, carried, False, step
-                        )
+                    forces[0, 0], forces[0, 1], statuses[0], jammed[0] = solve_one(
+                        0, gaps[0], slips[0], w[0, 0], w[0, 1], w[1, 1], contacts, laws, carried, False, step
+                    )
                 else:
                     forces[0, 0], forces[0, 1], statuses[0] = 0.0, 0.0, SEPARATED
             else:
@@ -344,18 +311,13 @@ def march(
                         forces[i, 0], forces[i, 1], statuses[i] = 0.0, 0.0, SEPARATED
 
             if touching:
-                if whole:
-                    set_push(spans, rows, forces[0, 0], forces[0, 1], push)
-                else:
-                    for k in range(n_modes):
-                        push[k] = 0.0
-                    for i in range(n_contacts):
-                        if statuses[i] != SEPARATED:
-                            add_push(spans, rows, i, forces[i, 0], forces[i, 1], push)
-                exchanged, given, lost = correct(block, matrices, state, load, push, new)
-                contact += exchanged
-            else:
-                given, lost = ledger_of_free(block, matrices, state, load, new)
+                for k in range(n_modes):
+                    push[k] = 0.0
+                for i in range(n_contacts):
+                    if statuses[i] != SEPARATED:
+                        add_push(spans, rows, i, forces[i, 0], forces[i, 1], push)
+                contact += correct(block, matrices, state, push, new)
+            given, lost = work_of_loads_and_damping(block, matrices, state, load, new)
             drive += given
             damping += lost
 
@@ -364,8 +326,8 @@ def march(
                 gap, slip, place = gaps[i], slips[i], places[i]
                 if touching:
                     for j in range(n_contacts):
-                        gap += w[2 * i, 2 * j] * forces[j, 0] - w[2 * i, 2 * j + 1] * forces[j, 1]
-                        slip += w[2 * i + 1, 2 * j] * forces[j, 0] - w[2 * i + 1, 2 * j + 1] * forces[j, 1]
+                        gap += displacement(w, 2 * i, j, forces)
+                        slip += displacement(w, 2 * i + 1, j, forces)
                     place = contacts[i, at.START] + motion[n + 2, i, at.TIP_MOTION]
                     for k in range(spans[i, at.FIXED], spans[i, at.FIXED_END]):
                         place += rows[i, at.TANGENTIAL, k] * (state[at.Q, k] + new[k])
