@@ -113,19 +113,18 @@ class Assembly:
 
 def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
     """Turn a system and its probes into flat arrays."""
-    stiffness, dissipation, coupled = _couple(_Layout(system, ()))
-    layout = _Layout(system, coupled)
-    if coupled:
-        stiffness, dissipation, _ = _couple(layout)
+    layout = _Layout(system)
+    stiffness, dissipation = _matrices(layout)
     modes = [layout.modes(body) for body in layout.order]
     angular = np.concatenate([one.angular_frequency for one in modes])
     damping = np.concatenate([one.damping for one in modes])
-    size = sum(layout.modes(body).count for body in coupled)
+    size = len(stiffness)
+    if size and _uncoupled(stiffness, dissipation):
+        angular[:size] = np.sqrt(np.diag(stiffness))
+        damping[:size] = np.diag(dissipation) / (2.0 * np.where(angular[:size] > 0.0, angular[:size], 1.0))
+        size = 0
     # Coupled modes march by matrices; alone they would not.
     angular[:size] = damping[:size] = 0.0
-    if not coupled and len(stiffness):
-        angular = np.sqrt(np.diag(stiffness))
-        damping = np.diag(dissipation) / (2.0 * np.where(angular > 0.0, angular, 1.0))
     loads, signals = _loads(system, layout)
     position, velocity = _start(system, layout)
     return Assembly(
@@ -148,12 +147,18 @@ class _Layout:
     """Where the modes of each body lie, and full-width rows of its points."""
 
     system: System
-    first: tuple[Any, ...]
+
+    @cached_property
+    def joined(self) -> tuple[Any, ...]:
+        """The bodies whose modes may be coupled: by connections, or by a damping matrix of their own."""
+        named = [point.body for connection in self.system.connections for point in ends(connection)]
+        bodies = self.system.bodies
+        return tuple(body for body in bodies if body in named or self.modes(body).damping_matrix is not None)
 
     @cached_property
     def order(self) -> tuple[Any, ...]:
-        """The bodies, coupled ones first."""
-        return (*self.first, *(body for body in self.system.bodies if body not in self.first))
+        """The bodies, joined ones first."""
+        return (*self.joined, *(body for body in self.system.bodies if body not in self.joined))
 
     @cached_property
     def spans(self) -> dict[Any, tuple[int, int]]:
@@ -191,36 +196,31 @@ class _Layout:
         return self.full(body, self.modes(body).translation)
 
 
-def _couple(layout: _Layout) -> tuple[Array, Array, tuple[Any, ...]]:
-    """Return stiffness and damping matrices over all modes, and the bodies whose modes they couple.
-
-    No body is coupled where both matrices are diagonal and every mode is a damped oscillator.
-    """
-    system = layout.system
-    bodies = [body for body in layout.order if layout.modes(body).damping_matrix is not None]
-    joined = [point.body for connection in system.connections for point in ends(connection)]
-    coupled = tuple(body for body in layout.order if body in bodies or body in joined)
-    if not coupled:
-        return np.zeros((0, 0)), np.zeros((0, 0)), ()
-    stiffness, dissipation = np.zeros((layout.size, layout.size)), np.zeros((layout.size, layout.size))
-    for body in layout.order:
+def _matrices(layout: _Layout) -> tuple[Array, Array]:
+    """Return the stiffness and the damping matrix of the modes of joined bodies, which come first."""
+    size = sum(layout.modes(body).count for body in layout.joined)
+    stiffness, dissipation = np.zeros((size, size)), np.zeros((size, size))
+    for body in layout.joined:
         modes, span = layout.modes(body), slice(*layout.spans[body])
         stiffness[span, span] = np.diag(modes.angular_frequency**2)
         own = np.diag(2.0 * modes.damping * modes.angular_frequency)
         dissipation[span, span] = own if modes.damping_matrix is None else modes.damping_matrix
-    for connection in system.connections:
-        row = unit(connection) @ layout.trace(connection.first)
+    for connection in layout.system.connections:
+        row = unit(connection) @ layout.trace(connection.first)[:, :size]
         if connection.second is not None:
-            row = row - unit(connection) @ layout.trace(connection.second)
+            row = row - unit(connection) @ layout.trace(connection.second)[:, :size]
         if isinstance(connection, Spring):
             stiffness += connection.stiffness * np.outer(row, row)
         else:
             dissipation += connection.coefficient * np.outer(row, row)
-    rates = np.diag(dissipation) < 2.0 * np.sqrt(np.diag(stiffness))
-    oscillators = bool(np.all(rates | ~np.diag(dissipation).astype(bool)))
-    if oscillators and _is_diagonal(stiffness) and _is_diagonal(dissipation):
-        return stiffness, dissipation, ()
-    return stiffness, dissipation, coupled
+    return stiffness, dissipation
+
+
+def _uncoupled(stiffness: Array, dissipation: Array) -> bool:
+    """Return whether the modes are oscillators on their own after all, none damped critically."""
+    diagonal = np.diag(dissipation)
+    oscillators = (diagonal < 2.0 * np.sqrt(np.diag(stiffness))) | (diagonal == 0.0)
+    return bool(oscillators.all()) and _is_diagonal(stiffness) and _is_diagonal(dissipation)
 
 
 def _is_diagonal(matrix: Array) -> bool:

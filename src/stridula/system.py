@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -161,7 +161,7 @@ class System:
 
 def _listed(name: str, given: Any, kinds: tuple[type, ...]) -> tuple[Any, ...]:
     words = {"contact": "a PointContact or a list of them"}.get(name, f"a list of {name}")
-    if isinstance(given, (str, bytes)) or not isinstance(given, Iterable) or not isinstance(given, Sequence):
+    if isinstance(given, (str, bytes)) or not isinstance(given, Sequence):
         raise ValueError(f"{name} must be {words}, got {given!r}")
     for number, entry in enumerate(given):
         instance(f"{name}[{number}]", entry, kinds)

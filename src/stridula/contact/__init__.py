@@ -2,12 +2,13 @@
 
 from .coulomb import Coulomb, StaticKinetic
 from .lugre import LuGre
-from .point_contact import FrictionLaw, PointContact
+from .point_contact import LAWS, FrictionLaw, PointContact
 from .rate_and_state import RateAndState
 from .rigid_track import RigidTrack
 from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
 
 __all__ = [
+    "LAWS",
     "Coulomb",
     "ExponentialWeakening",
     "FrictionLaw",

@@ -22,6 +22,8 @@ class Coulomb:
     """
 
     law: ClassVar[str] = "coulomb"
+    state_units: ClassVar[str] = ""
+    state_at_start: ClassVar[float] = 0.0
     coefficient: float
 
     def __post_init__(self) -> None:
@@ -51,6 +53,8 @@ class StaticKinetic:
     """
 
     law: ClassVar[str] = "static-kinetic"
+    state_units: ClassVar[str] = ""
+    state_at_start: ClassVar[float] = 0.0
     static: float
     kinetic: float
 

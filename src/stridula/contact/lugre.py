@@ -44,6 +44,8 @@ class LuGre:
     """
 
     law: ClassVar[str] = "lugre"
+    state_units: ClassVar[str] = "m"
+    state_at_start: ClassVar[float] = 0.0
     static: float
     kinetic: float
     velocity: float

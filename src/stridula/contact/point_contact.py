@@ -17,6 +17,8 @@ from .rigid_track import RigidTrack
 from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
 
 FrictionLaw = Coulomb | StaticKinetic | Stribeck | ExponentialWeakening | LinearWeakening | LuGre | RateAndState
+# Sine or cosine that rounding leaves of a right angle.
+ALONG_AN_AXIS = 1e-15
 LAWS = (Coulomb, StaticKinetic, Stribeck, ExponentialWeakening, LinearWeakening, LuGre, RateAndState)
 
 
@@ -83,10 +85,7 @@ class PointContact:
     @property
     def frame(self) -> Array:
         """Unit vectors of the track's normal and tangent in the world frame, shape (2, 2)."""
-        # Exact zeros and ones where the track lies along an axis.
-        turn = self.inclination % (2.0 * math.pi)
-        cosine, sine = math.cos(turn), math.sin(turn)
-        quarters = round(turn / (math.pi / 2.0))
-        if abs(turn - quarters * math.pi / 2.0) < 1e-15 * max(1.0, turn) * 4.0:
-            cosine, sine = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[quarters % 4]
-        return np.array([[-sine, cosine], [cosine, sine]])
+        sine, cosine = math.sin(self.inclination), math.cos(self.inclination)
+        axes = np.array([[-sine, cosine], [cosine, sine]])
+        # Exact zeros where the track lies along an axis.
+        return np.where(np.abs(axes) < ALONG_AN_AXIS, 0.0, axes)

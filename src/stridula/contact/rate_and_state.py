@@ -41,6 +41,8 @@ class RateAndState:
         State at the start [s]; that of steady sliding at `velocity`, ``slip_distance / velocity``, if left out.
     """
 
+    law: ClassVar[str] = "rate and state"
+    state_units: ClassVar[str] = "s"
     reference: float
     a: float
     b: float
@@ -55,8 +57,6 @@ class RateAndState:
         choice("evolution", self.evolution, ("aging", "slip"))
         if self.initial_state is not None:
             positive("initial_state", self.initial_state)
-
-    law: ClassVar[str] = "rate and state"
 
     @property
     def state_at_start(self) -> float:

@@ -34,6 +34,8 @@ class Stribeck:
     """
 
     law: ClassVar[str] = "stribeck"
+    state_units: ClassVar[str] = ""
+    state_at_start: ClassVar[float] = 0.0
     static: float
     kinetic: float
     velocity: float
@@ -69,6 +71,8 @@ class ExponentialWeakening:
     """
 
     law: ClassVar[str] = "exponential weakening"
+    state_units: ClassVar[str] = ""
+    state_at_start: ClassVar[float] = 0.0
     static: float
     kinetic: float
     velocity: float
@@ -100,6 +104,8 @@ class LinearWeakening:
     """
 
     law: ClassVar[str] = "linear weakening"
+    state_units: ClassVar[str] = ""
+    state_at_start: ClassVar[float] = 0.0
     static: float
     slope: float
     kinetic: float = 0.0

@@ -16,7 +16,6 @@ from ..contact import (
     FrictionLaw,
     LinearWeakening,
     LuGre,
-    RateAndState,
     StaticKinetic,
     Stribeck,
 )
@@ -164,11 +163,6 @@ def _law(law: FrictionLaw) -> tuple[int, tuple[float, ...]]:
         return at.LUGRE, (law.static, law.kinetic, law.velocity, law.stiffness, law.damping, law.viscous)
     code = at.AGING if law.evolution == "aging" else at.SLIP
     return code, (law.reference, law.a, law.b, law.slip_distance, law.velocity, 0.0, 0.0, law.state_at_start)
-
-
-def keeps_state(law: FrictionLaw) -> bool:
-    """Return whether a law has an internal state."""
-    return isinstance(law, (LuGre, RateAndState))
 
 
 def probe_blocks(arrays: Assembly, step: float) -> tuple[Array, Array, Array, Array]:

@@ -16,12 +16,13 @@ from .._kernels.march import march, stored_energy
 from ..assembly import Assembly
 from ..bodies.modes import Array
 from ..checks import instance
+from ..contact import LAWS
 from ..records import Probe
 from ..records.dataset import State, to_dataset
 from ..records.provenance import scenario_toml
 from ..system import System
 from ..version import __version__
-from .blocks import contact_blocks, keeps_state, probe_blocks, recurrence
+from .blocks import contact_blocks, probe_blocks, recurrence
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
 from .interrupts import DeferredInterrupt
@@ -30,6 +31,8 @@ from .start import at_start
 from .stops import ENDED, Diverged, Interrupted, contact_words, energy_created
 from .watchers import Progress, Watcher
 
+# Laws whose internal state is carried on: another law has no use for it.
+STATEFUL = tuple(law.law for law in LAWS if law.state_units)
 STEPS_PER_CHUNK = 20_000
 CONTACT_COLUMN = {
     "normal_force": at.NORMAL_FORCE,
@@ -96,7 +99,7 @@ class Run:
         self.modes = recurrence(arrays, scheme, timing.step)
         self.contacts = contact_blocks(arrays, self.modes)
         self.probe_blocks = probe_blocks(arrays, timing.step)
-        self.dissipative = not any(keeps_state(contact.friction) for contact in system.contacts)
+        self.dissipative = not any(contact.friction.state_units for contact in system.contacts)
         self.first_step = 0
         if start is None:
             self.state, self.carried = at_start(arrays, scheme, timing.step, self.modes, self.contacts, solve)
@@ -312,8 +315,8 @@ def _frozen(tables: dict[str, Any]) -> dict[str, Any]:
 
 
 def _without_friction(contact: dict[str, Any]) -> dict[str, Any]:
-    stateful = contact["friction"]["law"] in ("lugre", "rate and state")
-    return {**contact, "friction": contact["friction"]["law"] if stateful else None}
+    name = contact["friction"]["law"]
+    return {**contact, "friction": name if name in STATEFUL else None}
 
 
 def _check_frozen(before: dict[str, Any], now: dict[str, Any], path: str = "") -> None:

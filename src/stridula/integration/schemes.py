@@ -133,7 +133,7 @@ class CentralDifference:
     ) -> Array:
         """Return the increment whose centred velocity at the start is `velocity`."""
         k = self.coupled_coefficients(stiffness, damping, step)
-        return np.linalg.solve(np.eye(len(stiffness)) + k.b, 2.0 * step * velocity + k.r @ position - k.load @ force)
+        return _centred_start(k, step, position, velocity, force)
 
 
 @dataclass(frozen=True)
@@ -210,12 +210,15 @@ class ExactModal:
         """
         if step * float(np.max(np.abs(damping).sum(axis=1), initial=0.0)) > FOLLOWED_BACK:
             k = self.coupled_coefficients(stiffness, damping, step)
-            return np.linalg.solve(
-                np.eye(len(stiffness)) + k.b, 2.0 * step * velocity + k.r @ position - k.load @ force
-            )
+            return _centred_start(k, step, position, velocity, force)
         size = len(stiffness)
         back = _transition(stiffness, damping, -step)[:size]
         return position - back @ np.concatenate([position, velocity, force])
+
+
+def _centred_start(k: Coefficients, step: float, position: Array, velocity: Array, force: Array) -> Array:
+    """Return the increment before the start whose centred velocity there is `velocity`, of coupled modes."""
+    return np.linalg.solve(np.eye(len(k.b)) + k.b, 2.0 * step * velocity + k.r @ position - k.load @ force)
 
 
 def _angular(stiffness: Array) -> Array:

@@ -12,7 +12,7 @@ from ..assembly import Assembly, ContactRows
 from ..bodies import ModalBeam
 from ..bodies.modes import Array
 from ..contact import FrictionLaw, RateAndState
-from .blocks import ContactBlocks, Recurrence, keeps_state
+from .blocks import ContactBlocks, Recurrence
 from .contact_solve import GaussSeidel
 from .schemes import Scheme
 
@@ -109,9 +109,9 @@ class _Start:
 
     def _state_before(self, i: int, law: FrictionLaw, velocity: float) -> float:
         """Return the internal state of a law half a step before the start: the march keeps it between the steps."""
-        if not keeps_state(law):
+        if not law.state_units:
             return 0.0
-        state = law.state_at_start if isinstance(law, RateAndState) else 0.0
+        state = law.state_at_start
         code = int(self.contacts.constants[i, at.LAW])
         # The mirror image of the half step after it, which does not grow as motion backwards in time does.
         before = 2.0 * state - float(next_state(code, self.contacts.laws, i, state, velocity, self.step / 2.0))

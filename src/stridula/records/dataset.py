@@ -11,7 +11,6 @@ import xarray as xr
 
 from ..bodies import BodyPoint, FiniteElementBeam
 from ..bodies.modes import Array
-from ..contact import LuGre, RateAndState
 from ..system import System
 from .probes import Probe, Reaction
 from .variables import (
@@ -97,11 +96,10 @@ def to_dataset(
 
 def _add_friction_state(run: xr.Dataset, system: System, values: Array) -> None:
     """Add the internal state of the laws of friction where one has any, NaN for contacts without."""
-    units = ["m" if isinstance(contact.friction, LuGre) else "s" for contact in system.contacts]
-    has = [isinstance(contact.friction, (LuGre, RateAndState)) for contact in system.contacts]
-    if any(has):
-        kept = np.where(np.array(has)[:, None], values, np.nan).T
-        used = sorted({unit for unit, own in zip(units, has, strict=True) if own})
+    units = [contact.friction.state_units for contact in system.contacts]
+    if any(units):
+        kept = np.where(np.array(units)[:, None] != "", values, np.nan).T
+        used = sorted(set(units) - {""})
         attributes = {**_attributes(FRICTION_STATE), "units": " or ".join(used)}
         run[FRICTION_STATE.name] = (("time", "contact"), kept, attributes)
 
