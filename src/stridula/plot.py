@@ -13,8 +13,7 @@ from matplotlib.figure import Figure
 
 from .bodies.modes import Array
 from .checks import instance
-from .contact import ExponentialWeakening, FrictionLaw, LinearWeakening, LuGre, RateAndState, Stribeck
-from .contact.point_contact import LAWS
+from .contact import LAWS, ExponentialWeakening, FrictionLaw, LinearWeakening, LuGre, RateAndState, Stribeck
 from .disk import write
 from .records.variables import STATUS_WORDS
 

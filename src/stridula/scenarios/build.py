@@ -24,8 +24,7 @@ from ..bodies import (
 )
 from ..checks import suggestion
 from ..connections import Dashpot, Spring
-from ..contact import PointContact, RigidTrack
-from ..contact.point_contact import LAWS
+from ..contact import LAWS, PointContact, RigidTrack
 from ..drives import Drive, Force, Gravity, ImposedVelocity, InitialState, InitialVelocity
 from ..integration import GaussSeidel
 from ..records import Acceleration, Displacement, Probe, Reaction, Velocity
