@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.signal
 from physics.cases import (
     CASES,
     SCHEME_NAMES,
@@ -153,6 +154,23 @@ def test_low_pass_does_not_depend_on_the_pieces_fed(pieces):
         kept.append(decimator.feed(random[start : start + piece * 6]))
         start += piece * 6
     np.testing.assert_allclose(np.concatenate(kept), whole, atol=1e-14)
+
+
+@pytest.mark.parametrize("ratio", [2, 5, 20])
+def test_low_pass_is_that_of_scipy(ratio):
+    """SciPy's windowed design and its polyphase filter, to round-off; importing them takes longer than most runs."""
+    taps = scipy.signal.firwin(16 * ratio + 1, 0.75 / ratio, window=("kaiser", 6.2))
+    decimator = Decimator(ratio)
+    np.testing.assert_allclose(decimator.taps, taps, rtol=1e-12, atol=1e-16)
+    random = np.random.default_rng(4).normal(size=(100 * ratio, 3))
+    kept = decimator.feed(random)
+    before = np.repeat(random[:1], decimator.memory, axis=0)
+    filtered = scipy.signal.upfirdn(taps, np.concatenate([before, random]), down=ratio, axis=0)
+    np.testing.assert_allclose(kept, filtered[16 : 16 + len(kept)], atol=1e-14)
+
+
+def test_low_pass_of_no_probes_keeps_count():
+    assert Decimator(4).feed(np.empty((400, 0))).shape == (91, 0)
 
 
 @BOTH

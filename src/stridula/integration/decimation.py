@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.signal
+from numpy.lib.stride_tricks import sliding_window_view
 
 from ..bodies.modes import Array
 
@@ -57,13 +57,14 @@ class Decimator:
         joined = np.concatenate([self._pending, raw])
         count = max(0, (joined.shape[0] - self.taps.size) // self.ratio + 1)
         self._pending = joined[count * self.ratio :]
-        if count == 0 or raw.shape[1] == 0:
+        if count == 0:
             return np.empty((count, raw.shape[1]))
-        first = (self.taps.size - 1) // self.ratio
-        return scipy.signal.upfirdn(self.taps, joined, down=self.ratio, axis=0)[first : first + count]
+        return np.asarray(sliding_window_view(joined, self.taps.size, axis=0)[:: self.ratio] @ self.taps)
 
 
 def _taps(ratio: int, reach: int) -> Array:
     if ratio == 1:
         return np.ones(1)
-    return np.asarray(scipy.signal.firwin(2 * reach + 1, CUTOFF / ratio, window=("kaiser", KAISER)))
+    steps = np.arange(-reach, reach + 1)
+    taps = np.sinc(CUTOFF / ratio * steps) * np.kaiser(2 * reach + 1, KAISER)
+    return taps / taps.sum()
