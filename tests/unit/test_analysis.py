@@ -2,9 +2,13 @@
 
 import numpy as np
 import pytest
+import scipy.ndimage
+import scipy.signal
 import xarray as xr
 
 from stridula import analysis
+from stridula.analysis.phases import _moving_mean
+from stridula.analysis.spectra import _peaks
 
 RATE = 100e3
 WORDS = ("separated", "sticking", "sliding")
@@ -60,6 +64,14 @@ def test_short_sticks_are_no_stops_and_no_stops_give_no_bursts():
     assert len(analysis.stops(run)) == 0
     assert analysis.bursts(run).shape == (0, 2)
     assert len(analysis.stops(run, shortest=0.01)) == 1
+
+
+@pytest.mark.parametrize("width", [1, 3, 51, 1001])
+def test_moving_mean_is_that_of_scipy(width):
+    """To round-off; importing scipy.ndimage takes longer than all measures of a run."""
+    share = np.random.default_rng(1).integers(0, 4, 500) / 3
+    expected = scipy.ndimage.uniform_filter1d(share, width, mode="nearest")
+    np.testing.assert_allclose(_moving_mean(share, width), expected, rtol=1e-12, atol=1e-14)
 
 
 def test_complete_drops_what_the_record_cuts():
@@ -130,6 +142,23 @@ def test_dominant_frequency_ignores_fewer_than_ten_periods():
     run = record([("sliding", 0.1)], lambda t: 3.0 * np.sin(2 * np.pi * 60.0 * t) + np.sin(2 * np.pi * 700.0 * t))
     assert analysis.dominant_frequency(run.normal_force) == pytest.approx(700.0, abs=3.0)
     assert analysis.dominant_frequency(run.normal_force, lowest=30.0) == pytest.approx(60.0, abs=3.0)
+
+
+@pytest.mark.parametrize("levels", [1, 2, 3, 10, 10**6])
+def test_peaks_are_those_of_scipy(levels):
+    """On few levels most are flat, at the ends and between as well."""
+    random = np.random.default_rng(2)
+    for size in (1, 2, 3, 8, 200):
+        values = random.integers(0, levels, size).astype(float)
+        np.testing.assert_array_equal(_peaks(values), scipy.signal.find_peaks(values)[0])
+
+
+def test_spectrum_is_under_a_periodic_hann_window():
+    run = record([("sliding", 0.5)], lambda time: np.random.default_rng(3).normal(size=time.size))
+    force = run.normal_force.values
+    window = scipy.signal.windows.hann(force.size, sym=False)
+    expected = np.abs(np.fft.rfft((force - np.average(force, weights=window)) * window, 2**16)) ** 2 / RATE**2
+    np.testing.assert_allclose(analysis.spectrum(run.normal_force)[1], expected, rtol=1e-9, atol=1e-12 * expected.max())
 
 
 def test_spectrum_holds_the_energy_of_a_tone():

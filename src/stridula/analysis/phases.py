@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from scipy.ndimage import uniform_filter1d
 
 from ..bodies.modes import Array
 from ..checks import choice, positive
@@ -40,7 +39,7 @@ def phases(run: xr.Dataset, status: str, smoothing: float = SMOOTHING) -> Array:
     share = of_one_contact(run)["status_share"].values[:, STATUS_WORDS.index(status)]
     time, interval = _clock(run)
     width = max(1, 2 * round(smoothing / interval / 2.0) + 1)
-    prevails = uniform_filter1d(share, width, mode="nearest") > 0.5
+    prevails = _moving_mean(share, width) > 0.5
     edges = np.flatnonzero(np.diff(np.concatenate([[False], prevails, [False]])))
     return np.asarray(time[0] + interval * (edges.reshape(-1, 2) - 1.0))
 
@@ -114,6 +113,12 @@ def inside(run: xr.Dataset, intervals: Array) -> Array:
     for first, last in intervals:
         chosen |= (middle > first) & (middle < last)
     return chosen
+
+
+def _moving_mean(values: Array, width: int) -> Array:
+    """Return the mean over an odd number of samples about each, the first and the last one repeated beyond the ends."""
+    sums = np.cumsum(np.pad(values, (width // 2 + 1, width // 2), mode="edge"))
+    return np.asarray(sums[width:] - sums[:-width]) / width
 
 
 def _clock(run: xr.Dataset) -> tuple[Array, float]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.signal
 import xarray as xr
 
 from ..bodies.modes import Array
@@ -39,7 +38,7 @@ def spectrum(signal: xr.DataArray, intervals: Array | None = None) -> tuple[Arra
     size = 2 ** int(np.ceil(np.log2(max(longest, 1.0 / (FINEST * interval), 2))))
     energy = np.zeros(size // 2 + 1)
     for piece in chosen:
-        window = scipy.signal.windows.hann(piece.size, sym=False)
+        window = np.hanning(piece.size + 1)[:-1]
         mean = np.sum(window * piece) / max(np.sum(window), 1e-300)
         energy += np.abs(np.fft.rfft((piece - mean) * window, size)) ** 2
     return np.fft.rfftfreq(size, interval), energy * interval**2
@@ -68,7 +67,7 @@ def dominant_frequency(signal: xr.DataArray, intervals: Array | None = None, low
     if lowest is None:
         lowest = PERIODS / _median_length(signal, intervals)
     positive("lowest", lowest)
-    peaks, _ = scipy.signal.find_peaks(energy)
+    peaks = _peaks(energy)
     peaks = peaks[frequency[peaks] >= lowest]
     if peaks.size == 0:
         return float("nan")
@@ -94,6 +93,14 @@ def envelope(signal: xr.DataArray, window: float = 5e-3) -> Array:
 def envelope_correlation(first: xr.DataArray, second: xr.DataArray, window: float = 5e-3) -> float:
     """Return the correlation coefficient [1] of the envelopes of two signals on one time axis."""
     return float(np.corrcoef(envelope(first, window), envelope(second, window))[0, 1])
+
+
+def _peaks(values: Array) -> Array:
+    """Return the places of the local maxima, of flat ones their middle; the ends are none."""
+    edges = np.flatnonzero(np.diff(values, prepend=np.nan))
+    level = values[edges]
+    top = 1 + np.flatnonzero((level[1:-1] > level[:-2]) & (level[1:-1] > level[2:]))
+    return (edges[top] + edges[top + 1] - 1) // 2
 
 
 def _median_length(signal: xr.DataArray, intervals: Array | None) -> float:
