@@ -11,7 +11,7 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
-import scipy.stats
+import scipy.special
 import xarray as xr
 
 from ..analysis import status_share
@@ -131,7 +131,7 @@ def mean_and_interval(values: Sequence[float] | Array, confidence: float = 0.95)
     known = given[np.isfinite(given)]
     if known.size < 2:
         return (float(known[0]) if known.size else float("nan")), float("nan")
-    quantile = scipy.stats.t.ppf(0.5 + confidence / 2.0, known.size - 1)
+    quantile = scipy.special.stdtrit(known.size - 1, 0.5 + confidence / 2.0)
     return float(known.mean()), float(quantile * known.std(ddof=1) / np.sqrt(known.size))
 
 
