@@ -209,7 +209,8 @@ def scenario_tables() -> str:
     collect(ScenarioTable, "", seen)
     parts = []
     for model, path in seen.items():
-        rows = [[f"``{key}``", default(field), plain(field.description or "")] for key, field in fields(model).items()]
+        texts = model.descriptions()  # type: ignore[attr-defined]
+        rows = [[f"``{key}``", default(field), plain(texts.get(key, ""))] for key, field in fields(model).items()]
         title = path or "Top of the file"
         parts += [title, "^" * len(title), "", list_table(["key", "default", "meaning"], rows, [22, 18, 60])]
     return "\n".join(parts)

@@ -35,7 +35,7 @@ def start(
 @app.command("list")
 def list_() -> None:
     """List the shipped scenarios."""
-    from ..scenarios.show import list_scenarios
+    from ..scenarios.shipped import list_scenarios
 
     cases = list_scenarios()
     names, titles = (max(len(getattr(case, word)) for case in cases) for word in ("name", "title"))

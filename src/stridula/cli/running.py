@@ -16,7 +16,7 @@ from ..integration import Diverged, Interrupted
 from ..integration.watchers import Progress as Report
 from ..integration.watchers import Watcher
 from ..records.files import save
-from ..scenarios import load_scenario
+from ..scenarios.load import load_scenario
 from .card import print_card
 from .exits import FAILED, INTERRUPTED, Stopped
 

@@ -1,7 +1,24 @@
 """Ready cases as TOML, in the same words as the Python API, and their loader."""
 
-from .errors import ScenarioError
-from .load import Scenario, load_scenario
-from .show import Case, list_scenarios, scenario_schema, scenario_text
+from __future__ import annotations
 
-__all__ = ["Case", "Scenario", "ScenarioError", "list_scenarios", "load_scenario", "scenario_schema", "scenario_text"]
+from importlib import import_module
+from typing import Any
+
+_HOME = {
+    "Case": "shipped",
+    "Scenario": "load",
+    "ScenarioError": "errors",
+    "list_scenarios": "shipped",
+    "load_scenario": "load",
+    "scenario_schema": "show",
+    "scenario_text": "show",
+}
+__all__ = [*_HOME]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a name from its home on first use, so that a list of cases needs no compiler."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'stridula.scenarios' has no attribute {name!r}")
+    return getattr(import_module(f".{_HOME[name]}", __name__), name)

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
 from numbers import Integral
 from typing import Annotated, Any
 
@@ -20,7 +25,40 @@ from .quantities import UNITS, is_quantity, quantity
 class Table(BaseModel):
     """A table that knows its keys; the text under each is its description."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    @classmethod
+    def descriptions(cls) -> dict[str, str]:
+        """Return the text under each key.
+
+        Read when asked for: to take them into the fields costs more than to load a scenario.
+        """
+        own = [table for table in cls.__mro__[::-1] if issubclass(table, Table)]
+        return {key: text for table in own for key, text in _texts(table.__module__)[table.__name__].items()}
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        node = handler(schema)
+        known = handler.resolve_ref_schema(node)["properties"]
+        for key, text in cls.descriptions().items():
+            known[key]["description"] = text
+        return node
+
+
+@cache
+def _texts(module: str) -> dict[str, dict[str, str]]:
+    """Return the texts under the keys of each class in a module."""
+    tree = ast.parse(inspect.getsource(sys.modules[module]))
+    return {node.name: _texts_in(node) for node in tree.body if isinstance(node, ast.ClassDef)}
+
+
+def _texts_in(table: ast.ClassDef) -> dict[str, str]:
+    texts = {}
+    for pair in pairwise(table.body):
+        match pair:
+            case ast.AnnAssign(target=ast.Name(id=key)), ast.Expr(value=ast.Constant(value=str(text))):
+                texts[key] = inspect.cleandoc(text)
+    return texts
 
 
 class _Kind:

@@ -11,6 +11,7 @@ from typing import Any
 from . import outline
 from .errors import ScenarioError
 from .outline import Path
+from .schema import json_schema
 
 
 def overridden(tables: dict[str, Any], overrides: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
@@ -127,5 +128,5 @@ def _nearest(asked: tuple[str, ...], known: list[Path], tables: dict[str, Any]) 
     endings = [".".join(_text(path)[-len(asked) :]) for path in known]
     near = get_close_matches(".".join(asked), dict.fromkeys([*endings, *full]), n=1, cutoff=0.6)
     return (
-        f"; did you mean {near[0]!r}?" if near else f"; the tables are {', '.join(outline.properties(outline.SCHEMA))}"
+        f"; did you mean {near[0]!r}?" if near else f"; the tables are {', '.join(outline.properties(json_schema()))}"
     )

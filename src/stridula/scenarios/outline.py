@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from .schema import SCHEMA
+from .schema import json_schema
 
 Node = dict[str, Any]
 Path = tuple[str | int, ...]
@@ -55,22 +55,22 @@ def beams(tables: Any) -> list[Path]:
 
 def node_at(path: Path, tables: Any) -> Node | None:
     """Return the node at a path, or None if there is no such key."""
-    node: Node | None = SCHEMA
+    node: Node | None = json_schema()
     for part in path:
         node = items(node) if isinstance(part, int) else properties(node, tables).get(part)
         tables = look_up(tables, (part,))
     return node
 
 
-def paths(tables: Any, node: Node = SCHEMA, path: Path = ()) -> Iterator[tuple[Path, Node]]:
+def paths(tables: Any, node: Node | None = None, path: Path = ()) -> Iterator[tuple[Path, Node]]:
     """Go through every key that can be set: those there and those left out."""
-    for name, child in properties(node, tables).items():
+    for name, child in properties(json_schema() if node is None else node, tables).items():
         below = look_up(tables, (name,))
         yield (*path, name), child
         yield from paths(below, child, (*path, name))
         entry = items(child)
         for number, element in enumerate(below if entry and isinstance(below, list) else ()):
-            yield from paths(element, entry or {}, (*path, name, number))
+            yield from paths(element, entry, (*path, name, number))
 
 
 def look_up(tables: Any, path: Sequence[str | int]) -> Any:
@@ -103,7 +103,7 @@ def _variants(node: Node | None) -> list[Node]:
     if node is None:
         return []
     if "$ref" in node:
-        node = SCHEMA["$defs"][node["$ref"].rpartition("/")[2]]
+        node = json_schema()["$defs"][node["$ref"].rpartition("/")[2]]
     choices = node.get("oneOf", node.get("anyOf"))
     return [node] if choices is None else [variant for choice in choices for variant in _variants(choice)]
 

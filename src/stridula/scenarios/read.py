@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tomllib
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -16,16 +15,9 @@ from ..records.packed import is_packed
 from .errors import ScenarioError, shown
 from .inheritance import merged, spelled_out
 from .quantities import is_quantity
+from .shipped import shipped
 
-SHIPPED = files(__package__)
 FILES = ("file", "mass", "stiffness", "damping")
-
-
-def shipped(folder: str) -> dict[str, str]:
-    """Return the texts of the shipped ``cases`` or ``bases`` by name."""
-    found = SHIPPED.joinpath(folder).iterdir()
-    texts = {entry.name.removesuffix(".toml"): entry for entry in found if entry.name.endswith(".toml")}
-    return {name: texts[name].read_text(encoding="utf-8") for name in sorted(texts)}
 
 
 def read_tables(name_or_path: str | Path | xr.Dataset) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
@@ -97,6 +98,11 @@ class ScenarioTable(Table):
     """how long, and how"""
 
 
-SCHEMA: dict[str, Any] = ScenarioTable.model_json_schema()
 PAIR = ("slider", "track", "contact")
 GENERAL = ("bodies", "contacts")
+
+
+@cache
+def json_schema() -> dict[str, Any]:
+    """Return the JSON schema of scenario files."""
+    return ScenarioTable.model_json_schema()

@@ -1,10 +1,9 @@
-"""Scenarios as text: the list of cases, one case in full, the schema for editors."""
+"""Scenarios as text: one in full, and the schema for editors."""
 
 from __future__ import annotations
 
 import copy
 import re
-from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -13,33 +12,11 @@ import xarray as xr
 
 from ..records.provenance import toml
 from .outline import TAGS, Path, node_at, properties
-from .read import read_tables, shipped
-from .schema import SCHEMA
+from .read import read_tables
+from .schema import json_schema
 
 COMMENT_COLUMN = 32
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
-
-
-@dataclass(frozen=True)
-class Case:
-    """A shipped scenario.
-
-    Attributes
-    ----------
-    name, title, source : str
-        What to call it, what it is, and where it comes from.
-    """
-
-    name: str
-    title: str
-    source: str
-
-
-def list_scenarios() -> list[Case]:
-    """Return the shipped scenarios, in the order of their sources."""
-    tables = {name: read_tables(name) for name in shipped("cases")}
-    cases = [Case(name, table["title"], table["source"]) for name, table in tables.items()]
-    return sorted(cases, key=lambda case: case.source)
 
 
 def scenario_text(name_or_path: str | FilePath | xr.Dataset) -> str:
@@ -50,7 +27,7 @@ def scenario_text(name_or_path: str | FilePath | xr.Dataset) -> str:
 
 def scenario_schema() -> dict[str, Any]:
     """Return the JSON schema of scenario files, for editors; a key may be left out where a base can give it."""
-    schema: dict[str, Any] = _relaxed(copy.deepcopy(SCHEMA))
+    schema: dict[str, Any] = _relaxed(copy.deepcopy(json_schema()))
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "stridula scenario"}
 
 

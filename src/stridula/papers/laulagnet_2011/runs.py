@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ...analysis import settling_time
-from ...scenarios import Scenario, load_scenario
+from ...scenarios.load import Scenario, load_scenario
 
 CASES = ("stable-sliding", "squeal", "axial-sliding", "judder", "weak-pressure", "strong-pressure")
 LOADS = (20.0, 40.0, 80.0, 150.0)
