@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import sys
 
 from .commands import app
@@ -10,6 +12,8 @@ from .exits import GOOD, INTERRUPTED, failed, say
 
 def main() -> None:
     """Run `stridula` and exit: 0 good, 1 a failed run or a full disk, 2 bad input, 130 interrupted."""
+    # At its end Python would look for garbage in all that was imported, for longer than a short run takes.
+    atexit.register(gc.freeze)
     code = _run()
     try:
         if sys.stdout is not None:
