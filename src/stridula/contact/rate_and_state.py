@@ -61,7 +61,7 @@ class RateAndState:
     @property
     def state_at_start(self) -> float:
         """State of a new contact [s]."""
-        return self.slip_distance / self.velocity if self.initial_state is None else self.initial_state
+        return float(self.slip_distance / self.velocity if self.initial_state is None else self.initial_state)
 
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s], 0 at rest."""

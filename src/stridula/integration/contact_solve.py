@@ -24,5 +24,5 @@ class GaussSeidel:
     sweeps: int = 1000
 
     def __post_init__(self) -> None:
-        within("tolerance", self.tolerance, 1e-15, 1e-4)
-        count("sweeps", self.sweeps)
+        object.__setattr__(self, "tolerance", within("tolerance", self.tolerance, 1e-15, 1e-4))
+        object.__setattr__(self, "sweeps", count("sweeps", self.sweeps))

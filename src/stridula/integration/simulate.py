@@ -119,7 +119,7 @@ def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float
     if step is None:
         ratio = max(1, int(np.ceil(wanted / (scheme.default_fraction * limit) - 1e-9)))
         step = wanted / ratio
-    elif positive("step", step) >= limit:
+    elif (step := positive("step", step)) >= limit:
         raise ValueError(f"step must be below the {scheme.name} scheme's limit of {limit:.6g} s, got {step!r}")
     elif step < SMALLEST_SHARE * min(limit, 1.0):
         raise ValueError(
