@@ -18,6 +18,8 @@ import stridula
 ROOT = Path(stridula.__file__).parent
 FILES = sorted(path for path in ROOT.rglob("*.py") if "__pycache__" not in path.parts)
 HEAVY = ("numba", "xarray", "matplotlib", "scipy", "pandas", "pydantic", "typer", "rich", "h5netcdf", "dask")
+# Each takes a quarter of a second and more to import, or brings others that do.
+SLOW_PARTS = ("scipy.signal", "scipy.stats", "scipy.ndimage", "scipy.optimize", "scipy.interpolate")
 
 
 def module_of(path: Path) -> str:
@@ -101,7 +103,7 @@ def test_import_harness_sees_a_forbidden_import():
 
 def loaded_after(code: str) -> set[str]:
     """Heavy packages loaded after `code` in a fresh interpreter."""
-    listing = f"{code}; import sys; print(*(m for m in {HEAVY!r} if m in sys.modules))"
+    listing = f"{code}; import sys; print(*(m for m in {(*HEAVY, *SLOW_PARTS)!r} if m in sys.modules))"
     done = subprocess.run([sys.executable, "-c", listing], capture_output=True, text=True, check=True)
     return set(done.stdout.split())
 
@@ -115,9 +117,19 @@ def test_descriptions_need_no_compiler_and_no_records():
     assert not loaded_after(code) & {"numba", "xarray", "matplotlib"}
 
 
+def test_the_list_of_scenarios_needs_nothing_heavy():
+    assert loaded_after("import stridula as st; st.list_scenarios()") == set()
+
+
+def test_a_run_and_a_study_need_no_slow_parts():
+    code = "import stridula.cli.running, stridula.studies"
+    assert not loaded_after(code) & {"matplotlib", *SLOW_PARTS}
+
+
 def test_light_import_harness_sees_a_heavy_one():
     """Negative control."""
     assert "numba" in loaded_after("import stridula; stridula.simulate")
+    assert set(SLOW_PARTS) <= loaded_after("import scipy.signal")
 
 
 def public() -> list[tuple[str, object]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import subprocess
@@ -55,6 +56,11 @@ def test_show_prints_toml_and_schema_json(stridula):
     code, out, _ = stridula("schema")
     assert code == 0
     assert json.loads(out) == st.scenario_schema()
+
+
+def test_a_run_leaves_garbage_collection_on(stridula):
+    assert stridula("run", "squeal", *SHORT)[0] == 0
+    assert gc.isenabled()
 
 
 def test_run_writes_record_and_figure_and_says_what_came_of_it(stridula, tmp_path):

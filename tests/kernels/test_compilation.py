@@ -1,0 +1,36 @@
+"""Compiled once and for all: the cache of one short run serves every kind of run, in every later process."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+
+
+def counts(cache, *words):
+    """What `every_kind` says of each compiled function: its signatures, how often it was compiled and loaded."""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), "PYTHONPATH": os.pathsep.join(sys.path)}
+    command = [sys.executable, "-m", "kernels.every_kind", *words]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def named(seen, key):
+    return {name for name, counted in seen.items() if counted[key]}
+
+
+def test_nothing_compiles_twice(tmp_path):
+    """Laws, sizes, schemes, options and types of numbers: one signature, in the cache since the first run.
+
+    One test, since it compiles everything anew: some 20 s.
+    """
+    assert "march.march" in named(counts(tmp_path, "first"), "compiled")
+    warm = counts(tmp_path)
+    assert named(warm, "compiled") == set()
+    assert {"march.march", "march.stored_energy"} <= named(warm, "loaded")
+    several = {name: counted["signatures"] for name, counted in warm.items() if len(counted["signatures"]) > 1}
+    assert several == {}
+    # Negative control: the code of a law as an integer of one byte.
+    assert named(counts(tmp_path, "other", "type"), "compiled") == {"friction.set_valued"}
