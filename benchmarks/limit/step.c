@@ -1,6 +1,6 @@
 /* The step of the march for one contact on a beam under Coulomb's law, ledger and one probe included, as fast as C goes.
 
-   Modes in the order slider, bending, axial. Compiled by limit.py; what it computes is checked there against the package.
+   Modes in the order slider, bending, axial. Compiled by against_c.py; what it computes is checked there against the package.
 */
 #include <math.h>
 
@@ -10,24 +10,55 @@ enum { DRIVE, CONTACT, FRICTION, CONVECTION, DAMPING, NORMAL, TANGENTIAL, SEPARA
 enum { MATERIAL, ANCHOR, STATUS, ABSCISSA, BEFORE };
 enum { START, GAP, WAVENUMBER, AMPLITUDE, FRICTION_RATIO, W_NN, W_NT, W_TT };
 
-static void harmonics(double theta, int count, double *R s, double *R c)
+/* Sines and cosines of eight angles from 0 to pi, by the polynomials of FreeBSD's msun. */
+static void sines(const double *R theta, double *R sine, double *R cosine)
 {
-    double sine = sin(theta), cosine = cos(theta);
-    s[0] = sine;
-    c[0] = cosine;
-    for (int filled = 1; filled < count; filled *= 2) {
-        for (int k = 0; k < filled; k++) {
-            s[filled + k] = sine * c[k] + cosine * s[k];
-            c[filled + k] = cosine * c[k] - sine * s[k];
-        }
-        double twice = 2.0 * sine * cosine;
-        cosine = 1.0 - 2.0 * sine * sine;
-        sine = twice;
+    for (int k = 0; k < 8; k++) {
+        double x = 0.5 * (theta[k] - 1.57079632679489661923), z = x * x;
+        double s = 2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10);
+        s = -1.66666666666666324348e-01 + z * (8.33333333332248946124e-03 + z * (-1.98412698298579493134e-04 + z * s));
+        s = x + x * z * s;
+        double c = -2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11);
+        c = 4.16666666666666019037e-02 + z * (-1.38888888888741095749e-03 + z * (2.48015872894767294178e-05 + z * c));
+        c = 1.0 - 0.5 * z + z * z * c;
+        sine[k] = 1.0 - 2.0 * s * s;
+        cosine[k] = -2.0 * s * c;
     }
 }
 
+/* sin(k theta) and cos(k theta), k from 1: the first eight at once, the others turned on by eight at a time. */
+static void harmonics(double theta, int count, double *R s, double *R c)
+{
+    double angle[8], sign[8];
+    for (int k = 0; k < 8; k++) {
+        const double turns = (k + 1) * (theta / 3.14159265358979323846), whole = floor(turns);
+        angle[k] = (turns - whole) * 3.14159265358979323846;
+        sign[k] = 1.0 - 2.0 * (whole - 2.0 * floor(0.5 * whole));
+    }
+    sines(angle, s, c);
+    for (int k = 0; k < 8; k++) {
+        s[k] *= sign[k];
+        c[k] *= sign[k];
+    }
+    const double sine = s[7], cosine = c[7];
+    for (int first = 8; first < count; first += 8)
+        for (int k = 0; k < 8; k++) {
+            s[first + k] = s[first - 8 + k] * cosine + c[first - 8 + k] * sine;
+            c[first + k] = c[first - 8 + k] * cosine - s[first - 8 + k] * sine;
+        }
+}
+
+/* What a constant load has given, up to a constant: the sum of its work over the steps telescopes. */
+static double work_of_load(int modes, const double *R load, const double *R hc, const double *R q, const double *R d)
+{
+    double work = 0.0;
+    for (int k = 0; k < modes; k++)
+        work += load[k] * hc[k] * (2.0 * q[k] - d[k]);
+    return work;
+}
+
 void march(long steps, int slider, int bending, int axial, const double *R b, const double *R r, const double *R ch,
-           const double *R hc, const double *R hl, const double *R tip_x, const double *R tip_y, const double *R load,
+           const double *R hc, const double *R loss, const double *R tip_x, const double *R tip_y, const double *R load,
            const double *R probe, const double *R constants, double *R q, double *R d, double *R dn, double *R s,
            double *R c, double *R carried, double *R sums, double *R raw)
 {
@@ -35,6 +66,7 @@ void march(long steps, int slider, int bending, int axial, const double *R b, co
     const double wavenumber = constants[WAVENUMBER], amplitude = constants[AMPLITUDE], mu = constants[FRICTION_RATIO];
     double material = carried[MATERIAL], anchor = carried[ANCHOR], place = carried[ABSCISSA], before = carried[BEFORE];
     int status = (int)carried[STATUS];
+    sums[DRIVE] -= work_of_load(track + axial, load, hc, q, d);
     for (long n = 0; n < steps; n++) {
         double x = 0.0, y = 0.0, bend = 0.0, w_bend = 0.0, stretch = 0.0, w_axial = 0.0;
         for (int k = 0; k < slider; k++) {
@@ -80,12 +112,11 @@ void march(long steps, int slider, int bending, int axial, const double *R b, co
             anchor = material;
         const double slipped = moved + w_nt * normal - w_tt * tangential;
         const double new_place = trial + w_nt * normal - constants[W_TT] * tangential;
-        double exchanged = 0.0, given = 0.0, lost = 0.0, value = 0.0;
+        double exchanged = 0.0, lost = 0.0, value = 0.0;
         for (int k = 0; k < slider; k++) {
             const double push = tip_y[k] * normal - tip_x[k] * tangential, step = dn[k] + ch[k] * push, both = step + d[k];
             exchanged += push * both;
-            given += load[k] * both * hc[k];
-            lost += hl[k] * both * both;
+            lost += loss[k] * both * both;
             q[k] += step;
             d[k] = step;
         }
@@ -95,8 +126,7 @@ void march(long steps, int slider, int bending, int axial, const double *R b, co
             const int j = slider + k;
             const double push = up * s[k], step = dn[j] + ch[j] * push, both = step + d[j];
             exchanged += push * both;
-            given += load[j] * both * hc[j];
-            lost += hl[j] * both * both;
+            lost += loss[j] * both * both;
             value += probe[k] * (step - d[j]);
             q[j] += step;
             d[j] = step;
@@ -107,13 +137,11 @@ void march(long steps, int slider, int bending, int axial, const double *R b, co
             const int j = track + k;
             const double push = along * s[k], step = dn[j] + ch[j] * push, both = step + d[j];
             exchanged += push * both;
-            given += load[j] * both * hc[j];
-            lost += hl[j] * both * both;
+            lost += loss[j] * both * both;
             q[j] += step;
             d[j] = step;
             along_slope += (k + 1) * c[k] * q[j];
         }
-        sums[DRIVE] += given;
         sums[DAMPING] += lost;
         sums[CONTACT] += 0.5 * exchanged;
         sums[FRICTION] += tangential * (slipped - material);
@@ -126,6 +154,7 @@ void march(long steps, int slider, int bending, int axial, const double *R b, co
         before = place;
         place = new_place;
     }
+    sums[DRIVE] += work_of_load(track + axial, load, hc, q, d);
     carried[MATERIAL] = material;
     carried[ANCHOR] = anchor;
     carried[STATUS] = status;

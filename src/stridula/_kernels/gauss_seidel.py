@@ -31,7 +31,7 @@ def strayed(carried, i):
     return carried[i, at.MATERIAL] - carried[i, at.ANCHOR]
 
 
-@numba.njit(cache=True, inline="always")
+@numba.njit(cache=True)
 def solve_one(i, gap, slip, w_nn, w_nt, w_tt, contacts, laws, carried, let_go, step):
     """Return (normal force, tangential force, status, jammed) of contact `i`.
 

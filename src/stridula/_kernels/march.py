@@ -1,4 +1,4 @@
-"""The march of increments: recurrence, trial, contact, correction, ledger, record."""
+"""The march of increments for any number of contacts and coupled modes: trial, contacts, correction, ledger, record."""
 
 import math
 
@@ -8,7 +8,7 @@ import numpy as np
 from . import layout as at
 from .contact import SEPARATED, STICKING
 from .friction import next_state, set_valued
-from .gauss_seidel import displacement, solve_all, solve_one
+from .gauss_seidel import displacement, solve_all
 from .traces import FASTMATH, harmonics
 
 # Error of the contact forces, relative to the largest, beyond which none can be believed.
@@ -77,15 +77,6 @@ def set_harmonics(contacts, spans, i, place, rows, sines, cosines, slopes):
         rows[i, at.TANGENTIAL, k] = -amplitude * sines[k - first_axial]
     for k in range(count):
         slopes[i, k] = -amplitude * wavenumber * (k + 1.0) * cosines[k]
-
-
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def mobility_sum(block, rows, i, side, first, last):
-    """Return the displacement along a row for a unit force on it, over a span of uncoupled modes."""
-    total = 0.0
-    for k in range(first, last):
-        total += rows[i, side, k] * rows[i, side, k] * block[at.CH, k]
-    return total
 
 
 @numba.njit(cache=True, fastmath=FASTMATH, inline="always")
@@ -212,14 +203,10 @@ def march(
     traces, their harmonic spans filled here; `compliance` is that of the fixed parts. `state`, `carried` and `energies`
     are updated in place; `energy_record` and `record` get a row a sample, `raw` the probes at every step.
     """
-    n_modes, n_contacts, coupled = block.shape[1], contacts.shape[0], matrices.shape[1]
-    # One contact on an uncoupled beam needs the sums over its harmonics only.
+    n_modes, n_contacts = block.shape[1], contacts.shape[0]
     n_harmonic = 0
-    simple = n_contacts == 1
     for i in range(n_contacts):
-        moving = spans[i, at.BENDING_END] > spans[i, at.BENDING]
-        n_harmonic += moving
-        simple = simple and not (moving and spans[i, at.BENDING] < coupled)
+        n_harmonic += spans[i, at.BENDING_END] > spans[i, at.BENDING]
     sines, cosines, slopes = np.zeros(2 * n_modes), np.zeros(2 * n_modes), np.zeros((n_contacts, n_modes))
     load, new, position = np.zeros(n_modes), np.empty(n_modes), np.empty(n_modes)
     push, work = np.empty(n_modes), np.empty(n_modes)
@@ -272,43 +259,27 @@ def march(
                     material += along(rows, i, at.TANGENTIAL, position, spans[i, at.AXIAL], spans[i, at.AXIAL_END])
                 gaps[i], slips[i], places[i] = gap, material - carried[i, at.MATERIAL], place
 
-            if simple:
-                touching = gaps[0] < 0.0
-                if touching:
-                    if n_harmonic:
-                        w[0, 0] = compliance[0, 0] + mobility_sum(
-                            block, rows, 0, at.NORMAL, spans[0, at.BENDING], spans[0, at.BENDING_END]
-                        )
-                        w[1, 1] = compliance[1, 1] + mobility_sum(
-                            block, rows, 0, at.TANGENTIAL, spans[0, at.AXIAL], spans[0, at.AXIAL_END]
-                        )
-                    forces[0, 0], forces[0, 1], statuses[0], jammed[0] = solve_one(
-                        0, gaps[0], slips[0], w[0, 0], w[0, 1], w[1, 1], contacts, laws, carried, False, step
-                    )
-                else:
-                    forces[0, 0], forces[0, 1], statuses[0] = 0.0, 0.0, SEPARATED
-            else:
-                touching = False
+            touching = False
+            for i in range(n_contacts):
+                touching = touching or gaps[i] < 0.0
+            if touching:
+                if n_harmonic:
+                    set_compliance(block, matrices, rows, work, w)
                 for i in range(n_contacts):
-                    touching = touching or gaps[i] < 0.0
-                if touching:
-                    if n_harmonic:
-                        set_compliance(block, matrices, rows, work, w)
+                    forces[i, 0], forces[i, 1] = 0.0, 0.0
+                made, error = solve_all(
+                    gaps, slips, w, contacts, laws, carried, step, tolerance, sweeps, forces, statuses, jammed
+                )
+                most_sweeps = max(most_sweeps, made)
+                unsolved += not error <= tolerance
+                if not error <= UNBELIEVABLE:
                     for i in range(n_contacts):
-                        forces[i, 0], forces[i, 1] = 0.0, 0.0
-                    made, error = solve_all(
-                        gaps, slips, w, contacts, laws, carried, step, tolerance, sweeps, forces, statuses, jammed
-                    )
-                    most_sweeps = max(most_sweeps, made)
-                    unsolved += not error <= tolerance
-                    if not error <= UNBELIEVABLE:
-                        for i in range(n_contacts):
-                            carried[i, at.LAST_NORMAL], carried[i, at.LAST_TANGENTIAL] = forces[i, 0], forces[i, 1]
-                            carried[i, at.STATUS] = statuses[i]
-                        return sample, at.CONTACT_UNSOLVED
-                else:
-                    for i in range(n_contacts):
-                        forces[i, 0], forces[i, 1], statuses[i] = 0.0, 0.0, SEPARATED
+                        carried[i, at.LAST_NORMAL], carried[i, at.LAST_TANGENTIAL] = forces[i, 0], forces[i, 1]
+                        carried[i, at.STATUS] = statuses[i]
+                    return sample, at.CONTACT_UNSOLVED
+            else:
+                for i in range(n_contacts):
+                    forces[i, 0], forces[i, 1], statuses[i] = 0.0, 0.0, SEPARATED
 
             if touching:
                 for k in range(n_modes):

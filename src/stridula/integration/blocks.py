@@ -1,4 +1,4 @@
-"""A system under a scheme as the blocks that the march reads."""
+"""A system under a scheme as the arrays that the march reads."""
 
 from __future__ import annotations
 
@@ -165,8 +165,38 @@ def _law(law: FrictionLaw) -> tuple[int, tuple[float, ...]]:
     return code, (law.reference, law.a, law.b, law.slip_distance, law.velocity, 0.0, 0.0, law.state_at_start)
 
 
-def probe_blocks(arrays: Assembly, step: float) -> tuple[Array, Array, Array, Array]:
-    """Return the probes' rows on q, d[n+1] + d[n] and d[n+1] - d[n], their spans, shares of signals and contacts."""
+@dataclass(frozen=True)
+class ProbeBlocks:
+    """The probes as the march reads them.
+
+    Attributes
+    ----------
+    kinds : ndarray, shape (probes,)
+        Whether each sees positions, centred velocities or second differences.
+    rows : ndarray, shape (probes, 3, modes)
+        Rows on positions, sums and differences of increments, all but that of its kind zero.
+    spans : ndarray, shape (probes, 3, 2)
+        Modes that each row sees.
+    direct : ndarray, shape (probes, signals)
+        Shares of the signals.
+    contact : ndarray, shape (probes, contacts, 2)
+        Shares of the normal and tangential forces.
+    """
+
+    kinds: Array
+    rows: Array
+    spans: Array
+    direct: Array
+    contact: Array
+
+    @property
+    def row(self) -> Array:
+        """The row of each probe, shape (probes, modes)."""
+        return np.asarray(self.rows.sum(axis=1))
+
+
+def probe_blocks(arrays: Assembly, step: float) -> ProbeBlocks:
+    """Return the probes as the march reads them."""
     count = len(arrays.probes)
     rows = np.zeros((count, 3, arrays.mode_count))
     spans = np.zeros((count, 3, 2), dtype=np.uint64)
@@ -180,4 +210,35 @@ def probe_blocks(arrays: Assembly, step: float) -> tuple[Array, Array, Array, Ar
             used = np.flatnonzero(rows[p, kind])
             if used.size:
                 spans[p, kind] = used[0], used[-1] + 1
-    return rows, spans, direct, contact
+    kinds = np.argmax(rows.any(axis=2), axis=1).astype(np.int64)
+    return ProbeBlocks(kinds, rows, spans, direct, contact)
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """A system under a scheme as the march reads it.
+
+    Attributes
+    ----------
+    modes : Recurrence
+        The recurrence of the modes.
+    contacts : ContactBlocks
+        The contacts.
+    probes : ProbeBlocks
+        The probes.
+    """
+
+    modes: Recurrence
+    contacts: ContactBlocks
+    probes: ProbeBlocks
+
+    @property
+    def is_simple(self) -> bool:
+        """Whether there is one contact, between bodies of uncoupled modes."""
+        return len(self.contacts.constants) == 1 and not self.modes.matrices.size
+
+
+def blocks_of(arrays: Assembly, scheme: Scheme, step: float) -> Blocks:
+    """Return a system under a scheme as the march reads it."""
+    modes = recurrence(arrays, scheme, step)
+    return Blocks(modes, contact_blocks(arrays, modes), probe_blocks(arrays, step))

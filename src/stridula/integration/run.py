@@ -12,22 +12,23 @@ import numpy as np
 import xarray as xr
 
 from .._kernels import layout as at
-from .._kernels.march import march, stored_energy
 from ..assembly import Assembly
 from ..bodies.modes import Array
 from ..checks import instance
 from ..contact import LAWS
 from ..records import Probe
-from ..records.dataset import State, to_dataset
+from ..records.dataset import to_dataset
 from ..records.provenance import scenario_toml
+from ..records.state import State
 from ..system import System
 from ..version import __version__
-from .blocks import contact_blocks, probe_blocks, recurrence
+from .blocks import blocks_of
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
 from .interrupts import DeferredInterrupt
+from .marches import March, imposed_on, march_of
 from .schemes import Scheme
-from .start import at_start
+from .start import state_at_start
 from .stops import ENDED, Diverged, Interrupted, contact_words, energy_created
 from .watchers import Progress, Watcher
 
@@ -96,21 +97,20 @@ class Run:
     ) -> None:
         self.system, self.arrays, self.scheme = system, arrays, scheme
         self.timing, self.probes, self.solve, self.title = timing, probes, solve, title
-        self.modes = recurrence(arrays, scheme, timing.step)
-        self.contacts = contact_blocks(arrays, self.modes)
-        self.probe_blocks = probe_blocks(arrays, timing.step)
+        blocks = blocks_of(arrays, scheme, timing.step)
         self.dissipative = not any(contact.friction.state_units for contact in system.contacts)
         self.first_step = 0
         if start is None:
-            self.state, self.carried = at_start(arrays, scheme, timing.step, self.modes, self.contacts, solve)
+            state = state_at_start(arrays, scheme, timing.step, blocks, solve)
             self.decimator = Decimator(timing.ratio)
-            self.initial_energy = float(stored_energy(self.modes.block, self.modes.matrices, self.state))
-            self.energies = np.zeros(at.ENERGIES)
-            self.energies[at.STORED] = self.initial_energy
+            self.initial_energy = float(state.energies[at.STORED])
         else:
-            self._go_on_from(start)
+            state = self._go_on_from(start)
+        self.on_the_way = march_of(blocks, state, timing.step, timing.ratio, solve)
+        self.energies = state.energies
         self.largest_energy = float(np.abs(self.energies[: at.DAMPING_LOSS + 1]).max())
-        self.energy_of_loads = self.modes.energy_of_loads()
+        self.energy_of_loads = blocks.modes.energy_of_loads()
+        self.damped_alone = not arrays.coupled
         self.energy_record = np.empty((at.ENERGIES, timing.samples))
         self.record = np.empty((at.COLUMNS, len(system.contacts), timing.samples))
         self.values = np.empty((timing.samples, len(probes)))
@@ -125,7 +125,7 @@ class Run:
         with DeferredInterrupt() as interrupt:
             while self.done < self.timing.samples and ended == at.FINISHED and not interrupt.requested:
                 count = min(samples_per_chunk, self.timing.samples - self.done)
-                raw, completed, ended = self._chunk(self.state, self.carried, self.energies, self.done, count)
+                raw, completed, ended = self._chunk(self.on_the_way, self.done, count)
                 self.done += completed
                 filled = self._keep(self.decimator.feed(raw), filled)
                 seconds = clock.perf_counter() - began
@@ -142,49 +142,28 @@ class Run:
         if interrupt.requested:
             raise Interrupted(record)
         if ended not in (at.FINISHED, at.OFF_TRACK):
-            raise Diverged(record, contact_words(self.system.contact_names, self.carried))
+            raise Diverged(record, contact_words(self.system.contact_names, self.on_the_way.states[0].carried))
         return record
 
-    def _chunk(
-        self, state: Array, carried: Array, energies: Array, first_sample: int, count: int
-    ) -> tuple[Array, int, int]:
+    def _chunk(self, march: March, first_sample: int, count: int) -> tuple[Array, int, int]:
         """March `count` samples and return (probes at the steps done, samples done, what ended the march)."""
-        ratio, step = self.timing.ratio, self.timing.step
-        first = self.first_step + first_sample * ratio
-        times = np.arange(first - 1, first + count * ratio + 1) * step
-        signals = np.stack([signal(times[1:-1], step) for signal in self.arrays.signals], axis=1)
-        raw = np.empty((count * ratio, len(self.probes)))
-        before, record = energies.copy(), np.empty((count, len(self.system.contacts), at.COLUMNS))
-        energy_record = np.empty((count, at.ENERGIES))
-        completed, ended = march(
-            ratio,
-            step,
-            self.solve.tolerance,
-            self.solve.sweeps,
-            self.modes.block,
-            self.modes.matrices,
-            self.contacts.constants,
-            self.contacts.laws,
-            self.contacts.spans,
-            self.contacts.rows,
-            self.contacts.compliance,
-            state,
-            carried,
-            energies,
-            self.modes.loads,
-            signals,
-            self.arrays.motion(times, step),
-            *self.probe_blocks,
-            energy_record,
-            record,
-            raw,
-        )
-        bad = np.flatnonzero(~np.isfinite(energy_record[:completed]).all(axis=1))
+        ratio = self.timing.ratio
+        imposed = imposed_on(self.arrays, self.first_step + first_sample * ratio, count * ratio, self.timing.step)
+        before = march.states[0].energies.copy()
+        (chunk,) = march.advance([imposed], count)
+        completed, ended = chunk.completed, chunk.ended
+        bad = np.flatnonzero(~np.isfinite(chunk.energies[:completed]).all(axis=1))
         if bad.size:
             completed, ended = int(bad[0]), at.NOT_FINITE
-        done = energy_record[:completed].T
+        done = chunk.energies[:completed].T
         wrong = energy_created(
-            done, before, self.initial_energy, self.largest_energy, self.energy_of_loads, self.dissipative
+            done,
+            before,
+            self.initial_energy,
+            self.largest_energy,
+            self.energy_of_loads,
+            self.dissipative,
+            self.damped_alone,
         )
         if wrong is not None:
             completed, ended = wrong, at.ENERGY_CREATED
@@ -193,8 +172,8 @@ class Run:
         kept = slice(first_sample, min(first_sample + completed, self.timing.samples))
         size = kept.stop - kept.start
         self.energy_record[:, kept] = done[:, :size]
-        self.record[:, :, kept] = record[:size].transpose(2, 1, 0)
-        return raw[: completed * ratio], completed, ended
+        self.record[:, :, kept] = chunk.contacts[:size].transpose(2, 1, 0)
+        return chunk.raw[: completed * ratio], completed, ended
 
     def _keep(self, samples: Array, filled: int) -> int:
         count = min(samples.shape[0], self.timing.samples - filled)
@@ -208,7 +187,7 @@ class Run:
         raw = np.empty((0, len(self.probes)))
         if ended == at.FINISHED:
             beyond = -(-self.decimator.lookahead // self.timing.ratio)
-            raw, _, _ = self._chunk(self.state.copy(), self.carried.copy(), self.energies.copy(), self.done, beyond)
+            raw, _, _ = self._chunk(self.on_the_way.copy(), self.done, beyond)
         missing = self.decimator.lookahead - raw.shape[0]
         if missing > 0:
             last = raw[-1:] if raw.shape[0] else self.decimator.last
@@ -216,9 +195,9 @@ class Run:
             raw = np.concatenate([raw, np.repeat(last, missing + self.timing.ratio, axis=0)])
         self._keep(self.decimator.feed(raw), filled)
 
-    def _go_on_from(self, start: xr.Dataset) -> None:
+    def _go_on_from(self, start: xr.Dataset) -> State:
         instance("start", start, xr.Dataset)
-        needed = ("state_modal", "state_carried", "state_energies", "state_raw")
+        needed = ("state_modal", "state_remainder", "state_carried", "state_energies", "state_raw")
         if any(name not in start for name in needed):
             raise ValueError(f"start must be a record of simulate with its final state, got variables {list(start)}")
         attributes = start.attrs
@@ -245,12 +224,15 @@ class Run:
             tomllib.loads(text) for text in (attributes["scenario"], scenario_toml(self.system, self.probes, {}))
         )
         _check_frozen(_frozen(before), _frozen(now))
-        self.state = np.array(start["state_modal"].values, dtype=float)
-        self.carried = np.array(start["state_carried"].values, dtype=float)
-        self.energies = np.array(start["state_energies"].values, dtype=float)
         self.first_step = int(attributes["last_step"])
         self.decimator = Decimator(self.timing.ratio, np.array(start["state_raw"].values, dtype=float))
         self.initial_energy = float(attributes["initial_energy"])
+        return State(
+            *(
+                np.array(start[f"state_{name}"].values, dtype=float, order="C")
+                for name in ("modal", "remainder", "carried", "energies")
+            )
+        )
 
     def _dataset(self, ended: str, wall_time: float, tail: Array | None) -> xr.Dataset:
         timing, done = self.timing, self.done
@@ -298,7 +280,8 @@ class Run:
             sums,
             self.probes,
             self.values[:done],
-            State(self.state, self.carried, self.energies, np.empty((0, len(self.probes))) if tail is None else tail),
+            self.on_the_way.states[0],
+            np.empty((0, len(self.probes))) if tail is None else tail,
             attributes,
         )
 

@@ -8,11 +8,13 @@ from .._kernels import layout as at
 from .._kernels.contact import SEPARATED, STICKING
 from .._kernels.friction import next_state
 from .._kernels.gauss_seidel import solve_all
+from .._kernels.march import stored_energy
 from ..assembly import Assembly, ContactRows
 from ..bodies import ModalBeam
 from ..bodies.modes import Array
 from ..contact import FrictionLaw, RateAndState
-from .blocks import ContactBlocks, Recurrence
+from ..records.state import State
+from .blocks import Blocks, ContactBlocks, Recurrence
 from .contact_solve import GaussSeidel
 from .schemes import Scheme
 
@@ -20,10 +22,8 @@ from .schemes import Scheme
 ROUND_OFF = 1e-14
 
 
-def at_start(
-    arrays: Assembly, scheme: Scheme, step: float, modes: Recurrence, contacts: ContactBlocks, solve: GaussSeidel
-) -> tuple[Array, Array]:
-    """Return modes and contacts at the start.
+def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks, solve: GaussSeidel) -> State:
+    """Return the state at the start.
 
     The first increment is that of a motion under the loads and the forces of closed contacts, so that the scheme is of
     second order from the first step on. A contact that is closed and does not slide sticks.
@@ -33,6 +33,7 @@ def at_start(
     ValueError
         If a contact overlaps.
     """
+    modes, contacts = blocks.modes, blocks.contacts
     start = _Start(arrays, scheme, step, contacts)
     force = start.factors @ arrays.loads
     first = start.increment(force)
@@ -60,7 +61,9 @@ def at_start(
         first = start.increment(force + (solved * [1.0, -1.0]).ravel() @ pushes)
         carried = start.carried(first)
         carried[:, [at.LAST_NORMAL, at.LAST_TANGENTIAL]] = forces
-    return np.stack([arrays.position, first]), carried
+    modal, energies = np.stack([arrays.position, first]), np.zeros(at.ENERGIES)
+    energies[at.STORED] = stored_energy(modes.block, modes.matrices, modal)
+    return State(modal, np.zeros_like(modal), carried, energies)
 
 
 class _Start:

@@ -26,8 +26,8 @@ CAUSE = {
     "contact unsolved": "bodies squeezed between others, too much friction in several contacts, or too few sweeps",
     "energy created": "a step too long for the contact, numbers at the limits of arithmetic, or a fault of the model",
 }
-# Share of the largest energy that round-off may make of the ledger, of the stored energy below zero and of friction's
-# loss running back.
+# Share of the largest energy that round-off may make of the ledger, of the stored energy below zero and of losses
+# running back.
 LEDGER_TOLERANCE = 1e-8
 # Share of the largest energy that the contacts may seem to give: their work is centred over a step, their loss is not.
 CONTACT_TOLERANCE = 1e-2
@@ -68,12 +68,18 @@ def contact_words(names: tuple[str, ...], carried: Array) -> str:
 
 
 def energy_created(
-    energies: Array, before: Array, initial: float, largest: float, of_loads: float, dissipative: bool
+    energies: Array,
+    before: Array,
+    initial: float,
+    largest: float,
+    of_loads: float,
+    dissipative: bool,
+    damped_alone: bool,
 ) -> int | None:
     """Return the first sample at which energy came from nowhere, or None.
 
-    The ledger must close, the stored energy stay above zero, the contacts take energy on the whole, and friction under
-    laws without internal state at every step.
+    The ledger must close, the stored energy stay above zero, the contacts take energy on the whole, friction under laws
+    without internal state and the damping of uncoupled modes at every step.
 
     Parameters
     ----------
@@ -89,6 +95,8 @@ def energy_created(
         What the loads give to modes at rest in one step [J]: less is nothing.
     dissipative : bool
         Whether friction must take energy at every step.
+    damped_alone : bool
+        Whether each mode is damped on its own, so that damping must take energy at every step, too.
     """
     terms = np.abs(energies[: at.DAMPING_LOSS + 1])
     largest_yet = np.maximum(np.maximum.accumulate(terms.max(axis=0)), max(largest, of_loads))
@@ -102,7 +110,8 @@ def energy_created(
         | (energies[at.STORED] < -scale)
         | (given > CONTACT_TOLERANCE * largest_yet + of_loads)
     )
-    if dissipative:
-        wrong |= np.diff(energies[at.FRICTION_LOSS], prepend=before[at.FRICTION_LOSS]) < -scale
+    for takes, loss in ((dissipative, at.FRICTION_LOSS), (damped_alone, at.DAMPING_LOSS)):
+        if takes:
+            wrong |= np.diff(energies[loss], prepend=before[loss]) < -scale
     found = np.flatnonzero(wrong)
     return int(found[0]) if found.size else None

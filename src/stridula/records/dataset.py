@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from ..bodies import BodyPoint, FiniteElementBeam
 from ..bodies.modes import Array
 from ..system import System
 from .probes import Probe, Reaction
+from .state import State
 from .variables import (
     CONTACT,
     ENERGY,
@@ -26,28 +26,6 @@ from .variables import (
 )
 
 
-@dataclass(frozen=True)
-class State:
-    """Where a march stopped, enough to go on from there.
-
-    Attributes
-    ----------
-    modal : ndarray, shape (2, modes)
-        Positions and last increments of the modes.
-    carried : ndarray, shape (contacts, scalars)
-        Scalars that the march carries for each contact.
-    energies : ndarray
-        Energies that the march carries.
-    raw : ndarray, shape (steps, probes)
-        Last values of the probes at every step, which the low-pass still needs.
-    """
-
-    modal: Array
-    carried: Array
-    energies: Array
-    raw: Array
-
-
 def to_dataset(
     system: System,
     time: Array,
@@ -57,11 +35,13 @@ def to_dataset(
     probes: Sequence[Probe],
     probe_values: Array,
     state: State,
+    raw: Array,
     attributes: dict[str, Any],
 ) -> xr.Dataset:
     """Label the arrays of a march with names, units and meanings.
 
-    Arrays of the contacts have the shapes (contacts, samples), and (samples, contacts, 3) for the status.
+    Arrays of the contacts have the shapes (contacts, samples), and (samples, contacts, 3) for the status. `raw` are the
+    last values of the probes at every step, which the low-pass still needs, shape (steps, probes).
     """
     run = xr.Dataset(attrs=attributes)
     run.coords["time"] = ("time", time, {"units": "s", "long_name": "time at the end of the sample interval"})
@@ -86,9 +66,10 @@ def to_dataset(
     _add_probes(run, system, probes, probe_values)
     for name, dimensions, values, words in (
         ("state_modal", ("state_kind", "mode"), state.modal, "modal positions and increments at the end"),
+        ("state_remainder", ("state_kind", "mode"), state.remainder, "what they lack in the units of the march"),
         ("state_carried", ("state_contact", "state_scalar"), state.carried, "scalars of each contact at the end"),
         ("state_energies", "state_energy", state.energies, "energies carried by the march at the end"),
-        ("state_raw", ("state_step", "state_probe"), state.raw, "last values of the probes at every step"),
+        ("state_raw", ("state_step", "state_probe"), raw, "last values of the probes at every step"),
     ):
         run[name] = (dimensions, values, {"long_name": words})
     return run

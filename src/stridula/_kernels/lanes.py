@@ -1,0 +1,105 @@
+"""What the march is written with: modes and runs, many at a time where the machine can.
+
+A vector holds `LANES` modes of one run, or one mode of `LANES` runs. What belongs to a run is a number in the first
+case and a vector in the second: functions take the kind from an argument `like`, whose value does not matter. As plain
+Python and on a graphics card, everything is a number: one mode of one run.
+"""
+
+import inspect
+import math
+
+from numba.core import types
+from numba.extending import overload
+
+
+def load(rows, k, row, run):
+    """Return a row of block `k`, of the runs from `run` on."""
+    return rows[k, row, run]
+
+
+def store(rows, k, row, run, value):
+    """Put modes into a row of block `k`."""
+    rows[k, row, run] = value
+
+
+def read(array, row, column, like):
+    """Return what belongs to a run, or to each of several, from a row of `array`."""
+    return array[row, column]
+
+
+def write(array, row, column, value):
+    """Put what belongs to a run, or to each of several, into a row of `array`."""
+    array[row, column] = value
+
+
+def spread(value):
+    """Return a number in every lane."""
+    return value
+
+
+def total(value, like):
+    """Return the sum over the modes in a vector, for each run in it."""
+    return value
+
+
+def choose(condition, yes, no):
+    """Return `yes` where `condition` holds, `no` elsewhere."""
+    return yes if condition else no
+
+
+def fused(a, b, c):
+    """Return ``a b + c``, rounded once where the machine can: the same in every place of the code."""
+    return a * b + c
+
+
+def whole(value):
+    """Return the largest whole number not above `value`."""
+    return math.floor(value)
+
+
+def magnitude(value):
+    """Return the absolute value."""
+    return abs(value)
+
+
+def anywhere(condition):
+    """Return whether `condition` holds in any lane."""
+    return condition
+
+
+def everywhere(condition):
+    """Return whether `condition` holds in all lanes."""
+    return condition
+
+
+def lane(value, i):
+    """Return the number in a lane of a vector."""
+    return value
+
+
+def with_lane(value, i, number):
+    """Return a vector with another number in a lane."""
+    return number
+
+
+# Compiled for numbers of one run; what they come to for vectors is in `vectors`.
+
+
+def _for_numbers(function, accepts):
+    """Let compiled code call the plain function on numbers."""
+
+    def implementation(*kinds):
+        return function if accepts(*kinds) else None
+
+    implementation.__signature__ = inspect.signature(function)
+    overload(function)(implementation)
+
+
+def _is_number(*kinds):
+    return all(isinstance(kind, (types.Number, types.Boolean)) for kind in kinds)
+
+
+_for_numbers(read, lambda array, row, column, like: _is_number(like))
+_for_numbers(write, lambda array, row, column, value: _is_number(value))
+for _function in (choose, magnitude, anywhere, everywhere):
+    _for_numbers(_function, _is_number)

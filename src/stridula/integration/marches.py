@@ -1,0 +1,239 @@
+"""The march of a system, chunk by chunk: by the kernel that its contacts and modes ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import deepcopy
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from .._kernels import layout as at
+from .._kernels.march import march
+from .._kernels.one_contact import march_run, march_runs
+from ..assembly import Assembly
+from ..bodies.modes import Array
+from ..records.state import State
+from .blocks import Blocks
+from .contact_solve import GaussSeidel
+from .packing import aligned, numbers_of, pack, places, rows_of, side_by_side
+
+
+@dataclass(frozen=True)
+class Imposed:
+    """What is imposed on a chunk of steps.
+
+    Attributes
+    ----------
+    signals : ndarray, shape (steps, signals)
+        Amplitude of each load, then the imposed displacement, velocity and acceleration.
+    motion : ndarray, shape (steps + 2, contacts, motions)
+        Motions imposed on each contact, from the step before to the one after.
+    """
+
+    signals: Array
+    motion: Array
+
+
+def imposed_on(arrays: Assembly, first: int, steps: int, step: float) -> Imposed:
+    """Return what is imposed on `steps` steps from number `first` on."""
+    times = np.arange(first - 1, first + steps + 1) * step
+    signals = np.stack([signal(times[1:-1], step) for signal in arrays.signals], axis=1)
+    return Imposed(signals, arrays.motion(times, step))
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """What a chunk of a march left.
+
+    Attributes
+    ----------
+    energies : ndarray, shape (samples, energies)
+        Energies at every sample.
+    contacts : ndarray, shape (samples, contacts, columns)
+        Record of the contacts.
+    raw : ndarray, shape (steps, probes)
+        Probes at every step.
+    completed, ended : int
+        Samples completed, and what ended the march.
+    """
+
+    energies: Array
+    contacts: Array
+    raw: Array
+    completed: int
+    ended: int
+
+
+class March(Protocol):
+    """A system on the march."""
+
+    @property
+    def states(self) -> list[State]:
+        """Where each run is."""
+        ...
+
+    def advance(self, imposed: Sequence[Imposed], samples: int) -> list[Chunk]:
+        """March `samples` samples on and return what each run left."""
+        ...
+
+    def copy(self) -> March:
+        """Return another march that is where this one is."""
+        ...
+
+
+def march_of(blocks: Blocks, state: State, step: float, ratio: int, solve: GaussSeidel) -> March:
+    """Return the march of one system, `ratio` steps of length `step` [s] a sample."""
+    if blocks.is_simple:
+        return SimpleMarch([blocks], [state], step, ratio)
+    return GeneralMarch(blocks, state, step, ratio, solve)
+
+
+class GeneralMarch:
+    """Any number of contacts, modes coupled or not."""
+
+    def __init__(self, blocks: Blocks, state: State, step: float, ratio: int, solve: GaussSeidel) -> None:
+        self.blocks, self.state, self.step, self.ratio, self.solve = blocks, state, step, ratio, solve
+
+    @property
+    def states(self) -> list[State]:
+        """Where the run is."""
+        return [self.state]
+
+    def copy(self) -> GeneralMarch:
+        """Return another march that is where this one is."""
+        return GeneralMarch(self.blocks, deepcopy(self.state), self.step, self.ratio, self.solve)
+
+    def advance(self, imposed: Sequence[Imposed], samples: int) -> list[Chunk]:
+        """March on."""
+        modes, contacts, probes, state = self.blocks.modes, self.blocks.contacts, self.blocks.probes, self.state
+        energies = np.empty((samples, at.ENERGIES))
+        record = np.empty((samples, len(contacts.constants), at.COLUMNS))
+        raw = np.empty((samples * self.ratio, len(probes.direct)))
+        completed, ended = march(
+            self.ratio,
+            self.step,
+            self.solve.tolerance,
+            self.solve.sweeps,
+            modes.block,
+            modes.matrices,
+            contacts.constants,
+            contacts.laws,
+            contacts.spans,
+            contacts.rows,
+            contacts.compliance,
+            state.modal,
+            state.carried,
+            state.energies,
+            modes.loads,
+            imposed[0].signals,
+            imposed[0].motion,
+            probes.rows,
+            probes.spans,
+            probes.direct,
+            probes.contact,
+            energies,
+            record,
+            raw,
+        )
+        return [Chunk(energies, record, raw, completed, ended)]
+
+
+class SimpleMarch:
+    """One contact between bodies of uncoupled modes: of one run, or of several of the same kind side by side.
+
+    Runs of the same kind have the same modes in number, law of friction, drives and probes.
+    """
+
+    def __init__(self, blocks: Sequence[Blocks], states: Sequence[State], step: float, ratio: int) -> None:
+        first = blocks[0]
+        self.runs, self.step, self.ratio = len(blocks), step, ratio
+        self.places = places(first.contacts, self.runs)
+        known = [rows_of(one, state) for one, state in zip(blocks, states, strict=True)]
+        rows, self.scales = zip(*known, strict=True)
+        self.rows = pack(self.places, rows)
+        self.carried = side_by_side([state.carried[0] for state in states])
+        self.energies = side_by_side([state.energies for state in states])
+        self.law = int(first.contacts.constants[0, at.LAW])
+        self.laws = np.concatenate([one.contacts.laws for one in blocks])
+        self.numbers = side_by_side([numbers_of(one.contacts) for one in blocks])
+        self.work_of_loads = aligned(len(first.modes.loads), self.runs)
+        self.probe_count = len(first.probes.direct)
+        self.probes = (
+            first.probes.kinds,
+            self._probe_spans(),
+            side_by_side([one.probes.direct for one in blocks]),
+            side_by_side([one.probes.contact.reshape(-1) for one in blocks]),
+            aligned(self.probe_count, self.runs),
+        )
+
+    def _probe_spans(self) -> Array:
+        """Return the first block that each probe sees, and the one after the last."""
+        spans = np.zeros((self.probe_count, 2), dtype=np.int64)
+        first = self.rows.shape[1] - self.probe_count
+        for i, span in enumerate(spans):
+            seen = np.flatnonzero(self.rows[:, first + i].any(axis=1))
+            span[:] = (seen[0], seen[-1] + 1) if seen.size else (0, 0)
+        return spans
+
+    @property
+    def states(self) -> list[State]:
+        """Where each run is."""
+        found = []
+        for run, scale in enumerate(self.scales):
+            rows = self.rows[self.places.block, :2, self.places.lane + run].T
+            modal = rows * scale
+            carried, energies = self.carried[None, :, run].copy(), self.energies[:, run].copy()
+            found.append(State(modal, rows - modal / scale, carried, energies))
+        return found
+
+    def copy(self) -> SimpleMarch:
+        """Return another march that is where this one is."""
+        return deepcopy(self)
+
+    def advance(self, imposed: Sequence[Imposed], samples: int) -> list[Chunk]:
+        """March on."""
+        steps, runs = samples * self.ratio, self.runs
+        energies, record = aligned(samples, at.ENERGIES * runs), aligned(samples, at.COLUMNS * runs)
+        raw, stops = aligned(steps, self.probe_count * runs), aligned(2, runs)
+        kernel = march_run if runs == 1 else march_runs
+        kernel(
+            self.places.blocks,
+            self.ratio,
+            self.step,
+            self.law,
+            self.laws,
+            self.numbers,
+            self.rows,
+            self.carried,
+            self.energies,
+            self.work_of_loads,
+            _signals(imposed),
+            _motion(imposed),
+            self.probes,
+            energies,
+            record,
+            raw,
+            stops,
+        )
+        energies, record = energies.reshape(samples, -1, runs), record.reshape(samples, 1, -1, runs)
+        raw = raw.reshape(steps, -1, runs)
+        return [
+            Chunk(energies[..., run], record[..., run], raw[..., run], int(stops[0, run]), int(stops[1, run]))
+            for run in range(runs)
+        ]
+
+
+def _signals(imposed: Sequence[Imposed]) -> Array:
+    """Return signals side by side, one row of them where they are constant."""
+    if all((one.signals == one.signals[0]).all() for one in imposed):
+        return side_by_side([one.signals[:1] for one in imposed])
+    return side_by_side([one.signals for one in imposed])
+
+
+def _motion(imposed: Sequence[Imposed]) -> Array:
+    """Return motions side by side, one row of them where nothing moves."""
+    if not any(one.motion.any() for one in imposed):
+        return side_by_side([one.motion[:1, 0] for one in imposed])
+    return side_by_side([one.motion[:, 0] for one in imposed])

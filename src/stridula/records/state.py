@@ -1,0 +1,29 @@
+"""Where a march is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..bodies.modes import Array
+
+
+@dataclass
+class State:
+    """Where a march is, enough to go on from there.
+
+    Attributes
+    ----------
+    modal : ndarray, shape (2, modes)
+        Positions and last increments of the modes.
+    remainder : ndarray, shape (2, modes)
+        What they lack in the units of the march, by rounding: with it a march goes on to the last bit.
+    carried : ndarray, shape (contacts, scalars)
+        Scalars that the march carries for each contact.
+    energies : ndarray, shape (energies,)
+        Energies since the start.
+    """
+
+    modal: Array
+    remainder: Array
+    carried: Array
+    energies: Array
