@@ -11,7 +11,7 @@ help:
 	@echo "make test         lint, types, layers and tests (sets itself up)"
 	@echo "make docs         build the documentation into docs/_build/html, warnings are errors"
 	@echo "make bench        speed and memory, as ratios measured side by side, also against C"
-	@echo "make convergence  the table of docs/convergence.rst and the figure of docs/trust.rst, in a few minutes"
+	@echo "make convergence  the tables of docs/convergence.rst and the figures there and in docs/trust.rst, in a quarter of an hour"
 	@echo "make clean        remove .venv and everything built"
 
 .venv/installed: pyproject.toml
@@ -51,6 +51,8 @@ bench: .venv/installed
 convergence: .venv/installed
 	$(BIN)/python examples/papers/laulagnet_2011/convergence.py
 	$(BIN)/python examples/papers/laulagnet_2011/convergence_of_statistics.py
+	$(BIN)/python examples/papers/laulagnet_2011/first_contacts.py
+	$(BIN)/python examples/papers/laulagnet_2011/step_of_the_exact_scheme.py
 
 clean:
 	rm -rf .venv docs/_build results .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

@@ -42,6 +42,10 @@ exclude_patterns = [
     "_generated/*.rst",
     "paper-search.rst",
     "convergence-table.rst",
+    "step-first-contacts-table.rst",
+    "step-table.rst",
+    "step-near-table.rst",
+    "step-cutoff-table.rst",
     "peers.rst",
 ]
 highlight_language = "python"
