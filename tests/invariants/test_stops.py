@@ -11,7 +11,7 @@ from physics.cases import SCHEME_NAMES, SCHEMES
 import stridula as st
 from stridula._kernels import layout
 from stridula.integration import blocks as blocks_module
-from stridula.integration import run as run_module
+from stridula.integration import together as together_module
 from stridula.integration.marches import SimpleMarch
 from stridula.integration.stops import CAUSE, ENDED, WHAT, energy_created
 
@@ -148,7 +148,7 @@ def test_a_state_that_something_else_wrote_to(scheme, monkeypatch):
         return advance(march, *arguments)
 
     monkeypatch.setattr(SimpleMarch, "advance", stray)
-    monkeypatch.setattr(run_module, "STEPS_PER_CHUNK", 100)
+    monkeypatch.setattr(together_module, "STEPS_PER_CHUNK", 100)
     check(stopped(oscillator(), scheme=scheme), "energy created", (0, 1000))
 
 

@@ -25,7 +25,7 @@ from physics.cases import (
 
 import stridula as st
 from stridula.assembly import assemble
-from stridula.integration import run as run_module
+from stridula.integration import together as together_module
 from stridula.integration.decimation import Decimator
 from stridula.integration.marches import SimpleMarch
 
@@ -97,7 +97,7 @@ def test_chunks_do_not_show(monkeypatch):
     system = CASES["squeal"]()
     words = {"step": STEP, "sample_rate": 1 / (4 * STEP), "probes": probed(system)}
     whole = st.simulate(system, 0.02, **words)
-    monkeypatch.setattr(run_module, "STEPS_PER_CHUNK", 12)
+    monkeypatch.setattr(together_module, "STEPS_PER_CHUNK", 12)
     assert_same([st.simulate(system, 0.02, **words)], whole)
 
 

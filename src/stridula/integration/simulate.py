@@ -14,8 +14,12 @@ from ..checks import instance, positive
 from ..records import Acceleration, Probe
 from ..system import System
 from .contact_solve import GaussSeidel
-from .run import Run, Timing
+from .marches import march_of
+from .run import Run
 from .schemes import CentralDifference, ExactModal, Scheme
+from .stops import Diverged, Interrupted
+from .timing import Timing
+from .together import march_together
 from .watchers import Watcher
 
 LARGEST_RECORD = 8e9
@@ -105,7 +109,14 @@ def simulate(
             f"{1 / timing.interval:.6g} Hz: lower sample_rate"
         )
     run = Run(system, arrays, chosen, timing, declared, solve, start, title)
-    return run.march(watchers)
+    march = march_of(run.blocks, run.state, timing.step, timing.ratio, solve)
+    interrupted = march_together([run], march, watchers)
+    record = run.record(interrupted)
+    if interrupted:
+        raise Interrupted(record)
+    if run.has_diverged:
+        raise Diverged(record, run.why_diverged())
+    return record
 
 
 def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float | None, sample_rate: float) -> Timing:

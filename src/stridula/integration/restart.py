@@ -1,0 +1,83 @@
+"""A run that goes on from the record of another: what it takes over, and what must be the same."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..assembly import Assembly
+from ..checks import instance
+from ..contact import LAWS
+from ..records import Probe
+from ..records.provenance import scenario_toml
+from ..records.state import State
+from ..system import System
+from .schemes import Scheme
+from .timing import Timing
+
+# Laws whose internal state is carried on: another law has no use for it.
+STATEFUL = tuple(law.law for law in LAWS if law.state_units)
+STATE = ("modal", "remainder", "carried", "energies")
+
+
+def state_of(
+    start: xr.Dataset, system: System, arrays: Assembly, scheme: Scheme, timing: Timing, probes: Sequence[Probe]
+) -> State:
+    """Return the state at the end of a record, for a run that goes on from it.
+
+    Raises
+    ------
+    ValueError
+        If the record does not end as a run that can go on, or is not that of the same system but for drives, friction
+        and duration.
+    """
+    instance("start", start, xr.Dataset)
+    needed = (*(f"state_{name}" for name in STATE), "state_raw")
+    if any(name not in start for name in needed):
+        raise ValueError(f"start must be a record of simulate with its final state, got variables {list(start)}")
+    attributes = start.attrs
+    if attributes["ended"] not in ("finished", "interrupted"):
+        raise ValueError(f"start must be a run that can go on, got one that ended {attributes['ended']!r}")
+    for name, value in (("scheme", scheme.name), ("step", timing.step), ("steps_per_sample", timing.ratio)):
+        if attributes[name] != value:
+            raise ValueError(f"start must have the same {name} as this run, {value!r}, got {attributes[name]!r}")
+    if start["state_modal"].shape[1] != arrays.mode_count:
+        raise ValueError(
+            f"start must have the same number of modes as this system, {arrays.mode_count}, "
+            f"got {start['state_modal'].shape[1]}"
+        )
+    if start["state_raw"].shape[1] != len(probes):
+        raise ValueError(f"start must have the same number of probes, {len(probes)}, got {start['state_raw'].shape[1]}")
+    before, now = (tomllib.loads(text) for text in (attributes["scenario"], scenario_toml(system, probes, {})))
+    _check_frozen(_frozen(before), _frozen(now))
+    return State(*(np.array(start[f"state_{name}"].values, dtype=float, order="C") for name in STATE))
+
+
+def _frozen(tables: dict[str, Any]) -> dict[str, Any]:
+    """Return what a run that goes on from another must share with it: all but drives, friction and timing."""
+    kept = {name: value for name, value in tables.items() if name not in ("drives", "simulation")}
+    kept["probes"] = tables["simulation"]["probes"]
+    if "contact" in kept:
+        kept["contact"] = _without_friction(kept["contact"])
+    if "contacts" in kept:
+        kept["contacts"] = [_without_friction(contact) for contact in kept["contacts"]]
+    return kept
+
+
+def _without_friction(contact: dict[str, Any]) -> dict[str, Any]:
+    name = contact["friction"]["law"]
+    return {**contact, "friction": name if name in STATEFUL else None}
+
+
+def _check_frozen(before: dict[str, Any], now: dict[str, Any], path: str = "") -> None:
+    """Raise a ValueError that names the first value that differs."""
+    for name in dict.fromkeys((*now, *before)):
+        old, new = before.get(name), now.get(name)
+        if isinstance(old, dict) and isinstance(new, dict):
+            _check_frozen(old, new, f"{path}{name}.")
+        elif old != new:
+            raise ValueError(f"start must have the same {path}{name} as this run, {new!r}, got {old!r}")

@@ -1,0 +1,40 @@
+"""Runs on the march together, in chunks, to their ends."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Sequence
+
+from .._kernels.layout import FINISHED
+from .interrupts import DeferredInterrupt
+from .marches import March
+from .run import Run
+from .watchers import Progress, Watcher
+
+STEPS_PER_CHUNK = 20_000
+
+
+def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher] = ()) -> bool:
+    """March runs of the same timing to their ends, or to a Ctrl-C between two chunks; return whether there was one."""
+    began, timing, done = clock.perf_counter(), runs[0].timing, 0
+    samples_per_chunk = max(1, STEPS_PER_CHUNK // timing.ratio)
+    with DeferredInterrupt() as interrupt:
+        while done < timing.samples and any(run.ended == FINISHED for run in runs) and not interrupt.requested:
+            count = min(samples_per_chunk, timing.samples - done)
+            chunks = march.advance([run.imposed(done, count) for run in runs], count)
+            for run, chunk in zip(runs, chunks, strict=True):
+                run.take(chunk)
+            done += count
+            reached = max(run.done for run in runs) * timing.interval
+            progress = Progress(reached, timing.samples * timing.interval, clock.perf_counter() - began)
+            try:
+                for watch in watchers:
+                    watch(progress)
+            except KeyboardInterrupt:
+                interrupt.requested = True
+        ahead = max(run.steps_ahead for run in runs)
+        beyond = march.copy().advance([run.imposed(done, ahead) for run in runs], ahead) if ahead else None
+    for number, (run, state) in enumerate(zip(runs, march.states, strict=True)):
+        run.finish(state, beyond[number] if beyond and run.steps_ahead else None)
+        run.wall_time = (clock.perf_counter() - began) / len(runs)
+    return interrupt.requested
