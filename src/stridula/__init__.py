@@ -49,6 +49,7 @@ _HOME = {
         "Interrupted",
         "Progress",
         "simulate",
+        "simulate_many",
     ),
     "studies": ("ensemble",),
 }

@@ -86,6 +86,8 @@ class Assembly:
         Modal positions and velocities at the start.
     probes : list of ProbeRows
         One for each probe.
+    steady : bool
+        Whether nothing that is imposed varies in time.
     """
 
     angular_frequency: Array
@@ -99,6 +101,7 @@ class Assembly:
     position: Array
     velocity: Array
     probes: list[ProbeRows]
+    steady: bool
 
     @property
     def mode_count(self) -> int:
@@ -139,7 +142,15 @@ def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
         position=position,
         velocity=velocity,
         probes=[_probe(probe, layout, loads) for probe in probes],
+        steady=_is_steady(system),
     )
+
+
+def _is_steady(system: System) -> bool:
+    """Return whether no drive varies in time, and no point of a body or track has a motion imposed."""
+    still = all(not isinstance(contact.track, RigidTrack) or contact.track.is_still for contact in system.contacts)
+    histories = (getattr(drive, "history", Constant()) for drive in system.drives)
+    return still and system.imposed_velocity is None and all(type(history) is Constant for history in histories)
 
 
 @dataclass(frozen=True)

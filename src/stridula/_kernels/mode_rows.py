@@ -15,11 +15,13 @@ import numba
 from .lanes import fused, load, spread, store, total
 from .traces import NUMBER
 
-# Rows of a block: state, share of an increment kept, stiffness of a step, tip and fixed part of the track, amplitude of
-# harmonics and of their derivatives, loads of this step; then sines and cosines at the contact, those of the last step
-# and of this one in turn, and the numbers of the harmonics; then unit loads, then probes.
-Q, D, KEPT, STIFFNESS, NORMAL, TANGENTIAL, AMPLITUDE, SLOPE, FORCE = range(9)
-WAVES = FORCE + 1
+# Rows of a block: state, share of an increment kept, stiffness of a step, loads of this step; of a fixed block its rows
+# at the contact, of harmonics their amplitude and that of their derivatives; then sines and cosines at the contact,
+# those of the last step and of this one in turn, and the numbers of the harmonics; then unit loads, then probes.
+Q, D, KEPT, STIFFNESS, FORCE = range(5)
+NORMAL = AMPLITUDE = FORCE + 1
+TANGENTIAL = SLOPE = FORCE + 2
+WAVES = SLOPE + 1
 LOADS = NUMBER + 1
 
 # No rule of arithmetic is relaxed: a step is the same to the last bit wherever it is completed.

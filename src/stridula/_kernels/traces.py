@@ -49,7 +49,7 @@ def harmonics(theta, count, sines, cosines):
 
 # Rows of the harmonics at a contact among the rows over modes.
 # the rows of sines and cosines are given.
-NUMBER = 13
+NUMBER = 11
 
 
 def set_harmonics(theta, count, rows, first, sine, run):

@@ -36,3 +36,8 @@ class RigidTrack:
         instance("history", self.history, HISTORIES)
         instance("normal_history", self.normal_history, HISTORIES)
         instance("name", self.name, str)
+
+    @property
+    def is_still(self) -> bool:
+        """Whether it does not move."""
+        return self.velocity == 0.0 and self.normal_velocity == 0.0

@@ -1,6 +1,7 @@
 """How time goes on: schemes, the time loop, watchers."""
 
 from .contact_solve import GaussSeidel
+from .many import simulate_many
 from .schemes import SCHEMES, CentralDifference, ExactModal
 from .simulate import simulate
 from .stops import Diverged, Interrupted
@@ -15,4 +16,5 @@ __all__ = [
     "Interrupted",
     "Progress",
     "simulate",
+    "simulate_many",
 ]

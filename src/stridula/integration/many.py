@@ -6,36 +6,33 @@ import os
 import threading
 from collections.abc import Callable, Hashable, Sequence
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
-from typing import TypeVar
+from typing import Any
 
 import xarray as xr
 
 from .._kernels.vectors import LANES
-from ..checks import count, instance
+from ..checks import count
 from ..records import Probe
 from ..system import System
 from .contact_solve import GaussSeidel
-from .marches import SimpleMarch, march_of
+from .marches import March, SimpleMarch, march_of
 from .run import Run
 from .schemes import Scheme
-from .simulate import Request, request
+from .simulate import Arrays, Asked
 from .stops import Diverged
 from .together import march_together
 from .watchers import Progress, Watcher
 
-Result = TypeVar("Result")
-Handler = Callable[[int, xr.Dataset, Diverged | None], Result]
-
-# Modes above which runs side by side no longer fit a processor's first cache, so that one at a time is faster.
+# Modes above which runs side by side leave a processor's first cache, so that one at a time is as fast.
 MOST_MODES = 160
-# Fewer runs of a kind than these march one by one: a vector has to be paid whole.
-FEWEST_RUNS = LANES // 2
+# Fewer runs of a kind than these march one by one: a vector costs the same, full or not.
+FEWEST_RUNS = 4
 
 
-def simulate_each(
+def simulate_many(
     systems: Sequence[System],
     duration: float,
-    handle: Handler[Result],
+    reduce: Callable[[xr.Dataset], Any] | None = None,
     *,
     scheme: Scheme | None = None,
     step: float | None = None,
@@ -44,12 +41,12 @@ def simulate_each(
     contact_solve: GaussSeidel | None = None,
     workers: int | None = None,
     watchers: Sequence[Watcher] = (),
-) -> list[Result]:
-    """Simulate systems and return what `handle` makes of each record.
+) -> list[Any]:
+    """March many systems in time, several at once on each processor.
 
-    Runs of the same kind march side by side: those of one contact between bodies of uncoupled modes that have the same
-    number of modes, law of friction, drives in number, and kinds of probes. Others march one by one. Both on as many
-    processors as there are workers.
+    Runs of the same kind march side by side: of one contact, between bodies of uncoupled modes, with the same numbers
+    of modes and loads, the same law of friction and kinds of probes. Coefficients, angles, loads, damping and lengths
+    may differ. All others march one by one.
 
     Parameters
     ----------
@@ -57,34 +54,131 @@ def simulate_each(
         What to simulate.
     duration : float
         Time to simulate [s].
-    handle : callable
-        Called in a worker with the number of the system, its record and, where the run diverged, the exception.
-    scheme, step, sample_rate, contact_solve
-        As for `simulate`, the same for all; a step that is left out is the shortest of the steps that they take alone.
-    probes : sequence, optional
-        What else to record, on bodies of every system.
+    reduce : callable, optional
+        Called with each record as soon as it is there, in a thread; what it returns is kept in its place.
+    scheme, step, sample_rate, probes, contact_solve
+        As for `simulate`, for all systems. A step that is left out is the shortest of those that they take alone.
     workers : int, optional
-        Threads; as many as there are processors if left out.
+        Runs or groups of them at a time; as many as there are processors if left out.
     watchers : sequence of callable, optional
-        Called with the progress of all runs together.
+        Called with the `Progress` of all runs, from threads: simulated times are sums over the runs.
+
+    Returns
+    -------
+    list
+        The record of each system, or what `reduce` made of it, in the order of `systems`. A run that diverged has the
+        record before that: ``attrs["ended"]`` says how, ``attrs["message"]`` where and why.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or a system cannot be simulated with it.
+
+    See Also
+    --------
+    simulate : One system; says what a record holds.
     """
-    asked = request(systems, duration, scheme, step, sample_rate, probes, contact_solve)
+    if not isinstance(systems, Sequence):
+        raise ValueError(f"systems must be a list of systems, got {systems!r}")
+    if reduce is not None and not callable(reduce):
+        raise ValueError(f"reduce must be a function of a record, got {reduce!r}")
     if workers is not None:
         count("workers", workers)
-    total = Total(len(systems), watchers)
-    groups = together(asked)
+    asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve)
+    arrays = [asked.arrays(system) for system in systems]
+    if step is None:
+        asked.step = min((asked.timing(one).step for one in arrays), default=None)
+    together = _Together(asked, arrays, reduce, watchers)
+    together.march_all(_groups(arrays), workers or os.cpu_count() or 1)
+    return [together.results[number] for number in range(len(systems))]
 
-    def march(group: Sequence[int]) -> list[tuple[int, Result]]:
-        runs = [asked.run(number) for number in group]
-        timing = runs[0].timing
-        watch = total.watcher(len(group))
+
+def _groups(arrays: Sequence[Arrays]) -> list[list[int]]:
+    """Return the numbers of the systems that march together, the largest groups first."""
+    kinds: dict[Hashable, list[int]] = {}
+    for number, one in enumerate(arrays):
+        kinds.setdefault(_kind(one) or number, []).append(number)
+    groups = []
+    for numbers in kinds.values():
+        for first in range(0, len(numbers), LANES):
+            group = numbers[first : first + LANES]
+            groups += [group] if len(group) >= FEWEST_RUNS else [[number] for number in group]
+    return sorted(groups, key=len, reverse=True)
+
+
+def _kind(arrays: Arrays) -> Hashable | None:
+    """Return what runs that march side by side share, None for a run that marches alone."""
+    flat = arrays.flat
+    if len(flat.contacts) > 1 or flat.coupled or flat.mode_count > MOST_MODES:
+        return None
+    (one,) = flat.contacts
+    law = type(one.contact.friction), getattr(one.contact.friction, "evolution", None)
+    probes = tuple(type(probe) for probe in arrays.probes)
+    return flat.mode_count, one.bending, one.axial, law, len(flat.loads), probes
+
+
+class _Cancelled(Exception):
+    """A run that was stopped because another one failed."""
+
+
+class _Together:
+    """Groups of runs on their way to results."""
+
+    def __init__(
+        self,
+        asked: Asked,
+        arrays: Sequence[Arrays],
+        reduce: Callable[[xr.Dataset], Any] | None,
+        watchers: Sequence[Watcher],
+    ) -> None:
+        self.asked, self.arrays, self.reduce, self.watchers = asked, arrays, reduce, watchers
+        self.results: dict[int, Any] = {}
+        self.stop, self.lock, self.simulated = threading.Event(), threading.Lock(), 0.0
+
+    def march_all(self, groups: Sequence[Sequence[int]], workers: int) -> None:
+        """March groups in threads; the first failure ends the others. The march is compiled and lets threads run."""
+        if not groups:
+            return
+        with ThreadPoolExecutor(min(workers, len(groups))) as pool:
+            futures = [pool.submit(self.march, group) for group in groups]
+            try:
+                wait(futures, return_when=FIRST_EXCEPTION)
+                for future in futures:
+                    if future.done():
+                        future.result()
+            finally:
+                self.stop.set()
+                pool.shutdown(wait=False, cancel_futures=True)
+
+    def march(self, group: Sequence[int]) -> None:
+        """March a group and keep its results."""
+        runs = [self.asked.run(self.arrays[number]) for number in group]
+        march_together(runs, self._march_of(runs), [self._watch(len(runs))])
+        for number, run in zip(group, runs, strict=True):
+            record = run.record()
+            if run.has_diverged:
+                record.attrs["message"] = str(Diverged(record, run.why_diverged()))
+            self.results[number] = record if self.reduce is None else self.reduce(record)
+
+    def _march_of(self, runs: Sequence[Run]) -> March:
+        timing, first = runs[0].timing, runs[0]
         if len(runs) == 1:
-            on_the_way = march_of(runs[0].blocks, runs[0].state, timing.step, timing.ratio, asked.solve)
-        else:
-            blocks, states = [run.blocks for run in runs], [run.state for run in runs]
-            on_the_way = SimpleMarch(blocks, states, timing.step, timing.ratio)
-        march_together(runs, on_the_way, [watch])
-        return [(number, _handled(handle, number, run)) for number, run in zip(group, runs, strict=True)]
+            return march_of(first.blocks, first.state, timing.step, timing.ratio, self.asked.solve)
+        return SimpleMarch([run.blocks for run in runs], [run.state for run in runs], timing.step, timing.ratio)
 
-    found = dict(_in_threads(march, groups, workers or os.cpu_count() or 1, total))
-    return [found[number] for number in range(len(systems))]
+    def _watch(self, runs: int) -> Watcher:
+        """Return what tells the watchers how far all runs are, and stops a group when another one has failed."""
+        before = 0.0
+
+        def watch(progress: Progress) -> None:
+            nonlocal before
+            if self.stop.is_set():
+                raise _Cancelled
+            with self.lock:
+                self.simulated += (progress.time - before) * runs
+                before = progress.time
+                whole = Progress(self.simulated, progress.duration * len(self.arrays), progress.wall_time)
+                for one in self.watchers:
+                    one(whole)
+
+        return watch

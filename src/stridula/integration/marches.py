@@ -12,6 +12,7 @@ import numpy as np
 from .._kernels import layout as at
 from .._kernels.march import march
 from .._kernels.one_contact import march_run, march_runs
+from .._kernels.vectors import LANES
 from ..assembly import Assembly
 from ..bodies.modes import Array
 from ..records.state import State
@@ -75,7 +76,7 @@ class March(Protocol):
         ...
 
     def advance(self, imposed: Sequence[Imposed], samples: int) -> list[Chunk]:
-        """March `samples` samples on and return what each run left."""
+        """March `samples` samples on and return what each run left, to be read before the next call."""
         ...
 
     def copy(self) -> March:
@@ -147,8 +148,12 @@ class SimpleMarch:
     """
 
     def __init__(self, blocks: Sequence[Blocks], states: Sequence[State], step: float, ratio: int) -> None:
-        first = blocks[0]
-        self.runs, self.step, self.ratio = len(blocks), step, ratio
+        first, self.given = blocks[0], len(blocks)
+        self.step, self.ratio = step, ratio
+        # A vector is filled up with copies of the last run.
+        self.runs = 1 if self.given == 1 else LANES
+        blocks = [*blocks, *[blocks[-1]] * (self.runs - self.given)]
+        states = [*states, *[states[-1]] * (self.runs - self.given)]
         self.places = places(first.contacts, self.runs)
         known = [rows_of(one, state) for one, state in zip(blocks, states, strict=True)]
         rows, self.scales = zip(*known, strict=True)
@@ -160,6 +165,7 @@ class SimpleMarch:
         self.numbers = side_by_side([numbers_of(one.contacts) for one in blocks])
         self.work_of_loads = aligned(len(first.modes.loads), self.runs)
         self.probe_count = len(first.probes.direct)
+        self.room: tuple[Array, ...] = (aligned(0, 0),)
         self.probes = (
             first.probes.kinds,
             self._probe_spans(),
@@ -181,7 +187,7 @@ class SimpleMarch:
     def states(self) -> list[State]:
         """Where each run is."""
         found = []
-        for run, scale in enumerate(self.scales):
+        for run, scale in enumerate(self.scales[: self.given]):
             rows = self.rows[self.places.block, :2, self.places.lane + run].T
             modal = rows * scale
             carried, energies = self.carried[None, :, run].copy(), self.energies[:, run].copy()
@@ -192,11 +198,20 @@ class SimpleMarch:
         """Return another march that is where this one is."""
         return deepcopy(self)
 
+    def _room(self, samples: int) -> tuple[Array, Array, Array, Array]:
+        """Return where a chunk is written to: the same memory as for the last one if that is enough."""
+        if samples > len(self.room[0]):
+            columns = at.ENERGIES, at.COLUMNS
+            records = [aligned(samples, count * self.runs) for count in columns]
+            self.room = (*records, aligned(samples * self.ratio, self.probe_count * self.runs), aligned(2, self.runs))
+        energies, record, raw, stops = self.room
+        return energies[:samples], record[:samples], raw[: samples * self.ratio], stops
+
     def advance(self, imposed: Sequence[Imposed], samples: int) -> list[Chunk]:
         """March on."""
         steps, runs = samples * self.ratio, self.runs
-        energies, record = aligned(samples, at.ENERGIES * runs), aligned(samples, at.COLUMNS * runs)
-        raw, stops = aligned(steps, self.probe_count * runs), aligned(2, runs)
+        imposed = [*imposed, *[imposed[-1]] * (runs - self.given)]
+        energies, record, raw, stops = self._room(samples)
         kernel = march_run if runs == 1 else march_runs
         kernel(
             self.places.blocks,
@@ -221,7 +236,7 @@ class SimpleMarch:
         raw = raw.reshape(steps, -1, runs)
         return [
             Chunk(energies[..., run], record[..., run], raw[..., run], int(stops[0, run]), int(stops[1, run]))
-            for run in range(runs)
+            for run in range(self.given)
         ]
 
 

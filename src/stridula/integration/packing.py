@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._kernels import layout as at
-from .._kernels.mode_rows import FORCE, LOADS
+from .._kernels.mode_rows import LOADS, WAVES
 from .._kernels.traces import NUMBER
 from .._kernels.vectors import LANES
 from ..bodies.modes import Array
@@ -80,17 +80,21 @@ def rows_of(blocks: Blocks, state: State) -> tuple[Array, Array]:
     for first, end in ((at.BENDING, at.BENDING_END), (at.AXIAL, at.AXIAL_END)):
         span = slice(int(contacts.spans[0, first]), int(contacts.spans[0, end]))
         harmonic[span] = np.arange(1, span.stop - span.start + 1)
-    amplitude = contacts.constants[0, at.AMPLITUDE] * scale
-    slope = contacts.constants[0, at.WAVENUMBER] * harmonic * amplitude
-    working = np.zeros((LOADS - FORCE, scale.size))
-    known = (
-        state.modal / scale + state.remainder,
-        block[[at.B, at.R]],
-        contacts.rows[0] * scale,
-        [amplitude, slope],
-        working,
-    )
-    return np.concatenate([*known, blocks.modes.loads / scale, blocks.probes.row * scale]), scale
+    # A mode is fixed or a harmonic: its rows at the contact or the amplitudes of its trace.
+    amplitude = contacts.constants[0, at.AMPLITUDE] * (harmonic > 0.0)
+    at_contact = contacts.rows[0] + [amplitude, contacts.constants[0, at.WAVENUMBER] * harmonic * amplitude]
+    working = np.zeros((LOADS - WAVES, scale.size))
+    return np.concatenate(
+        [
+            state.modal / scale + state.remainder,
+            block[[at.B, at.R]],
+            np.zeros((1, scale.size)),
+            at_contact * scale,
+            working,
+            blocks.modes.loads / scale,
+            blocks.probes.row * scale,
+        ]
+    ), scale
 
 
 def numbers_of(contacts: ContactBlocks) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -100,8 +101,16 @@ class Run:
 
     def imposed(self, first_sample: int, samples: int) -> Imposed:
         """Return what is imposed on the steps of some samples."""
+        if self.blocks.is_simple and self.arrays.steady:
+            return self._steady
         ratio = self.timing.ratio
         return imposed_on(self.arrays, self.first_step + first_sample * ratio, samples * ratio, self.timing.step)
+
+    @cached_property
+    def _steady(self) -> Imposed:
+        """What is imposed on every step, in one row."""
+        imposed = imposed_on(self.arrays, self.first_step, 1, self.timing.step)
+        return Imposed(imposed.signals, imposed.motion[:1])
 
     def take(self, chunk: Chunk) -> None:
         """Record a chunk, up to what ends the run."""
@@ -130,7 +139,8 @@ class Run:
         self.energy_record[:, kept] = energies[:, :completed]
         self.contact_record[:, :, kept] = chunk.contacts[:completed].transpose(2, 1, 0)
         self.done += completed
-        self._keep_probes(chunk.raw[: completed * self.timing.ratio])
+        if self.probes:
+            self._keep_probes(chunk.raw[: completed * self.timing.ratio])
 
     def finish(self, state: State, ahead: Chunk | None) -> None:
         """Take the state at the end, and complete the probes from a chunk beyond it, or from the last value."""

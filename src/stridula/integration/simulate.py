@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -87,29 +88,12 @@ def simulate(
         comes from nowhere. The message says when, the last state of the contacts and the likely cause; the exception
         has the record so far.
     """
-    instance("system", system, System)
-    chosen: Scheme = ExactModal() if scheme is None else scheme
-    instance("scheme", chosen, (CentralDifference, ExactModal))
     if not isinstance(watchers, Sequence):
         raise ValueError(f"watchers must be a list of callables, got {watchers!r}")
-    if probes is not None and not isinstance(probes, Sequence):
-        raise ValueError(f"probes must be a list of probes, got {probes!r}")
-    default = (Acceleration(system.track.centre, "y"),) if isinstance(system.track, ModalBeam) else ()
-    declared = tuple(probes) if probes is not None else default
-    for number, probe in enumerate(declared):
-        instance(f"probes[{number}]", probe, Probe.__args__)
-    solve = GaussSeidel() if contact_solve is None else contact_solve
-    instance("contact_solve", solve, GaussSeidel)
-    arrays = assemble(system, declared)
-    timing = choose_timing(arrays, chosen, duration, step, sample_rate)
-    columns = len(declared) + ENERGIES + COLUMNS * len(system.contacts)
-    if columns > LARGEST_RECORD / 8 / max(timing.samples, 1):
-        raise ValueError(
-            f"duration must give a record below {LARGEST_RECORD / 1e9:g} GB, got {duration!r} s at "
-            f"{1 / timing.interval:.6g} Hz: lower sample_rate"
-        )
-    run = Run(system, arrays, chosen, timing, declared, solve, start, title)
-    march = march_of(run.blocks, run.state, timing.step, timing.ratio, solve)
+    asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve)
+    run = asked.run(asked.arrays(system), start, title)
+    timing = run.timing
+    march = march_of(run.blocks, run.state, timing.step, timing.ratio, asked.solve)
     interrupted = march_together([run], march, watchers)
     record = run.record(interrupted)
     if interrupted:
@@ -117,6 +101,71 @@ def simulate(
     if run.has_diverged:
         raise Diverged(record, run.why_diverged())
     return record
+
+
+@dataclass(frozen=True)
+class Arrays:
+    """A system, its probes, and both as flat arrays.
+
+    Attributes
+    ----------
+    system : System
+        The system.
+    probes : tuple of Probe
+        What is recorded beside the contact.
+    flat : Assembly
+        Both as flat arrays.
+    """
+
+    system: System
+    probes: tuple[Probe, ...]
+    flat: Assembly
+
+
+class Asked:
+    """What is asked of runs: arguments of `simulate`, checked."""
+
+    def __init__(
+        self,
+        duration: float,
+        scheme: Scheme | None,
+        step: float | None,
+        sample_rate: float,
+        probes: Sequence[Probe] | None,
+        contact_solve: GaussSeidel | None,
+    ) -> None:
+        self.duration, self.step, self.sample_rate = duration, step, sample_rate
+        self.scheme: Scheme = ExactModal() if scheme is None else scheme
+        instance("scheme", self.scheme, (CentralDifference, ExactModal))
+        if probes is not None and not isinstance(probes, Sequence):
+            raise ValueError(f"probes must be a list of probes, got {probes!r}")
+        self.probes = probes
+        self.solve = GaussSeidel() if contact_solve is None else contact_solve
+        instance("contact_solve", self.solve, GaussSeidel)
+
+    def arrays(self, system: System) -> Arrays:
+        """Return a system as flat arrays."""
+        instance("system", system, System)
+        default = (Acceleration(system.track.centre, "y"),) if isinstance(system.track, ModalBeam) else ()
+        probes = tuple(self.probes) if self.probes is not None else default
+        for number, probe in enumerate(probes):
+            instance(f"probes[{number}]", probe, Probe.__args__)
+        return Arrays(system, probes, assemble(system, probes))
+
+    def timing(self, arrays: Arrays) -> Timing:
+        """Return the step and the sampling of a system."""
+        return choose_timing(arrays.flat, self.scheme, self.duration, self.step, self.sample_rate)
+
+    def run(self, arrays: Arrays, start: xr.Dataset | None = None, title: str = "") -> Run:
+        """Return the run of a system, ready to march."""
+        timing = self.timing(arrays)
+        columns = len(arrays.probes) + ENERGIES + COLUMNS * len(arrays.system.contacts)
+        if columns > LARGEST_RECORD / 8 / max(timing.samples, 1):
+            raise ValueError(
+                f"duration must give a record below {LARGEST_RECORD / 1e9:g} GB, got {self.duration!r} s at "
+                f"{1 / timing.interval:.6g} Hz: lower sample_rate"
+            )
+        return Run(arrays.system, arrays.flat, self.scheme, timing, arrays.probes, self.solve, start, title)
 
 
 def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float | None, sample_rate: float) -> Timing:

@@ -43,46 +43,63 @@ def to_dataset(
     Arrays of the contacts have the shapes (contacts, samples), and (samples, contacts, 3) for the status. `raw` are the
     last values of the probes at every step, which the low-pass still needs, shape (steps, probes).
     """
-    run = xr.Dataset(attrs=attributes)
-    run.coords["time"] = ("time", time, {"units": "s", "long_name": "time at the end of the sample interval"})
-    run.coords["contact_status"] = ("contact_status", list(STATUS_WORDS))
-    run.coords["contact"] = ("contact", list(system.contact_names))
-    for variable in CONTACT:
-        run[variable.name] = (("time", "contact"), contact_columns[variable.name].T, _attributes(variable))
-    for variable in ENERGY:
-        run[variable.name] = ("time", energies[variable.name], _attributes(variable))
+    words = {"units": "s", "long_name": "time at the end of the sample interval"}
+    coordinates: dict[str, Any] = {
+        "time": ("time", time, words),
+        "contact_status": ("contact_status", list(STATUS_WORDS)),
+        "contact": ("contact", list(system.contact_names)),
+    }
+    along = ("time", "contact")
+    data: dict[str, Any] = {
+        variable.name: (along, contact_columns[variable.name].T, _attributes(variable)) for variable in CONTACT
+    }
+    data |= {variable.name: ("time", energies[variable.name], _attributes(variable)) for variable in ENERGY}
     flags = {"flag_values": np.arange(3, dtype=np.int8), "flag_meanings": " ".join(STATUS_WORDS)}
     # Of equal shares the later state wins: sliding before sticking before separated.
     dominant = 2 - np.argmax(status_share[..., ::-1], axis=-1)
-    run[STATUS.name] = (("time", "contact"), dominant.astype(np.int8), {**_attributes(STATUS), **flags})
-    run[STATUS_SHARE.name] = (("time", "contact", "contact_status"), status_share, _attributes(STATUS_SHARE))
-    run["jammed_steps"] = run["jammed_steps"].astype(np.int64)
-    _add_friction_state(run, system, contact_columns[FRICTION_STATE.name])
+    data[STATUS.name] = (along, dominant.astype(np.int8), {**_attributes(STATUS), **flags})
+    data[STATUS_SHARE.name] = ((*along, "contact_status"), status_share, _attributes(STATUS_SHARE))
+    jammed = contact_columns["jammed_steps"].T.astype(np.int64)
+    data["jammed_steps"] = (along, jammed, data["jammed_steps"][2])
+    data |= _friction_state(system, contact_columns[FRICTION_STATE.name])
     if len(system.contacts) > 1:
         for variable in SOLVE:
-            run[variable.name] = ("time", energies[variable.name].astype(np.int64), _attributes(variable))
+            data[variable.name] = ("time", energies[variable.name].astype(np.int64), _attributes(variable))
     else:
-        run = run.isel(contact=0, drop=True)
-    _add_probes(run, system, probes, probe_values)
-    for name, dimensions, values, words in (
+        data = {name: _of_the_one_contact(*given) for name, given in data.items()}
+        del coordinates["contact"]
+    for kind, variable in PROBES.items():
+        chosen = [k for k, probe in enumerate(probes) if type(probe).__name__.lower() == kind]
+        if chosen:
+            dimension = f"{kind}_probe"
+            coordinates[dimension] = (dimension, [probe_label(probes[k], system) for k in chosen])
+            data[kind] = (("time", dimension), probe_values[:, chosen], _attributes(variable))
+    for name, dimensions, values, meaning in (
         ("state_modal", ("state_kind", "mode"), state.modal, "modal positions and increments at the end"),
         ("state_remainder", ("state_kind", "mode"), state.remainder, "what they lack in the units of the march"),
         ("state_carried", ("state_contact", "state_scalar"), state.carried, "scalars of each contact at the end"),
         ("state_energies", "state_energy", state.energies, "energies carried by the march at the end"),
         ("state_raw", ("state_step", "state_probe"), raw, "last values of the probes at every step"),
     ):
-        run[name] = (dimensions, values, {"long_name": words})
-    return run
+        data[name] = (dimensions, values, {"long_name": meaning})
+    return xr.Dataset(data, coordinates, attributes)
 
 
-def _add_friction_state(run: xr.Dataset, system: System, values: Array) -> None:
-    """Add the internal state of the laws of friction where one has any, NaN for contacts without."""
+def _of_the_one_contact(dimensions: Any, values: Array, attributes: dict[str, Any]) -> tuple[Any, Array, Any]:
+    """Return a variable without the dimension of the contacts, of which there is one."""
+    if "contact" not in dimensions:
+        return dimensions, values, attributes
+    return tuple(name for name in dimensions if name != "contact"), values[:, 0], attributes
+
+
+def _friction_state(system: System, values: Array) -> dict[str, Any]:
+    """Return the internal state of the laws of friction where one has any, NaN for contacts without."""
     units = [contact.friction.state_units for contact in system.contacts]
-    if any(units):
-        kept = np.where(np.array(units)[:, None] != "", values, np.nan).T
-        used = sorted(set(units) - {""})
-        attributes = {**_attributes(FRICTION_STATE), "units": " or ".join(used)}
-        run[FRICTION_STATE.name] = (("time", "contact"), kept, attributes)
+    if not any(units):
+        return {}
+    kept = np.where(np.array(units)[:, None] != "", values, np.nan).T
+    attributes = {**_attributes(FRICTION_STATE), "units": " or ".join(sorted(set(units) - {""}))}
+    return {FRICTION_STATE.name: (("time", "contact"), kept, attributes)}
 
 
 def _attributes(variable: Variable) -> dict[str, str]:
@@ -91,16 +108,6 @@ def _attributes(variable: Variable) -> dict[str, str]:
         "long_name": variable.long_name,
         "cell_methods": f"time: {variable.cell_methods}",
     }
-
-
-def _add_probes(run: xr.Dataset, system: System, probes: Sequence[Probe], values: Array) -> None:
-    """Add a variable for each kind of probe, with one entry per probe."""
-    for kind, variable in PROBES.items():
-        chosen = [k for k, probe in enumerate(probes) if type(probe).__name__.lower() == kind]
-        if chosen:
-            dimension = f"{kind}_probe"
-            run.coords[dimension] = (dimension, [probe_label(probes[k], system) for k in chosen])
-            run[kind] = (("time", dimension), values[:, chosen], _attributes(variable))
 
 
 def probe_label(probe: Probe, system: System) -> str:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-import threading
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from dataclasses import replace
 from numbers import Real
 from typing import Any
@@ -21,7 +19,7 @@ from ..checks import count, instance, positive, within
 from ..contact import RigidTrack
 from ..drives import Drive, ImposedVelocity, InitialVelocity
 from ..drives import InitialState as State
-from ..integration import Diverged, Progress, simulate
+from ..integration import simulate_many
 from ..system import System
 
 Measure = Callable[[xr.Dataset], float]
@@ -189,39 +187,18 @@ def _push(system: System, velocity: float) -> Drive:
     return InitialVelocity(slider, x=float(x), y=float(y))
 
 
-class _Cancelled(Exception):
-    """A run that was stopped because another one failed."""
-
-
 def _run_all(
     systems: Sequence[System], duration: float, measures: Mapping[str, Measure], options: dict[str, Any], workers: int
 ) -> list[tuple[list[float], str, str]]:
     """Return the values of the measures of each run, how it ended, and its message."""
-    stop = threading.Event()
 
-    def watch(progress: Progress) -> None:
-        if stop.is_set():
-            raise _Cancelled
+    def measured(record: xr.Dataset) -> tuple[list[float], str, str]:
+        ended, message = str(record.attrs["ended"]), str(record.attrs.get("message", ""))
+        if message:
+            return [float("nan")] * len(measures), ended, message
+        return [_number(name, measure(record)) for name, measure in measures.items()], ended, ""
 
-    def one(system: System) -> tuple[list[float], str, str]:
-        try:
-            record = simulate(system, duration, watchers=[watch], **options)
-        except Diverged as error:
-            return [float("nan")] * len(measures), str(error.record.attrs["ended"]), str(error)
-        return [_number(name, measure(record)) for name, measure in measures.items()], str(record.attrs["ended"]), ""
-
-    # The march is compiled and lets other threads run.
-    with ThreadPoolExecutor(min(workers, len(systems))) as pool:
-        futures = [pool.submit(one, system) for system in systems]
-        try:
-            wait(futures, return_when=FIRST_EXCEPTION)
-            for future in futures:
-                if future.done() and future.exception() is not None:
-                    return [future.result()]
-            return [future.result() for future in futures]
-        finally:
-            stop.set()
-            pool.shutdown(wait=False, cancel_futures=True)
+    return simulate_many(systems, duration, measured, workers=workers, **options)
 
 
 def _number(name: str, value: Any) -> float:
