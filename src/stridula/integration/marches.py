@@ -150,14 +150,13 @@ class SimpleMarch:
     def __init__(self, blocks: Sequence[Blocks], states: Sequence[State], step: float, ratio: int) -> None:
         first, self.given = blocks[0], len(blocks)
         self.step, self.ratio = step, ratio
-        # A vector is filled up with copies of the last run.
-        self.runs = 1 if self.given == 1 else LANES
+        self.runs, per_block, width = self._layout()
         blocks = [*blocks, *[blocks[-1]] * (self.runs - self.given)]
         states = [*states, *[states[-1]] * (self.runs - self.given)]
-        self.places = places(first.contacts, self.runs)
+        self.places = places(first.contacts, per_block)
         known = [rows_of(one, state) for one, state in zip(blocks, states, strict=True)]
         rows, self.scales = zip(*known, strict=True)
-        self.rows = pack(self.places, rows)
+        self.rows = pack(self.places, rows, width)
         self.carried = side_by_side([state.carried[0] for state in states])
         self.energies = side_by_side([state.energies for state in states])
         self.law = int(first.contacts.constants[0, at.LAW])
@@ -173,6 +172,13 @@ class SimpleMarch:
             side_by_side([one.probes.contact.reshape(-1) for one in blocks]),
             aligned(self.probe_count, self.runs),
         )
+
+    def _layout(self) -> tuple[int, int, int]:
+        """Return how many runs march, how many modes of each lie in a block, and how wide a block is.
+
+        A vector of runs is filled up with copies of the last.
+        """
+        return (1, LANES, LANES) if self.given == 1 else (LANES, 1, LANES)
 
     def _probe_spans(self) -> Array:
         """Return the first block that each probe sees, and the one after the last."""
@@ -212,7 +218,17 @@ class SimpleMarch:
         steps, runs = samples * self.ratio, self.runs
         imposed = [*imposed, *[imposed[-1]] * (runs - self.given)]
         energies, record, raw, stops = self._room(samples)
-        kernel = march_run if runs == 1 else march_runs
+        self._march(_signals(imposed), _motion(imposed), energies, record, raw, stops)
+        energies, record = energies.reshape(samples, -1, runs), record.reshape(samples, 1, -1, runs)
+        raw = raw.reshape(steps, -1, runs)
+        return [
+            Chunk(energies[..., run], record[..., run], raw[..., run], int(stops[0, run]), int(stops[1, run]))
+            for run in range(self.given)
+        ]
+
+    def _march(self, signals: Array, motion: Array, *outputs: Array) -> None:
+        """March through a chunk and fill `outputs`: energies, record, probes at every step, what became of each run."""
+        kernel = march_run if self.runs == 1 else march_runs
         kernel(
             self.places.blocks,
             self.ratio,
@@ -224,20 +240,11 @@ class SimpleMarch:
             self.carried,
             self.energies,
             self.work_of_loads,
-            _signals(imposed),
-            _motion(imposed),
+            signals,
+            motion,
             self.probes,
-            energies,
-            record,
-            raw,
-            stops,
+            *outputs,
         )
-        energies, record = energies.reshape(samples, -1, runs), record.reshape(samples, 1, -1, runs)
-        raw = raw.reshape(steps, -1, runs)
-        return [
-            Chunk(energies[..., run], record[..., run], raw[..., run], int(stops[0, run]), int(stops[1, run]))
-            for run in range(self.given)
-        ]
 
 
 def _signals(imposed: Sequence[Imposed]) -> Array:

@@ -33,12 +33,11 @@ class Places:
     blocks: tuple[int, int, int]
 
 
-def places(contacts: ContactBlocks, runs: int) -> Places:
-    """Return where the modes lie, for one run or for several side by side."""
+def places(contacts: ContactBlocks, per_block: int) -> Places:
+    """Return where the modes lie, `per_block` of each run in a block."""
     count = contacts.rows.shape[2]
     bending, axial, end = (int(contacts.spans[0, k]) for k in (at.BENDING, at.AXIAL, at.AXIAL_END))
     kinds = (np.r_[0:bending, end:count], np.r_[bending:axial], np.r_[axial:end])
-    per_block = LANES if runs == 1 else 1
     fixed, bends, stretches = (-(-kind.size // per_block) for kind in kinds)
     block, lane = np.empty((2, count), dtype=np.int64)
     for kind, first in zip(kinds, (0, fixed, fixed + bends), strict=True):
@@ -47,13 +46,13 @@ def places(contacts: ContactBlocks, runs: int) -> Places:
     return Places(block, lane, (fixed, bends, stretches))
 
 
-def pack(where: Places, rows: Sequence[Array]) -> Array:
-    """Return rows over modes, shape (rows, modes) for each run, as blocks, shape (blocks, rows, lanes)."""
+def pack(where: Places, rows: Sequence[Array], width: int) -> Array:
+    """Return rows over modes, shape (rows, modes) for each run, as blocks, shape (blocks, rows, width)."""
     blocks, count = sum(where.blocks), len(rows[0])
-    out = aligned(blocks, count * LANES).reshape(blocks, count, LANES)
+    out = aligned(blocks, count * width).reshape(blocks, count, width)
     for run, values in enumerate(rows):
         out[where.block, :, where.lane + run] = values.T
-    out[:, NUMBER] = np.arange(blocks * LANES).reshape(blocks, LANES) + 1.0 - where.blocks[0] * LANES
+    out[:, NUMBER] = np.arange(blocks * width).reshape(blocks, width) + 1.0 - where.blocks[0] * width
     return out
 
 

@@ -1,0 +1,98 @@
+"""Any number of runs of the same kind on a graphics card, one in each thread."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import copy
+from importlib.util import find_spec
+
+from numba.core import config
+
+from ..bodies.modes import Array
+from ..records.state import State
+from .blocks import Blocks
+from .marches import SimpleMarch
+
+# A thread holds some two hundred registers: with more of them in a block, fewer blocks fit a multiprocessor.
+THREADS_PER_BLOCK = 64
+
+
+def require_cuda() -> None:
+    """Raise a RuntimeError that says in a line what is missing, unless there is a GPU, or numba's simulator of one."""
+    missing = "" if config.ENABLE_CUDASIM else _missing()
+    if missing:
+        raise RuntimeError(f'device="cuda" needs {missing}')
+
+
+def _missing() -> str:
+    """Return what is missing, in words; nothing where a GPU can be used."""
+    if find_spec("numba_cuda") is None:
+        return "numba-cuda, which is not installed: pip install stridula[cuda]"
+    from numba import cuda
+
+    if cuda.is_available() and len(cuda.gpus):
+        return ""
+    error = " ".join(str(cuda.cuda_error() or "").split())
+    if "library cannot be found" in error:
+        return "the NVIDIA driver, which was not found"
+    if "NO_DEVICE" in error or not error:
+        return "a GPU: there is a driver and no GPU"
+    return f"CUDA to work: {error}"
+
+
+class CudaMarch(SimpleMarch):
+    """One contact between bodies of uncoupled modes: any number of runs of the same kind, each a thread on a GPU.
+
+    What the march reads and carries stays on the card between chunks.
+    """
+
+    def __init__(
+        self,
+        blocks: Sequence[Blocks],
+        states: Sequence[State],
+        step: float,
+        ratio: int,
+        threads_per_block: int = THREADS_PER_BLOCK,
+    ) -> None:
+        require_cuda()
+        from numba import cuda
+
+        super().__init__(blocks, states, step, ratio)
+        self.cuda, self.threads_per_block = cuda, threads_per_block
+        self.known = [cuda.to_device(array) for array in (self.laws, self.numbers)]
+        self.carried_on = [
+            cuda.to_device(array) for array in (self.rows, self.carried, self.energies, self.work_of_loads)
+        ]
+        self.seen = tuple(cuda.to_device(array) for array in self.probes)
+
+    def _layout(self) -> tuple[int, int]:
+        return 1, self.runs
+
+    @property
+    def states(self) -> list[State]:
+        """Where each run is."""
+        self.rows, self.carried, self.energies = (array.copy_to_host() for array in self.carried_on[:3])
+        return super().states
+
+    def copy(self) -> CudaMarch:
+        """Return another march that is where this one is."""
+        twin = copy(self)
+        twin.carried_on = [self._twin_of(array) for array in self.carried_on]
+        twin.seen = (*self.seen[:-1], self._twin_of(self.seen[-1]))
+        return twin
+
+    def _twin_of(self, array: Array) -> Array:
+        """Return another array on the card with the same values."""
+        twin = self.cuda.device_array_like(array)
+        twin.copy_to_device(array)
+        return twin
+
+    def _march(self, signals: Array, motion: Array, *outputs: Array) -> None:
+        from .._kernels.cuda import march_each
+
+        signals, motion, *filled = (self.cuda.to_device(array) for array in (signals, motion, *outputs))
+        arguments = (self.ratio, self.step, self.law, *self.known, *self.carried_on, signals, motion, self.seen, *filled)
+        grid = -(-self.runs // self.threads_per_block)
+        march_each[grid, self.threads_per_block](self.runs, self.places.blocks, arguments)
+        for array, output in zip(filled, outputs, strict=True):
+            array.copy_to_host(output)

@@ -1,0 +1,137 @@
+"""Runs through the kernel of the graphics card, by numba's simulator of one, against the same runs one by one.
+
+As a program it needs ``NUMBA_ENABLE_CUDASIM=1`` and prints, for each case, the largest difference by kind of number.
+"""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+from physics.cases import dragged, pair, slider, track, transverse
+
+import stridula as st
+from stridula.assembly import assemble
+from stridula.integration.blocks import blocks_of
+from stridula.integration.cuda_march import CudaMarch
+from stridula.integration.marches import SimpleMarch, imposed_on
+from stridula.integration.start import state_at_start
+
+STEP, RATIO = 5e-6, 3
+# Two chunks of samples, of unlike lengths.
+CHUNKS = (7, 4)
+BAR = {"cutoff": 1.5e3}
+ROD = {"cutoff": 4e3}
+
+
+def coulomb_on_a_beam() -> list[st.System]:
+    return [
+        pair(transverse(force), mu, angle, gap=1e-9, rod=slider(angle, **ROD), bar=track(**BAR))
+        for mu, angle, force in ((0.4, 30.0, 5.0), (1.5, 45.0, 20.0), (0.9, -20.0, 9.0))
+    ]
+
+
+def shaken_force() -> list[st.System]:
+    return [
+        pair(transverse(9.0, history=st.Harmonic(f)), 0.8, gap=1e-9, rod=slider(**ROD), bar=track(**BAR))
+        for f in (4e3, 7e3, 9e3)
+    ]
+
+
+def on_a_belt(friction, velocities=(0.02, -0.05, 0.3)) -> list[st.System]:
+    found = []
+    for angle, velocity in zip((20.0, 35.0, -50.0), velocities, strict=True):
+        rod = slider(angle, **ROD)
+        belt = st.RigidTrack(velocity=velocity, history=st.Ramp(1e-4))
+        found.append(
+            st.System(st.PointContact(rod.tip, belt, friction=friction, gap=1e-9), [st.Force(rod.root, y=-30.0)])
+        )
+    return found
+
+
+def off_the_track() -> list[st.System]:
+    """The second run leaves its track, the others go on."""
+    return [
+        pair(dragged(0.5, 5.0), 0.6, gap=1e-9, at=at, rod=slider(**ROD), bar=track(**BAR))
+        for at in (0.2, 0.8 - 2e-5, 0.5)
+    ]
+
+
+CASES = {
+    "coulomb on a beam": coulomb_on_a_beam,
+    "shaken force": shaken_force,
+    "stribeck on a belt": lambda: on_a_belt(st.Stribeck(0.6, 0.35, 0.01)),
+    "lugre on a belt": lambda: on_a_belt(st.LuGre(0.6, 0.4, 0.01, stiffness=1e5, damping=10.0)),
+    "off the track": off_the_track,
+}
+
+
+class Prepared:
+    """A system about to march."""
+
+    def __init__(self, system: st.System) -> None:
+        scheme = st.ExactModal()
+        probes = [st.Acceleration(system.contacts[0].tip, "y")]
+        self.arrays = assemble(system, probes)
+        self.blocks = blocks_of(self.arrays, scheme, STEP)
+        self.state = state_at_start(self.arrays, scheme, STEP, self.blocks, st.GaussSeidel())
+
+    def imposed(self, first: int, samples: int):
+        return imposed_on(self.arrays, first * RATIO, samples * RATIO, STEP)
+
+
+def marched(kind, prepared) -> list[dict[str, np.ndarray]]:
+    """Return, for each run, what it left."""
+    march = kind([one.blocks for one in prepared], [one.state for one in prepared], STEP, RATIO)
+    left, first = [], 0
+    for samples in CHUNKS:
+        left.append(march.advance([one.imposed(first, samples) for one in prepared], samples))
+        first += samples
+        march, before = march.copy(), march
+        # A copy goes on by itself.
+        before.advance([one.imposed(first, 1) for one in prepared], 1)
+    return [summary(chunks, state) for chunks, state in zip(zip(*left, strict=True), march.states, strict=True)]
+
+
+def summary(chunks, state) -> dict[str, np.ndarray]:
+    """Return what a run left, kind by kind, as far as each chunk came."""
+    done = [chunk.completed for chunk in chunks]
+    return {
+        "energies": np.concatenate([chunk.energies[:n] for chunk, n in zip(chunks, done, strict=True)]),
+        "record": np.concatenate([chunk.contacts[:n, 0] for chunk, n in zip(chunks, done, strict=True)]),
+        "probes": np.concatenate([chunk.raw[: n * RATIO] for chunk, n in zip(chunks, done, strict=True)]),
+        "ended": np.array([[*done, *(chunk.ended for chunk in chunks)]], dtype=float),
+        "modal": state.modal.T,
+        "carried": state.carried,
+    }
+
+
+def difference(one, other) -> float:
+    """Return the largest difference of columns, each relative to its largest value."""
+    if one.shape != other.shape:
+        return np.inf
+    scale = np.abs(other).max(axis=0, initial=0.0)
+    return float((np.abs(one - other).max(axis=0, initial=0.0) / np.where(scale > 0.0, scale, 1.0)).max(initial=0.0))
+
+
+def compare(systems) -> dict[str, object]:
+    """Return largest differences kind by kind, from each run by itself and from the run beside it, and what ended."""
+    prepared = [Prepared(system) for system in systems]
+    side_by_side = marched(CudaMarch, prepared)
+    alone = [marched(SimpleMarch, [one])[0] for one in prepared]
+    neighbours = alone[1:] + alone[:1]
+    return {
+        "differences": {
+            kind: max(difference(a[kind], b[kind]) for a, b in zip(side_by_side, alone, strict=True))
+            for kind in alone[0]
+        },
+        "from the neighbour": min(
+            difference(a["energies"], b["energies"]) for a, b in zip(side_by_side, neighbours, strict=True)
+        ),
+        "in contact": [float(one["record"][:, 2].mean()) if len(one["record"]) else 1.0 for one in alone],
+        "ended": [one["ended"][0].tolist() for one in alone],
+    }
+
+
+if __name__ == "__main__":
+    print(json.dumps({name: compare(systems()) for name, systems in CASES.items()}))
