@@ -68,7 +68,7 @@ def test_only_assembly_and_integration_see_the_kernels(path):
 @pytest.mark.parametrize("path", sorted((ROOT / "_kernels").glob("*.py")), ids=lambda path: path.stem)
 def test_kernels_import_only_numpy_numba_and_the_standard_library(path):
     names = imports(path)
-    assert roots(names) <= {"numpy", "numba", "llvmlite", "inspect", "math", "operator", "typing", "stridula"}
+    assert roots(names) <= {"numpy", "numba", "llvmlite", "inspect", "math", "operator", "types", "typing", "stridula"}
     assert all(name.startswith("stridula._kernels") for name in names if name.startswith("stridula"))
 
 

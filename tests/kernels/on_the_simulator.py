@@ -11,6 +11,7 @@ import numpy as np
 from physics.cases import dragged, pair, slider, track, transverse
 
 import stridula as st
+from stridula._kernels import layout as at
 from stridula.assembly import assemble
 from stridula.integration.blocks import blocks_of
 from stridula.integration.cuda_march import CudaMarch
@@ -19,7 +20,7 @@ from stridula.integration.start import state_at_start
 
 STEP, RATIO = 5e-6, 3
 # Two chunks of samples, of unlike lengths.
-CHUNKS = (7, 4)
+CHUNKS = (5, 3)
 BAR = {"cutoff": 1.5e3}
 ROD = {"cutoff": 4e3}
 
@@ -83,13 +84,12 @@ class Prepared:
 def marched(kind, prepared) -> list[dict[str, np.ndarray]]:
     """Return, for each run, what it left."""
     march = kind([one.blocks for one in prepared], [one.state for one in prepared], STEP, RATIO)
+    # What a copy does is its own affair.
+    march.copy().advance([one.imposed(0, 1) for one in prepared], 1)
     left, first = [], 0
     for samples in CHUNKS:
         left.append(march.advance([one.imposed(first, samples) for one in prepared], samples))
         first += samples
-        march, before = march.copy(), march
-        # A copy goes on by itself.
-        before.advance([one.imposed(first, 1) for one in prepared], 1)
     return [summary(chunks, state) for chunks, state in zip(zip(*left, strict=True), march.states, strict=True)]
 
 
@@ -106,30 +106,47 @@ def summary(chunks, state) -> dict[str, np.ndarray]:
     }
 
 
-def difference(one, other) -> float:
-    """Return the largest difference of columns, each relative to its largest value."""
+# Below these lengths [m] and this velocity [m/s] a number that should be zero is round-off.
+LENGTH, VELOCITY = 1e-9, 1e-4
+FLOORS = {
+    "record": {
+        at.CONTACT_POSITION: LENGTH,
+        at.CONTACT_HEIGHT: LENGTH,
+        at.CONTACT_GAP: LENGTH,
+        at.SLIP_VELOCITY: VELOCITY,
+    },
+    "carried": dict.fromkeys((at.MATERIAL, at.ANCHOR, at.ABSCISSA, at.LAST_SLIP), LENGTH),
+}
+
+
+def difference(kind, one, other) -> float:
+    """Return the largest difference of numbers of a kind, relative to the largest; energies to the largest of any."""
     if one.shape != other.shape:
-        return np.inf
+        return float("inf")
     scale = np.abs(other).max(axis=0, initial=0.0)
-    return float((np.abs(one - other).max(axis=0, initial=0.0) / np.where(scale > 0.0, scale, 1.0)).max(initial=0.0))
+    if kind == "energies":
+        scale[:] = scale.max()
+    for column, floor in FLOORS.get(kind, {}).items():
+        scale[column] = max(scale[column], floor)
+    return float((np.abs(one - other) / np.where(scale > 0.0, scale, 1.0)).max(initial=0.0))
 
 
 def compare(systems) -> dict[str, object]:
-    """Return largest differences kind by kind, from each run by itself and from the run beside it, and what ended."""
+    """Return the largest differences kind by kind, the least from the run beside it, and how each run ended."""
     prepared = [Prepared(system) for system in systems]
-    side_by_side = marched(CudaMarch, prepared)
+    together = marched(CudaMarch, prepared)
     alone = [marched(SimpleMarch, [one])[0] for one in prepared]
-    neighbours = alone[1:] + alone[:1]
+    beside = alone[1:] + alone[:1]
     return {
         "differences": {
-            kind: max(difference(a[kind], b[kind]) for a, b in zip(side_by_side, alone, strict=True))
+            kind: max(difference(kind, a[kind], b[kind]) for a, b in zip(together, alone, strict=True))
             for kind in alone[0]
         },
-        "from the neighbour": min(
-            difference(a["energies"], b["energies"]) for a, b in zip(side_by_side, neighbours, strict=True)
+        "beside": min(
+            difference("energies", a["energies"], b["energies"]) for a, b in zip(together, beside, strict=True)
         ),
-        "in contact": [float(one["record"][:, 2].mean()) if len(one["record"]) else 1.0 for one in alone],
-        "ended": [one["ended"][0].tolist() for one in alone],
+        "apart": [float(one["record"][:, at.SEPARATED].mean()) for one in alone],
+        "ended": [int(one["ended"][0, -1]) for one in alone],
     }
 
 

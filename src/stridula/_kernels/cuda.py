@@ -1,39 +1,33 @@
 """The march on a graphics card: the very source of `one_contact`, one run per thread.
 
-Everything is a number there. Functions are not written again: each is compiled for the card with the same code, what it
-calls taken from here.
+Everything is a number there: the plain functions of `lanes` are what they say. Runs side by side lie so in memory, and
+threads read whole lines of it. Double precision; products and sums are fused as the compiler for the card sees fit.
 """
 
 from types import FunctionType
 
 from numba import cuda
 
-from . import lanes
 from .one_contact import steps
 
-
-def fused(a, b, c):
-    """Return ``a b + c``, rounded once."""
-    return cuda.fma(a, b, c)
-
-
-# What the card has of its own.
-_OWN = {lanes.fused: fused}
 _PACKAGE = __name__.rpartition(".")[0]
 
 
 def on_card(function, known=None):
-    """Return a function of this package for the card, and with it all that it calls."""
+    """Return a function of this package compiled for the card, and with it all that it calls, from the same code.
+
+    Numba would take the functions that it compiled for the processor, but not the plain ones under them: it knows
+    vectors in their place.
+    """
     known = {} if known is None else known
     plain = getattr(function, "py_func", function)
     if plain not in known:
-        source = _OWN.get(plain, plain)
-        words = dict(source.__globals__)
-        for name in source.__code__.co_names:
+        words = dict(plain.__globals__)
+        for name in plain.__code__.co_names:
             if _is_ours(words.get(name)):
                 words[name] = on_card(words[name], known)
-        copy = FunctionType(source.__code__, words, source.__name__, source.__defaults__, source.__closure__)
-        known[plain] = cuda.jit(device=True)(copy)
+        twin = FunctionType(plain.__code__, words, plain.__name__, plain.__defaults__, plain.__closure__)
+        known[plain] = cuda.jit(device=True)(twin)
     return known[plain]
 
 

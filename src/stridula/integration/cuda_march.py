@@ -19,7 +19,7 @@ THREADS_PER_BLOCK = 64
 
 def require_cuda() -> None:
     """Raise a RuntimeError that says in a line what is missing, unless there is a GPU, or numba's simulator of one."""
-    missing = "" if config.ENABLE_CUDASIM else _missing()
+    missing = "" if config.ENABLE_CUDASIM else _missing()  # type: ignore[attr-defined]
     if missing:
         raise RuntimeError(f'device="cuda" needs {missing}')
 
@@ -91,7 +91,17 @@ class CudaMarch(SimpleMarch):
         from .._kernels.cuda import march_each
 
         signals, motion, *filled = (self.cuda.to_device(array) for array in (signals, motion, *outputs))
-        arguments = (self.ratio, self.step, self.law, *self.known, *self.carried_on, signals, motion, self.seen, *filled)
+        arguments = (
+            self.ratio,
+            self.step,
+            self.law,
+            *self.known,
+            *self.carried_on,
+            signals,
+            motion,
+            self.seen,
+            *filled,
+        )
         grid = -(-self.runs // self.threads_per_block)
         march_each[grid, self.threads_per_block](self.runs, self.places.blocks, arguments)
         for array, output in zip(filled, outputs, strict=True):
