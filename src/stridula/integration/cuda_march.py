@@ -83,6 +83,8 @@ class CudaMarch(SimpleMarch):
 
     def _twin_of(self, array: Array) -> Array:
         """Return another array on the card with the same values."""
+        if not array.size:
+            return array
         twin = self.cuda.device_array_like(array)
         twin.copy_to_device(array)
         return twin

@@ -1,0 +1,305 @@
+"""Many one-second runs of the squeal case on a GPU: runs per second, against the processor and the card's peak.
+
+    python benchmarks/gpu.py              measure; a line and no more without a GPU
+    python benchmarks/gpu.py --dry-run    compile for compute capability 9.0 without a GPU: registers, local memory
+    python benchmarks/gpu.py --map 1000   also a map of 1000 x 1000 runs, friction by angle
+
+Operations of a step, products and sums by themselves, from `_kernels.mode_rows`. A fixed mode takes 25: its push 3,
+its step 7, work 2 and loss 4, the next position 5, and 2 for each of its two sums. A harmonic takes 28: its row 1, push
+2, step 7, work 2 and loss 4, slope 3, trace 7, softness 2; and 6 for a sine and a cosine, which bending and axial
+harmonics share. What a step does once, some 150, is left out.
+
+It moves 9 doubles for a fixed mode, 12 for a harmonic and 4 for a sine and cosine: a third of an operation a byte. So
+the card's memory, not its arithmetic, is what one run per thread is expected to come up against, at a few per cent of
+the peak in double precision.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from itertools import islice
+from math import radians
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+
+import stridula as st
+from stridula._kernels.vectors import LANES
+from stridula.assembly import assemble
+from stridula.integration.blocks import Blocks, blocks_of
+from stridula.integration.cuda_march import CudaMarch, require_cuda
+from stridula.integration.marches import Imposed, SimpleMarch, imposed_on
+from stridula.integration.start import state_at_start
+from stridula.records.state import State
+from stridula.scenarios import load_scenario
+
+DURATION = 1.0
+SAMPLE_RATE = 100.0
+CHUNK = 10
+SIZES = (1_000, 3_000, 10_000, 30_000, 100_000)
+THREADS = (32, 64, 128, 256)
+RUNS_OF_THE_PROCESSOR = 4 * LANES
+# Runs of a map that are on the card at a time.
+RUNS_AT_A_TIME = 100_000
+# Units of double precision in a multiprocessor, by compute capability (CUDA programming guide, arithmetic throughput).
+UNITS = {(6, 0): 32, (7, 0): 32, (8, 0): 32, (9, 0): 64, (10, 0): 64, (6, 1): 4, (7, 5): 2, (8, 6): 2, (8, 9): 2}
+REGISTERS, WARP, MOST_WARPS = 65_536, 32, 64
+DRY = (9, 0)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A run about to march, and what is imposed on it, the same at every step.
+
+    Attributes
+    ----------
+    blocks : Blocks
+        The system as the march reads it.
+    state : State
+        Where it starts.
+    imposed : Imposed
+        Signals and motion, one row of them.
+    """
+
+    blocks: Blocks
+    state: State
+    imposed: Imposed
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Step [s] of a run, steps a sample, samples.
+
+    Attributes
+    ----------
+    step : float
+        Time step [s].
+    ratio, samples : int
+        Steps a sample, and samples of a run.
+    """
+
+    step: float
+    ratio: int
+    samples: int
+
+
+def squeal(angle: float, friction: float) -> st.System:
+    """Return the shipped squeal case at another angle [rad] and friction."""
+    shipped = load_scenario("squeal").system
+    rod = replace(shipped.slider, angle=angle)
+    contact = replace(shipped.contact, tip=rod.tip, friction=st.Coulomb(friction))
+    return st.System(contact, [st.Force(rod.root, transverse=shipped.drives[0].transverse)])
+
+
+def timing() -> Timing:
+    """Return the timing that the package chooses."""
+    chosen = st.simulate(squeal(radians(45.0), 1.5), 2.0 / SAMPLE_RATE, sample_rate=SAMPLE_RATE, probes=[]).attrs
+    return Timing(chosen["step"], chosen["steps_per_sample"], round(DURATION * SAMPLE_RATE))
+
+
+def cases(frictions: Iterable[float], angles: Iterable[float], step: float) -> Iterator[Case]:
+    """Yield every friction at every angle; a start that is apart does not depend on friction."""
+    scheme, frictions = st.ExactModal(), list(frictions)
+    for angle in angles:
+        arrays = assemble(squeal(angle, 1.0), [])
+        blocks = blocks_of(arrays, scheme, step)
+        state = state_at_start(arrays, scheme, step, blocks, st.GaussSeidel())
+        whole = imposed_on(arrays, 0, 1, step)
+        imposed = Imposed(whole.signals[:1], whole.motion[:1])
+        for friction in frictions:
+            laws = blocks.contacts.laws.copy()
+            laws[0, 0] = friction
+            yield Case(replace(blocks, contacts=replace(blocks.contacts, laws=laws)), state, imposed)
+
+
+def grid(runs: int, step: float) -> Iterator[Case]:
+    """Yield `runs` runs and a few more, friction by angle."""
+    side = int(np.ceil(np.sqrt(runs)))
+    return cases(np.linspace(0.2, 2.0, side), np.radians(np.linspace(20.0, 70.0, side)), step)
+
+
+def first(runs: int, step: float) -> list[Case]:
+    """Return `runs` runs."""
+    return list(islice(grid(runs, step), runs))
+
+
+def batched(some: Iterable[Case], size: int) -> Iterator[list[Case]]:
+    """Yield runs, `size` at a time."""
+    rest = iter(some)
+    while group := list(islice(rest, size)):
+        yield group
+
+
+def march_of(kind, some, at: Timing):
+    """Return the march of some runs."""
+    return kind([one.blocks for one in some], [one.state for one in some], at.step, at.ratio)
+
+
+def go(march, some, samples: int) -> float:
+    """March through some samples and return the seconds that took."""
+    imposed, began = [one.imposed for one in some], time.perf_counter()
+    for done in range(0, samples, CHUNK):
+        march.advance(imposed, min(CHUNK, samples - done))
+    return time.perf_counter() - began
+
+
+def on_the_processor(at: Timing) -> float:
+    """Return one-second runs per second on all cores, eight side by side on each."""
+    cores = os.cpu_count() or 1
+    groups = list(batched(first(RUNS_OF_THE_PROCESSOR * cores, at.step), LANES))
+    marches = [march_of(SimpleMarch, group, at) for group in groups]
+    go(march_of(SimpleMarch, groups[0], at), groups[0], 1)
+    began = time.perf_counter()
+    with ThreadPoolExecutor(cores) as pool:
+        list(pool.map(go, marches, groups, [at.samples] * len(groups)))
+    return len(groups) * LANES / (time.perf_counter() - began)
+
+
+def operations(blocks: Blocks) -> int:
+    """Return the operations of a step, as counted above."""
+    modes = blocks.contacts.rows.shape[2]
+    bending, axial = (int(b - a) for a, b in blocks.contacts.spans[0].reshape(-1, 2)[1:])
+    return 25 * (modes - bending - axial) + 28 * (bending + axial) + 6 * max(bending, axial)
+
+
+def peak(device) -> float:
+    """Return the operations per second of a card in double precision, not a number where its units are not known."""
+    units = UNITS.get(tuple(device.compute_capability), np.nan)
+    return 2.0 * units * device.MULTIPROCESSOR_COUNT * 1e3 * device.CLOCK_RATE
+
+
+def occupancy(registers: int, threads: int) -> float:
+    """Return the share of the warps of a multiprocessor that its registers have room for."""
+    warps = threads // WARP
+    per_warp = -(-registers * WARP // 256) * 256
+    return REGISTERS // (per_warp * warps) * warps / MOST_WARPS
+
+
+def measure(at: Timing) -> None:
+    """Print runs per second over the number of runs and the threads in a block."""
+    from numba import cuda
+
+    from stridula._kernels.cuda import march_each
+
+    device = cuda.get_current_device()
+    name = device.name.decode() if isinstance(device.name, bytes) else device.name
+    print(
+        f"{name}, {device.MULTIPROCESSOR_COUNT} multiprocessors, {peak(device) / 1e12:.3g} Tflop/s in double precision"
+    )
+    processor = on_the_processor(at)
+    print(f"processor, {os.cpu_count()} cores, {LANES} runs side by side: {processor:.4g} runs/s")
+    print(f"{DURATION:g} s a run, {at.step * 1e6:.4g} us a step")
+    print(
+        f"{'runs':>8}{'threads':>9}{'pack s':>9}{'march s':>9}{'runs/s':>9}{'ratio':>8}{'of peak':>9}{'occupied':>10}"
+    )
+    for runs in SIZES:
+        some = first(runs, at.step)
+        began = time.perf_counter()
+        try:
+            march = march_of(CudaMarch, some, at)
+        except cuda.cudadrv.driver.CudaAPIError as error:
+            print(f"{runs:>8}  {error}")
+            break
+        packed = time.perf_counter() - began
+        go(march.copy(), some, 1)
+        (registers,) = march_each.get_regs_per_thread().values()
+        for threads in THREADS:
+            trial = march.copy()
+            trial.threads_per_block = threads
+            seconds = go(trial, some, at.samples)
+            rate = runs / seconds
+            share = rate * operations(some[0].blocks) * at.ratio * at.samples / peak(device)
+            print(
+                f"{runs:>8}{threads:>9}{packed:>9.2f}{seconds:>9.2f}{rate:>9.4g}{rate / processor:>8.3g}"
+                f"{share:>9.2%}{occupancy(registers, threads):>10.1%}"
+            )
+    print(f"{registers} registers a thread, local memory {march_each.get_local_mem_per_thread()}")
+
+
+def map_of(side: int, at: Timing) -> None:
+    """March a map of friction by angle and print its time, all that the processor does for it included."""
+    began, marched = time.perf_counter(), 0.0
+    for some in batched(grid(side * side, at.step), RUNS_AT_A_TIME):
+        marched += go(march_of(CudaMarch, some, at), some, at.samples)
+    whole = time.perf_counter() - began
+    print(f"map of {side * side} runs of {DURATION:g} s: {whole:.4g} s, {marched:.4g} s of them on the card")
+
+
+def dry_run() -> None:
+    """Compile the march for a card that is not there and print what a thread takes."""
+    from numba import cuda, types
+    from numba.cuda import dispatcher
+
+    from stridula._kernels.cuda import march_each
+
+    # Functions called by a kernel are compiled for the card at hand; here there is none.
+    dispatcher.get_current_device = lambda: SimpleNamespace(compute_capability=DRY)
+    number, whole = types.float64, types.int64
+    a, b = types.Array(number, 2, "C"), types.Array(number, 3, "C")
+    probes = types.Tuple((types.Array(whole, 1, "C"), types.Array(whole, 2, "C"), a, a, a))
+    arguments = types.Tuple((whole, number, whole, a, a, b, a, a, a, a, a, probes, a, a, a, a))
+    began = time.perf_counter()
+    kind = types.void(whole, types.UniTuple(whole, 3), arguments)
+    ptx, _ = cuda.compile_ptx(march_each.py_func, kind, cc=DRY)
+    print(f"PTX for compute capability {DRY[0]}.{DRY[1]}: {len(ptx)} characters, {time.perf_counter() - began:.1f} s")
+    assembler = shutil.which("ptxas") or next(
+        (str(found) for folder in sys.path for found in Path(folder).glob("nvidia/*/bin/ptxas")), None
+    )
+    if assembler is None:
+        print("registers are not known: no ptxas (pip install nvidia-cuda-nvcc-cu12)")
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder) / "march.ptx"
+        source.write_text(ptx)
+        print(f"{'at most':>8}{'registers':>11}{'stack B':>9}{'spilled B':>11}   occupied at 64 threads")
+        for most in (255, 168, 128, 96):
+            registers, stack, stored, loaded = _resources(assembler, source, most)
+            room = occupancy(registers, 64)
+            print(f"{most:>8}{registers:>11}{stack:>9}{f'{stored}+{loaded}':>11}   {room:.1%}")
+
+
+def _resources(assembler: str, source: Path, most: int) -> tuple[int, ...]:
+    """Return registers of a thread, bytes of its stack, and of those stored and loaded for want of registers."""
+    target = f"-arch=sm_{DRY[0]}{DRY[1]}"
+    command = [assembler, target, "-v", f"-maxrregcount={most}", str(source), "-o", str(source.with_suffix(".cubin"))]
+    words = subprocess.run(command, check=True, capture_output=True, text=True).stderr
+    found = re.search(
+        r"(\d+) bytes stack frame, (\d+) bytes spill stores, (\d+) bytes spill loads\n.*?Used (\d+)", words
+    )
+    stack, stored, loaded, registers = map(int, found.groups()) if found else (0, 0, 0, 0)
+    return registers, stack, stored, loaded
+
+
+def main() -> None:
+    """Measure, or say why not."""
+    words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    words.add_argument("--dry-run", action="store_true", help="compile without a GPU")
+    words.add_argument("--map", type=int, default=0, metavar="SIDE", help="also a map of SIDE x SIDE runs")
+    chosen = words.parse_args()
+    if chosen.dry_run:
+        dry_run()
+        return
+    try:
+        require_cuda()
+    except RuntimeError as error:
+        print(f"nothing measured: {error}")
+        return
+    at = timing()
+    measure(at)
+    if chosen.map:
+        map_of(chosen.map, at)
+
+
+if __name__ == "__main__":
+    main()
