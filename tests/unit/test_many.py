@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
+import xarray as xr
+from kernels.systems import SYSTEMS
+from physics.cases import CASES, STEP, pair, slider, track, transverse
 
 import stridula as st
-from physics.cases import CASES, STEP
 from stridula.integration import many
 from stridula.integration.simulate import Asked
+from stridula.studies.ensembles import _perturbed
 
 WORDS = {"step": STEP, "sample_rate": 0.1 / STEP}
 
@@ -29,9 +33,126 @@ def squeals(count: int) -> list[st.System]:
 
 
 def assert_like(run: xr.Dataset, alone: xr.Dataset, tolerance: float) -> None:
-    """The same record but for round-off, relative to the largest value of each variable."""
+    """The same record but for round-off, relative to the largest value of the same unit."""
     assert run.attrs["ended"] == alone.attrs["ended"]
     assert run.sizes == alone.sizes
-    for name in alone:
-        scale = float(np.abs(alone[name].values).max(initial=0.0))
-        np.testing.assert_allclose(run[name], alone[name], rtol=0, atol=tolerance * scale, err_msg=name)
+    recorded = [name for name in alone if not str(name).startswith("state_")]
+    scales: dict[str, float] = {}
+    for name in recorded:
+        units, largest = alone[name].attrs["units"], float(np.abs(alone[name].values).max(initial=0.0))
+        scales[units] = max(scales.get(units, 0.0), largest)
+    for name in recorded:
+        atol = tolerance * scales[alone[name].attrs["units"]]
+        np.testing.assert_allclose(run[name], alone[name], rtol=0, atol=atol, err_msg=str(name))
+
+
+def test_runs_side_by_side_are_those_alone():
+    """Eight systems of one kind in one vector, ten in one and two alone: the same but for the order of sums."""
+    systems = squeals(10)
+    together = st.simulate_many(systems, 400 * STEP, workers=1, **WORDS)
+    for run, system in zip(together, systems, strict=True):
+        assert_like(run, st.simulate(system, 400 * STEP, **WORDS), 1e-8)
+
+
+def test_groups_are_of_one_kind_and_full_where_they_can():
+    asked = Asked(0.1, None, STEP, 1e4, None, None)
+    systems = [*squeals(10), CASES["judder"](), *squeals(3)]
+    groups = many._groups([asked.arrays(system) for system in systems])
+    assert groups == [[0, 1, 2, 3, 4, 5, 6, 7], [8, 9, 11, 12, 13], [10]]
+
+
+@pytest.mark.parametrize("name", [name for name, (make, _) in SYSTEMS.items() if len(make().contacts) == 1])
+def test_every_law_side_by_side(name):
+    """Five runs that differ in their gap or start, in a vector of eight."""
+    make, step = SYSTEMS[name]
+    system = make()
+    systems = [_perturbed(system, 1e-3 * n) for n in range(5)]
+    words = {"step": step, "sample_rate": 0.2 / step, "probes": []}
+    for run, one in zip(st.simulate_many(systems, 300 * step, **words), systems, strict=True):
+        assert_like(run, st.simulate(one, 300 * step, **words), 1e-7)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_drive_side_by_side(name):
+    systems = [_perturbed(CASES[name](), 1e-3 * n) for n in range(4)]
+    for run, one in zip(st.simulate_many(systems, 300 * STEP, **WORDS), systems, strict=True):
+        assert_like(run, st.simulate(one, 300 * STEP, **WORDS), 1e-7)
+
+
+def test_a_run_that_ends_leaves_the_others_alone():
+    """Thrown along the track at other speeds: some leave it, one cannot be believed, the rest goes on."""
+    system = CASES["stable"]()
+    rod = system.slider
+    speeds = (0.0, 60.0, 80.0, -40.0, 0.1)
+    systems = [st.System(system.contact, [*system.drives, st.InitialVelocity(rod, x=v)]) for v in speeds]
+    broken = st.System(system.contact, [st.Force(rod.root, transverse=1e300), st.InitialVelocity(rod, x=0.0)])
+    together = st.simulate_many([*systems, broken], 0.02, **WORDS)
+    ended = [run.attrs["ended"] for run in together]
+    assert ended == ["finished", "off the track", "off the track", "off the track", "finished", "not finite"]
+    assert "no longer finite" in together[-1].attrs["message"]
+    assert "message" not in together[0].attrs
+    for run, one in zip(together[:-1], systems, strict=True):
+        assert_like(run, st.simulate(one, 0.02, **WORDS), 1e-6)
+
+
+def test_order_and_number_of_workers_do_not_show():
+    systems = [*squeals(5), CASES["judder"](), *squeals(9)[5:], SYSTEMS["frozen contact"][0]()]
+    first = st.simulate_many(systems, 100 * STEP, workers=1, **WORDS)
+    second = st.simulate_many(systems, 100 * STEP, workers=3, **WORDS)
+    for one, other in zip(first, second, strict=True):
+        xr.testing.assert_identical(one.drop_attrs(), other.drop_attrs())
+
+
+def test_reduce_keeps_what_it_returns():
+    systems = squeals(9)
+    forces = st.simulate_many(systems, 100 * STEP, lambda run: float(run.normal_force.mean()), **WORDS)
+    assert forces == [float(run.normal_force.mean()) for run in st.simulate_many(systems, 100 * STEP, **WORDS)]
+
+
+def test_a_step_left_out_is_the_shortest():
+    systems = [CASES["stable"](), pair(transverse(0.2), 0.5, rod=slider(cutoff=30e3), bar=track(cutoff=30e3))]
+    steps = [st.simulate(system, 1e-4).attrs["step"] for system in systems]
+    assert steps[1] < steps[0]
+    assert [run.attrs["step"] for run in st.simulate_many(systems, 1e-4)] == [steps[1]] * 2
+
+
+def test_progress_is_that_of_all_runs():
+    seen = []
+    st.simulate_many(squeals(9), 0.25, watchers=[seen.append], workers=2, **WORDS)
+    assert seen[-1].time == pytest.approx(9 * 0.25)
+    assert all(one.duration == pytest.approx(9 * 0.25) for one in seen)
+    assert [one.time for one in seen] == sorted(one.time for one in seen)
+
+
+def test_a_failure_ends_all():
+    def fails(run):
+        raise KeyError("no such thing")
+
+    with pytest.raises(KeyError, match="no such thing"):
+        st.simulate_many(squeals(9), 0.1, fails, **WORDS)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"systems": "squeal"}, "systems must be a list of systems"),
+        ({"systems": [1]}, "system must be a System"),
+        ({"reduce": 3}, "reduce must be a function of a record"),
+        ({"workers": 0}, "workers must be"),
+        ({"duration": -1.0}, "duration must be"),
+        ({"device": "gpu"}, "device must be"),
+    ],
+)
+def test_bad_arguments_are_named(change, message):
+    with pytest.raises(ValueError, match=message):
+        st.simulate_many(**({"systems": squeals(1), "duration": 1e-3} | change))
+
+
+def test_no_system_is_no_record():
+    assert st.simulate_many([], 1.0) == []
+
+
+@pytest.mark.skipif(find_spec("numba_cuda") is not None, reason="there may be a GPU")
+def test_without_a_gpu_the_error_says_what_is_missing():
+    with pytest.raises(RuntimeError, match="numba-cuda, which is not installed"):
+        st.simulate_many(squeals(2), 1e-3, device="cuda")

@@ -65,8 +65,8 @@ class CudaMarch(SimpleMarch):
         ]
         self.seen = tuple(cuda.to_device(array) for array in self.probes)
 
-    def _layout(self) -> tuple[int, int]:
-        return 1, self.runs
+    def _layout(self) -> tuple[int, int, int]:
+        return self.given, 1, self.given
 
     @property
     def states(self) -> list[State]:

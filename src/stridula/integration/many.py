@@ -15,6 +15,7 @@ from ..checks import count
 from ..records import Probe
 from ..system import System
 from .contact_solve import GaussSeidel
+from .cuda_march import CudaMarch, require_cuda
 from .marches import March, SimpleMarch, march_of
 from .run import Run
 from .schemes import Scheme
@@ -27,6 +28,9 @@ from .watchers import Progress, Watcher
 MOST_MODES = 160
 # Fewer runs of a kind than these march one by one: a vector costs the same, full or not.
 FEWEST_RUNS = 4
+# Runs at a time on a card: their records go through its memory and ours.
+MOST_ON_A_CARD = 16_384
+DEVICES: dict[str, type[SimpleMarch]] = {"cpu": SimpleMarch, "cuda": CudaMarch}
 
 
 def simulate_many(
@@ -39,6 +43,7 @@ def simulate_many(
     sample_rate: float = 100e3,
     probes: Sequence[Probe] | None = None,
     contact_solve: GaussSeidel | None = None,
+    device: str = "cpu",
     workers: int | None = None,
     watchers: Sequence[Watcher] = (),
 ) -> list[Any]:
@@ -58,6 +63,8 @@ def simulate_many(
         Called with each record as soon as it is there, in a thread; what it returns is kept in its place.
     scheme, step, sample_rate, probes, contact_solve
         As for `simulate`, for all systems. A step that is left out is the shortest of those that they take alone.
+    device : {"cpu", "cuda"}, optional
+        Where runs of the same kind march: on the processors, or all at once on an NVIDIA GPU, one in each thread.
     workers : int, optional
         Runs or groups of them at a time; as many as there are processors if left out.
     watchers : sequence of callable, optional
@@ -73,35 +80,42 @@ def simulate_many(
     ------
     ValueError
         If an argument is out of its range, or a system cannot be simulated with it.
+    RuntimeError
+        If a GPU is asked for and cannot be used; the message says what is missing.
 
     See Also
     --------
     simulate : One system; says what a record holds.
     """
-    if not isinstance(systems, Sequence):
+    if not isinstance(systems, Sequence) or isinstance(systems, str):
         raise ValueError(f"systems must be a list of systems, got {systems!r}")
     if reduce is not None and not callable(reduce):
         raise ValueError(f"reduce must be a function of a record, got {reduce!r}")
     if workers is not None:
         count("workers", workers)
+    if device not in DEVICES:
+        raise ValueError(f"device must be one of {', '.join(DEVICES)}, got {device!r}")
+    if device == "cuda":
+        require_cuda()
     asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve)
     arrays = [asked.arrays(system) for system in systems]
     if step is None:
         asked.step = min((asked.timing(one).step for one in arrays), default=None)
-    together = _Together(asked, arrays, reduce, watchers)
-    together.march_all(_groups(arrays), workers or os.cpu_count() or 1)
+    together = _Together(asked, arrays, reduce, watchers, DEVICES[device])
+    largest = LANES if device == "cpu" else MOST_ON_A_CARD
+    together.march_all(_groups(arrays, largest), workers or os.cpu_count() or 1)
     return [together.results[number] for number in range(len(systems))]
 
 
-def _groups(arrays: Sequence[Arrays]) -> list[list[int]]:
+def _groups(arrays: Sequence[Arrays], largest: int = LANES) -> list[list[int]]:
     """Return the numbers of the systems that march together, the largest groups first."""
     kinds: dict[Hashable, list[int]] = {}
     for number, one in enumerate(arrays):
         kinds.setdefault(_kind(one) or number, []).append(number)
     groups = []
     for numbers in kinds.values():
-        for first in range(0, len(numbers), LANES):
-            group = numbers[first : first + LANES]
+        for first in range(0, len(numbers), largest):
+            group = numbers[first : first + largest]
             groups += [group] if len(group) >= FEWEST_RUNS else [[number] for number in group]
     return sorted(groups, key=len, reverse=True)
 
@@ -130,7 +144,9 @@ class _Together:
         arrays: Sequence[Arrays],
         reduce: Callable[[xr.Dataset], Any] | None,
         watchers: Sequence[Watcher],
+        side_by_side: type[SimpleMarch],
     ) -> None:
+        self.side_by_side = side_by_side
         self.asked, self.arrays, self.reduce, self.watchers = asked, arrays, reduce, watchers
         self.results: dict[int, Any] = {}
         self.stop, self.lock, self.simulated = threading.Event(), threading.Lock(), 0.0
@@ -164,7 +180,8 @@ class _Together:
         timing, first = runs[0].timing, runs[0]
         if len(runs) == 1:
             return march_of(first.blocks, first.state, timing.step, timing.ratio, self.asked.solve)
-        return SimpleMarch([run.blocks for run in runs], [run.state for run in runs], timing.step, timing.ratio)
+        blocks, states = [run.blocks for run in runs], [run.state for run in runs]
+        return self.side_by_side(blocks, states, timing.step, timing.ratio)
 
     def _watch(self, runs: int) -> Watcher:
         """Return what tells the watchers how far all runs are, and stops a group when another one has failed."""

@@ -6,6 +6,7 @@ import time as clock
 from collections.abc import Sequence
 
 from .._kernels.layout import FINISHED
+from .._kernels.vectors import LANES
 from .interrupts import DeferredInterrupt
 from .marches import March
 from .run import Run
@@ -17,7 +18,8 @@ STEPS_PER_CHUNK = 20_000
 def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher] = ()) -> bool:
     """March runs of the same timing to their ends, or to a Ctrl-C between two chunks; return whether there was one."""
     began, timing, done = clock.perf_counter(), runs[0].timing, 0
-    samples_per_chunk = max(1, STEPS_PER_CHUNK // timing.ratio)
+    vectors = -(-len(runs) // LANES)
+    samples_per_chunk = max(1, STEPS_PER_CHUNK // (timing.ratio * vectors))
     with DeferredInterrupt() as interrupt:
         while done < timing.samples and any(run.ended == FINISHED for run in runs) and not interrupt.requested:
             count = min(samples_per_chunk, timing.samples - done)
