@@ -117,10 +117,11 @@ class Run:
         if self.ended != at.FINISHED:
             return
         completed, self.ended = chunk.completed, chunk.ended
-        bad = np.flatnonzero(~np.isfinite(chunk.energies[:completed]).all(axis=1))
+        energies = np.ascontiguousarray(chunk.energies[:completed].T)
+        bad = np.flatnonzero(~np.isfinite(energies).all(axis=0))
         if bad.size:
             completed, self.ended = int(bad[0]), at.NOT_FINITE
-        energies = chunk.energies[:completed].T
+            energies = energies[:, :completed]
         wrong = energy_created(
             energies,
             self.last_energies,
