@@ -1,7 +1,7 @@
 """March a little of every kind of run and print, as JSON, what each compiled function was compiled for and loaded.
 
 A program of its own, `python -m kernels.every_kind`, so that the numba cache is all it begins with. With `first` it
-makes two runs only, with `other type` those and a call for which there is nothing in the cache.
+makes three runs only, with `other type` those and a call for which there is nothing in the cache.
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ from kernels.systems import AGING, BELT, SYSTEMS, WEAK, oscillator, pad_on
 from stridula import _kernels
 
 STEPS = 40
+# Runs that compile everything.
+FIRST = 3
 
 
 def compiled_functions() -> dict[str, Dispatcher]:
@@ -39,10 +41,17 @@ def marched(system: st.System, step: float = STEP, **words):
     return st.simulate(system, STEPS * step, step=step, **{"sample_rate": 1.0 / step, **words})
 
 
+def several(make: Callable[[], st.System], count: int):
+    return st.simulate_many([make() for _ in range(count)], STEPS * STEP, step=STEP, sample_rate=0.2 / STEP, workers=1)
+
+
 def runs() -> Iterator[Callable[[], object]]:
-    """One contact first, several then, everything else after these two."""
+    """One contact first, several then, runs side by side third, everything else after these."""
     yield lambda: marched(CASES["squeal"]())
     yield lambda: marched(pad_on(BELT, [WEAK] * 2), 1e-4)
+    yield lambda: several(CASES["squeal"], 8)
+    for count, make in ((4, CASES["judder"]), (9, CASES["dragged on a ramp"]), (5, lambda: oscillator(AGING))):
+        yield lambda count=count, make=make: several(make, count)
     for make in CASES.values():
         yield lambda make=make: marched(make())
     for make, step in SYSTEMS.values():
@@ -99,7 +108,7 @@ def other_numbers() -> Iterator[Callable[[], object]]:
 
 
 def main(words: str) -> None:
-    for run in islice(runs(), 2 if words else None):
+    for run in islice(runs(), FIRST if words else None):
         run()
     functions = compiled_functions()
     if words == "other type":

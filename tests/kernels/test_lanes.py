@@ -1,0 +1,143 @@
+"""What the functions of `lanes` come to on vectors is what their plain code says of every lane."""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+import pytest
+
+from stridula._kernels import lanes
+from stridula._kernels.lanes import (
+    anywhere,
+    choose,
+    everywhere,
+    fused,
+    lane,
+    load,
+    magnitude,
+    read,
+    spread,
+    store,
+    total,
+    whole,
+    with_lane,
+    write,
+)
+from stridula._kernels.traces import NUMBER, set_harmonics
+from stridula._kernels.vectors import LANES
+
+RANDOM = np.random.default_rng(7)
+A, B, C = RANDOM.normal(size=(3, LANES))
+EDGES = np.array([0.0, -0.0, np.inf, -np.inf, np.nan, 1e-320, -2.5, 3.0])
+
+
+@numba.njit
+def arithmetic(given, out):
+    a, b, c = read(given, 0, 0, spread(0.0)), read(given, 1, 0, spread(0.0)), read(given, 2, 0, spread(0.0))
+    write(out, 0, 0, a + b)
+    write(out, 1, 0, a - 2.0 * b)
+    write(out, 2, 0, 3.0 / a)
+    write(out, 3, 0, -a)
+    write(out, 4, 0, fused(a, b, c))
+    write(out, 5, 0, whole(a))
+    write(out, 6, 0, magnitude(a))
+    write(out, 7, 0, choose(a < b, a, 5.0))
+    write(out, 8, 0, choose(a >= 0.0, choose(b > c, 1.0, 2.0), choose(b <= c, 3.0, 4.0)))
+    a += b
+    a *= c
+    write(out, 9, 0, a)
+
+
+@pytest.mark.parametrize("first", [A, EDGES], ids=["numbers", "edges"])
+def test_arithmetic_lane_by_lane(first):
+    out = np.empty((10, LANES))
+    arithmetic(np.stack([first, B, C]), out)
+    a, b, c = first, B, C
+    with np.errstate(all="ignore"):
+        outer = np.where(a >= 0, np.where(b > c, 1.0, 2.0), np.where(b <= c, 3.0, 4.0))
+        expected = [
+            a + b,
+            a - 2 * b,
+            3 / a,
+            -a,
+            a * b + c,
+            np.floor(a),
+            np.abs(a),
+            np.where(a < b, a, 5.0),
+            outer,
+            (a + b) * c,
+        ]
+    np.testing.assert_allclose(out, expected, rtol=4e-16, atol=1e-16)
+    np.testing.assert_array_equal(np.signbit(out[3]), np.signbit(-a))
+
+
+@numba.njit
+def conditions(given):
+    a = read(given, 0, 0, spread(0.0))
+    return anywhere(a > 0.0), everywhere(a > 0.0), total(a, 0.0), lane(a, 3), lane(with_lane(a, 3, 7.0), 3)
+
+
+@pytest.mark.parametrize("values", [A, np.abs(A), -np.abs(A), EDGES], ids=["mixed", "above", "below", "edges"])
+def test_conditions_and_sums_over_the_lanes(values):
+    some, all_of_them, summed, third, changed = conditions(values[None].copy())
+    with np.errstate(invalid="ignore"):
+        assert (some, all_of_them) == ((values > 0).any(), (values > 0).all())
+        np.testing.assert_allclose(summed, values.sum(), rtol=1e-14)
+    np.testing.assert_equal((third, changed), (values[3], 7.0))
+
+
+def test_as_plain_python_everything_is_a_number():
+    assert lanes.choose(2.0 > 1.0, 3.0, 4.0) == 3.0
+    assert lanes.total(5.0, 0.0) == lanes.spread(5.0) == 5.0
+    assert lanes.whole(-0.5) == -1.0
+    assert not lanes.everywhere(1.0 < 0.0)
+    rows = np.zeros((2, 3, 4))
+    lanes.store(rows, 1, 2, 3, 6.0)
+    assert rows[1, 2, 3] == lanes.load(rows, 1, 2, 3) == 6.0
+
+
+@numba.njit
+def harmonics_of_one_run(theta, count, rows):
+    set_harmonics(theta, count, rows, 0, 0, 0)
+
+
+@numba.njit
+def harmonics_of_eight_runs(thetas, count, rows):
+    set_harmonics(read(thetas, 0, 0, spread(0.0)), count, rows, 0, 0, 0)
+
+
+@numba.njit
+def copied(rows, out):
+    for k in range(rows.shape[0]):
+        store(out, k, 0, 0, load(rows, k, 0, 0))
+
+
+@pytest.mark.parametrize("theta", [1e-9, 1e-3, 0.7, np.pi / 2, 3.0, np.pi - 1e-9])
+def test_harmonics_of_one_run(theta):
+    blocks = 13
+    rows = np.zeros((blocks, NUMBER + 1, LANES))
+    rows[:, NUMBER] = np.arange(1, blocks * LANES + 1).reshape(blocks, LANES)
+    harmonics_of_one_run(theta, blocks, rows)
+    k = np.arange(1, blocks * LANES + 1)
+    np.testing.assert_allclose(rows[:, 0].ravel(), np.sin(k * theta), atol=4e-16 * k.size, rtol=0)
+    np.testing.assert_allclose(rows[:, 1].ravel(), np.cos(k * theta), atol=4e-16 * k.size, rtol=0)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 25, 100])
+def test_harmonics_of_eight_runs(count):
+    thetas = np.linspace(1e-6, np.pi - 1e-6, LANES)[None]
+    rows = np.zeros((count, NUMBER + 1, LANES))
+    harmonics_of_eight_runs(thetas, count, rows)
+    angles = np.arange(1, count + 1)[:, None] * thetas
+    np.testing.assert_allclose(rows[:, 0], np.sin(angles), atol=4e-16 * (count + 1), rtol=0)
+    np.testing.assert_allclose(rows[:, 1], np.cos(angles), atol=4e-16 * (count + 1), rtol=0)
+    # Nothing beyond the blocks asked for, and of a block nothing but the two rows.
+    assert not rows[:, 2:].any()
+
+
+def test_blocks_are_loaded_and_stored_whole():
+    rows = RANDOM.normal(size=(3, 2, LANES))
+    out = np.zeros_like(rows)
+    copied(rows, out)
+    np.testing.assert_array_equal(out[:, 0], rows[:, 0])
+    assert not out[:, 1].any()
