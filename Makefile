@@ -10,7 +10,7 @@ help:
 	@echo "make peers        the same systems in Siconos and here; needs Debian's python3-siconos, skipped without"
 	@echo "make test         lint, types, layers and tests (sets itself up)"
 	@echo "make docs         build the documentation into docs/_build/html, warnings are errors"
-	@echo "make bench        speed and memory, as ratios measured side by side, also against C"
+	@echo "make bench        speed as a table of ratios, each measured in one run: C, Siconos, real time, scaling, start-up; minutes"
 	@echo "make convergence  the tables of docs/convergence.rst and the figures there and in docs/trust.rst, in a quarter of an hour"
 	@echo "make clean        remove .venv and everything built"
 
@@ -45,8 +45,7 @@ docs: .venv/installed-docs
 	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
 
 bench: .venv/installed
-	$(BIN)/python benchmarks/speed_and_memory.py
-	$(BIN)/python benchmarks/limit/against_c.py
+	$(BIN)/python benchmarks/suite.py
 
 convergence: .venv/installed
 	$(BIN)/python examples/papers/laulagnet_2011/convergence.py

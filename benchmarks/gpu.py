@@ -35,18 +35,20 @@ from types import SimpleNamespace
 import numpy as np
 
 import stridula as st
+from ratios import REPEATS, Ratio
 from stridula._kernels.vectors import LANES
 from stridula.assembly import assemble
 from stridula.integration.blocks import Blocks, blocks_of
 from stridula.integration.cuda_march import CudaMarch, require_cuda
 from stridula.integration.marches import Imposed, SimpleMarch, imposed_on
 from stridula.integration.start import state_at_start
-from stridula.records.state import State
-from stridula.scenarios import load_scenario
+from systems import Case, squeal
 
+TITLE = "runs per second on a GPU over those on all cores"
 DURATION = 1.0
 SAMPLE_RATE = 100.0
 CHUNK = 10
+RATIO_RUNS = (1_000, 10_000)
 SIZES = (1_000, 3_000, 10_000, 30_000, 100_000)
 THREADS = (32, 64, 128, 256)
 RUNS_OF_THE_PROCESSOR = 4 * LANES
@@ -56,25 +58,6 @@ RUNS_AT_A_TIME = 100_000
 UNITS = {(6, 0): 32, (7, 0): 32, (8, 0): 32, (9, 0): 64, (10, 0): 64, (6, 1): 4, (7, 5): 2, (8, 6): 2, (8, 9): 2}
 REGISTERS, WARP, MOST_WARPS = 65_536, 32, 64
 DRY = (9, 0)
-
-
-@dataclass(frozen=True)
-class Case:
-    """A run about to march, and what is imposed on it, the same at every step.
-
-    Attributes
-    ----------
-    blocks : Blocks
-        The system as the march reads it.
-    state : State
-        Where it starts.
-    imposed : Imposed
-        Signals and motion, one row of them.
-    """
-
-    blocks: Blocks
-    state: State
-    imposed: Imposed
 
 
 @dataclass(frozen=True)
@@ -92,14 +75,6 @@ class Timing:
     step: float
     ratio: int
     samples: int
-
-
-def squeal(angle: float, friction: float) -> st.System:
-    """Return the shipped squeal case at another angle [rad] and friction."""
-    shipped = load_scenario("squeal").system
-    rod = replace(shipped.slider, angle=angle)
-    contact = replace(shipped.contact, tip=rod.tip, friction=st.Coulomb(friction))
-    return st.System(contact, [st.Force(rod.root, transverse=shipped.drives[0].transverse)])
 
 
 def timing() -> Timing:
@@ -184,6 +159,22 @@ def occupancy(registers: int, threads: int) -> float:
     warps = threads // WARP
     per_warp = -(-registers * WARP // 256) * 256
     return REGISTERS // (per_warp * warps) * warps / MOST_WARPS
+
+
+def rows() -> Iterator[Ratio | str]:
+    """Yield the ratio to the processor, or say why there is none."""
+    try:
+        require_cuda()
+    except RuntimeError as error:
+        yield f"nothing measured: {error}"
+        return
+    at = timing()
+    for runs in RATIO_RUNS:
+        some = first(runs, at.step)
+        march = march_of(CudaMarch, some, at)
+        go(march.copy(), some, 1)
+        values = [runs / go(march.copy(), some, at.samples) / on_the_processor(at) for _ in range(REPEATS)]
+        yield Ratio(f"{runs} squeals of {DURATION:g} s", values)
 
 
 def measure(at: Timing) -> None:

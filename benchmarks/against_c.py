@@ -1,34 +1,34 @@
-"""The march against hand-written C of the same step (step.c), in one run: time per step as a ratio to C's.
+"""The march against hand-written C of the same step (step.c): time per step as a ratio to C's.
 
 One contact on a beam, Coulomb's law, ledger and one probe, for some 30, 100 and 400 modes, separated, sticking and
-sliding. Needs gcc; skipped without. Prints minimum, median and maximum over the repeats; 1.25 is the bar.
+sliding. Needs gcc; skipped without.
 """
 
 from __future__ import annotations
 
 import ctypes
 import shutil
-import statistics
 import subprocess
-import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from copy import deepcopy
 from itertools import count
-from math import radians
 from pathlib import Path
 
 import numpy as np
 
 import stridula as st
+from ratios import Ratio, show
 from stridula._kernels import layout as at
 from stridula.assembly import assemble
 from stridula.integration.blocks import blocks_of
 from stridula.integration.marches import Imposed, SimpleMarch
 from stridula.integration.packing import aligned
 from stridula.integration.start import state_at_start
+from systems import REGIMES, SCHEME, SIZES, beams
 
+TITLE = "time of a step over that of hand-written C"
 SOURCE = Path(__file__).with_name("step.c")
 FLAGS = ("-O3", "-march=native", "-ffast-math", "-shared", "-fPIC")
 REPEATS = 7
@@ -36,21 +36,7 @@ STEPS = 40_000
 RATIO = 10
 LEDGER = [at.DRIVE_WORK, at.CONTACT_WORK, at.FRICTION_LOSS, at.CONVECTION_WORK, at.DAMPING_LOSS]
 BAR = 1.25
-# Elements of the slider, bending and axial modes of the track.
-SIZES = ((4, 10, 6), (19, 25, 17), (80, 100, 60))
-SCHEME = st.ExactModal()
-STEEL, STRIP = st.Material(2.1e11, 7800.0), st.Rectangle(0.020, 0.008)
-
-
-def system(size: tuple[int, int, int], regime: str) -> st.System:
-    """Return a slider on a track that stays in a regime."""
-    elements, bending, axial = size
-    rod = st.FiniteElementBeam(STEEL, STRIP, 0.5, radians(20.0), elements=elements, damping=0.2)
-    track = st.ModalBeam(STEEL, STRIP, 1.3, bending_modes=bending, axial_modes=axial, damping=0.2)
-    choices = {"separated": (0.5, 0.5, 0.0), "sticking": (3.0, 0.0, 0.1), "sliding": (0.1, 0.0, 0.3)}
-    friction, gap, push = choices[regime]
-    contact = st.PointContact(rod.tip, track, at=0.3, friction=st.Coulomb(friction), gap=gap)
-    return st.System(contact, [st.Force(rod.root, y=-1.0, x=push)])
+MODES = (30, 100, 400)
 
 
 class Pair:
@@ -142,25 +128,23 @@ def ratios(pair: Pair) -> tuple[list[float], np.ndarray]:
     return taken, found[-3:]
 
 
-def main() -> None:
-    """Compile the C step, march both and print the ratios."""
+def rows() -> Iterator[Ratio | str]:
+    """Compile the C step, march both and yield the ratios."""
     if shutil.which("gcc") is None:
-        print("SKIPPED: gcc is not installed, so there is no C to compare with")
+        yield "skipped: gcc is not installed, so there is no C to compare with"
         return
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "step.so"
         subprocess.run(["gcc", *FLAGS, "-o", target, SOURCE, "-lm"], check=True)
         compiled = ctypes.CDLL(str(target))
-        print(f"time per step over C's (bar {BAR})      min   median  max")
-        for size in SIZES:
-            for regime in ("separated", "sticking", "sliding"):
-                pair = Pair(system(size, regime), compiled)
+        for modes in MODES:
+            for regime in REGIMES:
+                pair = Pair(beams(SIZES[modes], regime), compiled)
                 taken, states = ratios(pair)
-                if not states[("separated", "sticking", "sliding").index(regime)] > 0.9 * STEPS:
+                if not states[REGIMES.index(regime)] > 0.9 * STEPS:
                     raise SystemExit(f"{regime} must last, got {states} steps separated, sticking, sliding")
-                numbers = f"{min(taken):.2f}  {statistics.median(taken):.2f}    {max(taken):.2f}"
-                print(f"{pair.arrays.mode_count:4d} modes, {regime:<10}                {numbers}")
+                yield Ratio(f"{pair.arrays.mode_count} modes, {regime}", taken, most=BAR)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    show(TITLE, rows())

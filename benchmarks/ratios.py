@@ -1,0 +1,103 @@
+"""Ratios of what is timed in turns in one process, and their table."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+import machine
+
+REPEATS = 5
+HEAD = ("quantity", "bar", "min", "median", "max", "")
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """What a ratio is, its value in each repeat, and its bar: least or most that the median may be.
+
+    Attributes
+    ----------
+    quantity : str
+        What over what.
+    values : list of float
+        One value for each repeat.
+    least, most : float or None
+        The bar, if it has one.
+    """
+
+    quantity: str
+    values: list[float]
+    least: float | None = None
+    most: float | None = None
+
+    @property
+    def misses(self) -> bool:
+        """Whether the median is on the wrong side of the bar."""
+        median = statistics.median(self.values)
+        return (self.least is not None and median < self.least) or (self.most is not None and median > self.most)
+
+    def cells(self) -> tuple[str, ...]:
+        """Return its line of the table."""
+        bar = f">= {self.least:g}" if self.least is not None else f"<= {self.most:g}" if self.most is not None else ""
+        spread = (min(self.values), statistics.median(self.values), max(self.values))
+        return self.quantity, bar, *map(short, spread), "misses" if self.misses else ""
+
+
+# A line that is not a ratio says why there is none.
+Lines = Iterable[Ratio | str]
+
+
+def short(value: float) -> str:
+    """Return three digits or all of an integer."""
+    return f"{value:.0f}" if value >= 100.0 else f"{value:.3g}"
+
+
+def seconds(*sides: Callable[[], object], repeats: int = REPEATS) -> list[list[float]]:
+    """Return the seconds that each side took in each repeat: in turns, after a first round that compiles."""
+    taken: list[list[float]] = [[] for _ in sides]
+    for repeat in range(repeats + 1):
+        for times, side in zip(taken, sides, strict=True):
+            began = time.perf_counter()
+            side()
+            if repeat:
+                times.append(time.perf_counter() - began)
+    return taken
+
+
+def over(above: list[float], below: list[float], factor: float = 1.0) -> list[float]:
+    """Return the ratios of two sides, repeat by repeat."""
+    return [factor * one / other for one, other in zip(above, below, strict=True)]
+
+
+def as_text(title: str, lines: Lines) -> Iterator[str]:
+    """Yield the lines of a section as text, each as soon as it is measured."""
+    yield ""
+    yield laid_out((title, *HEAD[1:]))
+    for line in lines:
+        yield f"  {line}" if isinstance(line, str) else laid_out(line.cells())
+
+
+def laid_out(cells: tuple[str, ...]) -> str:
+    """Return a line of the table on a terminal."""
+    quantity, bar, *numbers, verdict = cells
+    return f"{quantity:<66}{bar:>8}{''.join(f'{number:>9}' for number in numbers)}  {verdict}".rstrip()
+
+
+def as_markdown(title: str, lines: Lines) -> Iterator[str]:
+    """Yield a section as a table in Markdown."""
+    found = list(lines)
+    ratios = [line for line in found if isinstance(line, Ratio)]
+    yield from ("", f"### {title[0].upper()}{title[1:]}", "")
+    if ratios:
+        yield from (f"| {' | '.join(HEAD)} |", "|---|---|---:|---:|---:|---|")
+        yield from (f"| {' | '.join(one.cells())} |" for one in ratios)
+    yield from (f"{line}." for line in found if isinstance(line, str))
+
+
+def show(title: str, lines: Lines) -> None:
+    """Print the machine and one section."""
+    print("\n".join(machine.description()))
+    for line in as_text(title, lines):
+        print(line, flush=True)

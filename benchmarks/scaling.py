@@ -1,0 +1,78 @@
+"""How time grows: with modes, with contacts, with runs, with cores."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+
+import stridula as st
+from ratios import Ratio, over, seconds, show
+from stridula.integration.marches import GeneralMarch, SimpleMarch
+from systems import FEET, SIZES, beams, case_of, limit_of, marching, pad, squeals
+
+TITLE = "scaling"
+SAMPLES, RATIO = 200, 100
+RUNS = 64
+GIVEN = {"duration": 1.0, "sample_rate": 1e3, "probes": ()}
+
+
+def rows() -> Iterator[Ratio]:
+    """Yield every scaling."""
+    yield from modes()
+    yield from contacts()
+    yield from runs()
+    yield from cores()
+
+
+def modes() -> Iterator[Ratio]:
+    """Yield the time of a step over that with some 30 modes; sliding."""
+    first, *others = seconds(*(stepping(beams(size, "sliding")) for size in SIZES.values()))
+    for number, times in zip(list(SIZES)[1:], others, strict=True):
+        yield Ratio(f"time of a step, some {number} modes over 30", over(times, first))
+
+
+def contacts() -> Iterator[Ratio]:
+    """Yield the time of a step over that with one contact, in the march of any number of contacts."""
+    numbers = [2**power for power in range(FEET.bit_length())]
+    first, *others = seconds(*(stepping_generally(pad(number)) for number in numbers))
+    for number, times in zip(numbers[1:], others, strict=True):
+        yield Ratio(f"time of a step, {number} sliding contacts over 1, general march", over(times, first))
+
+
+def stepping(system: st.System) -> Callable[[], object]:
+    """Return what marches a system of one contact."""
+    step = 0.2 * limit_of(system)
+    case = case_of(system, step)
+    return marching(SimpleMarch([case.blocks], [case.state], step, RATIO), [case], SAMPLES)
+
+
+def stepping_generally(system: st.System) -> Callable[[], object]:
+    """Return what marches a system of any number of contacts."""
+    step = 0.2 * limit_of(system)
+    case = case_of(system, step, SAMPLES * RATIO)
+    return marching(GeneralMarch(case.blocks, case.state, step, RATIO, st.GaussSeidel()), [case], SAMPLES)
+
+
+def runs() -> Iterator[Ratio]:
+    """Yield the throughput of runs at once over that of one by `simulate`, with one worker."""
+    systems = squeals(RUNS)
+    numbers = [2**power for power in range(RUNS.bit_length())]
+    many = [lambda number=number: st.simulate_many(systems[:number], workers=1, **GIVEN) for number in numbers]
+    single, *others = seconds(lambda: st.simulate(systems[0], **GIVEN), *many)
+    for number, times in zip(numbers, others, strict=True):
+        yield Ratio(
+            f"throughput of runs at once over one alone, {number} at a time, one worker", over(single, times, number)
+        )
+
+
+def cores() -> Iterator[Ratio]:
+    """Yield the throughput of many runs over that of one worker."""
+    systems, most = squeals(RUNS), os.cpu_count() or 1
+    workers = [1, *sorted({2**power for power in range(1, most.bit_length())} | {most} - {1})]
+    first, *others = seconds(*(lambda n=n: st.simulate_many(systems, workers=n, **GIVEN) for n in workers))
+    for number, times in zip(workers[1:], others, strict=True):
+        yield Ratio(f"throughput, {RUNS} runs, {number} workers over 1", over(first, times))
+
+
+if __name__ == "__main__":
+    show(TITLE, rows())

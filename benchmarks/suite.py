@@ -1,0 +1,70 @@
+"""All benchmarks as one table of ratios, each measured in one run with its sides in turns; `make bench`.
+
+    python benchmarks/suite.py                               print the table
+    python benchmarks/suite.py --write docs/performance.md   also write it there, between its two marks
+
+Each section runs on its own, too: `python benchmarks/scaling.py`. A ratio whose median is on the wrong side of its bar
+is marked; the exit status is 0 all the same, because a machine may be busy.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import against_c
+import gpu
+import machine
+import many_runs
+import peer_speed
+import real_time
+import scaling
+import speed_and_memory
+import startup
+from ratios import as_markdown, as_text
+
+# Memory first: see there.
+SECTIONS = (speed_and_memory, against_c, peer_speed, real_time, many_runs, scaling, startup, gpu)
+BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
+
+
+def measure() -> list[str]:
+    """Print each line as soon as it is measured and return the same in Markdown."""
+    words = machine.description()
+    print("\n".join(words), flush=True)
+    page = [f"- {line}" for line in words]
+    for section in SECTIONS:
+        found = []
+
+        def kept(rows=section.rows, found=found):
+            for row in rows():
+                found.append(row)
+                yield row
+
+        for line in as_text(section.TITLE, kept()):
+            print(line, flush=True)
+        page += as_markdown(section.TITLE, found)
+    return page
+
+
+def write(target: Path, page: list[str]) -> None:
+    """Replace what stands between the marks of a page."""
+    before, _, rest = target.read_text(encoding="utf-8").partition(BEGIN)
+    _, mark, after = rest.partition(END)
+    if not mark:
+        raise SystemExit(f"{target} must have the lines {BEGIN} and {END}")
+    target.write_text("\n".join([f"{before}{BEGIN}", "", *page, "", f"{END}{after}"]), encoding="utf-8")
+
+
+def main() -> None:
+    """Measure, and write if asked to."""
+    words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    words.add_argument("--write", type=Path, metavar="FILE", help="also write the table into this page")
+    chosen = words.parse_args()
+    page = measure()
+    if chosen.write:
+        write(chosen.write, page)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,119 @@
+"""The systems that are timed, and what it takes to march them without a record."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from math import radians
+
+import numpy as np
+
+import stridula as st
+from stridula.assembly import assemble
+from stridula.integration.blocks import Blocks, blocks_of
+from stridula.integration.marches import Imposed, March, imposed_on
+from stridula.integration.start import state_at_start
+from stridula.records.state import State
+from stridula.scenarios import load_scenario
+
+SCHEME = st.ExactModal()
+REGIMES = ("separated", "sticking", "sliding")
+STEEL, STRIP = st.Material(2.1e11, 7800.0), st.Rectangle(0.020, 0.008)
+# Elements of the slider, bending and axial modes of the track, by the modes that come to.
+SIZES = {
+    30: (4, 10, 6),
+    60: (9, 18, 12),
+    100: (19, 25, 17),
+    160: (30, 40, 26),
+    200: (39, 50, 30),
+    400: (80, 100, 60),
+}
+FEET = 8
+
+
+def beams(size: tuple[int, int, int], regime: str) -> st.System:
+    """Return a slider on a track that stays in a regime."""
+    elements, bending, axial = size
+    rod = st.FiniteElementBeam(STEEL, STRIP, 0.5, radians(20.0), elements=elements, damping=0.2)
+    track = st.ModalBeam(STEEL, STRIP, 1.3, bending_modes=bending, axial_modes=axial, damping=0.2)
+    choices = {"separated": (0.5, 0.5, 0.0), "sticking": (3.0, 0.0, 0.1), "sliding": (0.1, 0.0, 0.3)}
+    friction, gap, push = choices[regime]
+    contact = st.PointContact(rod.tip, track, at=0.3, friction=st.Coulomb(friction), gap=gap)
+    return st.System(contact, [st.Force(rod.root, y=-1.0, x=push)])
+
+
+def squeal(angle: float, friction: float) -> st.System:
+    """Return the shipped squeal case at another angle [rad] and friction."""
+    shipped = load_scenario("squeal").system
+    rod = replace(shipped.slider, angle=angle)
+    contact = replace(shipped.contact, tip=rod.tip, friction=st.Coulomb(friction))
+    return st.System(contact, [st.Force(rod.root, transverse=shipped.drives[0].transverse)])
+
+
+def squeals(runs: int) -> list[st.System]:
+    """Return variants of the squeal case, friction by angle."""
+    frictions = np.linspace(0.5, 2.0, 8)
+    angles = np.radians(np.linspace(30.0, 60.0, -(-runs // frictions.size)))
+    return [squeal(angle, friction) for angle in angles for friction in frictions][:runs]
+
+
+def pad(contacts: int) -> st.System:
+    """Return a block on eight springy feet, of which some are pressed on a belt: the same modes, whatever touches."""
+    size = 2 + 2 * FEET
+    stiffness, both = np.zeros((size, size)), np.zeros((2, size))
+    both[:, :2] = np.eye(2)
+    points = {"back": both}
+    for number in range(FEET):
+        own = slice(2 + 2 * number, 4 + 2 * number)
+        stiffness[own, own] = [[4e4, 1e4], [1e4, 9e4]]
+        points[f"foot {number}"] = both.copy()
+        points[f"foot {number}"][:, own] = np.eye(2)
+    mass = np.diag([0.2, 0.2] + [0.02] * (2 * FEET))
+    block = st.ReducedBody(mass, stiffness, points, damping=0.02, translation=both, name="pad")
+    belt = st.RigidTrack(velocity=0.02)
+    feet = [block.at(f"foot {number}") for number in range(contacts)]
+    touching = [
+        st.PointContact(foot, belt, friction=st.Coulomb(0.4), name=f"foot {number}") for number, foot in enumerate(feet)
+    ]
+    held = [st.Spring(block.at("back"), stiffness=5e3)]
+    return st.System(touching, [st.Force(foot, y=-2.0) for foot in feet], held)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A run about to march, and what is imposed on it, the same at every step.
+
+    Attributes
+    ----------
+    blocks : Blocks
+        The system as the march reads it.
+    state : State
+        Where it starts.
+    imposed : Imposed
+        Signals and motion: one row where they do not change and the march takes one.
+    """
+
+    blocks: Blocks
+    state: State
+    imposed: Imposed
+
+
+def limit_of(system: st.System) -> float:
+    """Return the longest step [s] of a system."""
+    arrays = assemble(system, [])
+    return SCHEME.limit(arrays.angular_frequency, arrays.damping)
+
+
+def case_of(system: st.System, step: float, steps: int = 1) -> Case:
+    """Return a system about to march; several steps of what is imposed where the march does not take one row."""
+    arrays = assemble(system, [])
+    blocks = blocks_of(arrays, SCHEME, step)
+    whole = imposed_on(arrays, 0, steps, step)
+    imposed = Imposed(whole.signals, whole.motion[:1]) if steps == 1 else whole
+    return Case(blocks, state_at_start(arrays, SCHEME, step, blocks, st.GaussSeidel()), imposed)
+
+
+def marching(march: March, some: Sequence[Case], samples: int) -> Callable[[], object]:
+    """Return what marches some runs on by a number of samples, from the same state each time it is called."""
+    imposed = [one.imposed for one in some]
+    return lambda: march.copy().advance(imposed, samples)
