@@ -31,6 +31,7 @@ copyright = "the stridula developers, BSD-3-Clause"
 release = version = stridula.__version__
 
 extensions = [
+    "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.mathjax",
