@@ -15,7 +15,7 @@ TITLE = "many runs: throughput over that of single runs in sequence"
 BAR = 3.0
 RUNS = 64
 GIVEN = {"duration": 1.0, "sample_rate": 1e3, "probes": ()}
-SAMPLES, RATIO = 100, 100
+SAMPLES, RATIO = 400, 100
 
 
 def rows() -> Iterator[Ratio]:

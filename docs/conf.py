@@ -41,6 +41,7 @@ templates_path = ["_templates"]
 exclude_patterns = [
     "_build",
     "_generated/*.rst",
+    "_generated/**/*.md",
     "paper-search.rst",
     "convergence-table.rst",
     "step-first-contacts-table.rst",
