@@ -86,8 +86,8 @@ class Assembly:
         Modal positions and velocities at the start.
     probes : list of ProbeRows
         One for each probe.
-    steady : bool
-        Whether nothing that is imposed varies in time.
+    prescribed : Prescribed
+        What decides how signals and motion go in time.
     """
 
     angular_frequency: Array
@@ -101,7 +101,7 @@ class Assembly:
     position: Array
     velocity: Array
     probes: list[ProbeRows]
-    steady: bool
+    prescribed: Prescribed
 
     @property
     def mode_count(self) -> int:
@@ -128,7 +128,7 @@ def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
         size = 0
     # Coupled modes march by matrices; alone they would not.
     angular[:size] = damping[:size] = 0.0
-    loads, signals = _loads(system, layout)
+    loads, signals, histories = _loads(system, layout)
     position, velocity = _start(system, layout)
     return Assembly(
         angular_frequency=angular,
@@ -142,15 +142,43 @@ def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
         position=position,
         velocity=velocity,
         probes=[_probe(probe, layout, loads) for probe in probes],
-        steady=_is_steady(system),
+        prescribed=_prescribed(system, histories),
     )
 
 
-def _is_steady(system: System) -> bool:
-    """Return whether no drive varies in time, and no point of a body or track has a motion imposed."""
-    still = all(not isinstance(contact.track, RigidTrack) or contact.track.is_still for contact in system.contacts)
-    histories = (getattr(drive, "history", Constant()) for drive in system.drives)
-    return still and system.imposed_velocity is None and all(type(history) is Constant for history in histories)
+@dataclass(frozen=True)
+class Prescribed:
+    """What decides how signals and motions go in time: systems that share it have the same.
+
+    Attributes
+    ----------
+    histories : tuple of History
+        Histories of the loads.
+    velocity : tuple of float and History, or None
+        The imposed velocity.
+    contacts : tuple
+        For each contact its frame, whether its tip is held, and its rigid track or whether its track is held.
+    """
+
+    histories: tuple[History, ...]
+    velocity: tuple[float, History] | None
+    contacts: tuple[Any, ...]
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether nothing varies in time."""
+        still = all(not isinstance(track, RigidTrack) or track.is_still for *_, track in self.contacts)
+        return still and self.velocity is None and all(type(history) is Constant for history in self.histories)
+
+
+def _prescribed(system: System, histories: tuple[History, ...]) -> Prescribed:
+    contacts = []
+    for contact in system.contacts:
+        track = contact.track
+        moved = system.is_held(track.body) if isinstance(track, BodyPoint) else isinstance(track, RigidTrack) and track
+        contacts.append((contact.frame.tobytes(), system.is_held(contact.tip.body), moved))
+    imposed = system.imposed_velocity
+    return Prescribed(histories, (imposed.velocity, imposed.history) if imposed else None, tuple(contacts))
 
 
 @dataclass(frozen=True)
@@ -285,8 +313,8 @@ def _factor(history: History) -> Signal:
     return lambda time, step: history.factor(time)
 
 
-def _loads(system: System, layout: _Layout) -> tuple[list[_Load], list[Signal]]:
-    """Return the loads, drives of the same history together, and the signals."""
+def _loads(system: System, layout: _Layout) -> tuple[list[_Load], list[Signal], tuple[History, ...]]:
+    """Return the loads, drives of the same history together, the signals, and the histories."""
     by_history: dict[History, _Load] = {}
 
     def add(history: History, modal: Array, root: Array) -> None:
@@ -325,7 +353,7 @@ def _loads(system: System, layout: _Layout) -> tuple[list[_Load], list[Signal]]:
     if imposed and not isinstance(history, Constant):
         loads.append(_Load(-layout.translation(imposed.point.body)[0], -inertia[:, 0]))
         signals.append(acceleration)
-    return loads, [*signals, displacement, speed, acceleration]
+    return loads, [*signals, displacement, speed, acceleration], tuple(felt)
 
 
 def _inertia(system: System) -> Array:

@@ -8,7 +8,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as some
 
 from kernels.twin import contact_states
-from stridula._kernels import layout
+from stridula._kernels import layout, solves
 from stridula._kernels.contact import solve_contact
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
@@ -153,3 +153,15 @@ def test_harness_rejects_a_wrong_solve():
         _, right_normal, right_tangential = contact_states(gap, slip, w, mu)[0]
         wrong += abs(normal - right_normal) + abs(tangential - right_tangential) > 1e-6
     assert wrong > 150
+
+
+@given(lengths, lengths, turns, flats, frictions)
+@settings(max_examples=400, deadline=None)
+def test_the_solve_without_branches_is_the_same(gap, slip, turn, flat, mu):
+    w = compliance(turn, flat)
+    assume(clear_of_borders(gap, slip, w, mu))
+    arguments = (float(gap), float(slip), w[0, 0], w[0, 1], w[1, 1], float(mu))
+    normal, tangential, status, jammed = coulomb(*arguments)
+    other = solves.coulomb(*arguments)
+    assert other[2:] == (status, jammed)
+    np.testing.assert_allclose(other[:2], (normal, tangential), rtol=1e-6, atol=1e-12 * (abs(normal) + abs(tangential)))

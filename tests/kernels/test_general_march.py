@@ -184,3 +184,11 @@ def test_comparison_tells_the_mean_of_the_state_from_its_last_value(monkeypatch)
     assert disagreements(run, trail) == {}
     monkeypatch.setattr(twin, "ratio_with_state", at_start)
     assert disagreements(run, twin.march(systems.oscillator(systems.BRISTLES), twin.exact, 2e-4, STEPS))
+
+
+def test_one_contact_of_coupled_modes_takes_one_sweep():
+    """It is solved exactly: nothing is left to iterate."""
+    make, step = SYSTEMS["frozen contact"]
+    words = {"step": step, "sample_rate": 1 / step, "probes": []}
+    once = st.simulate(make(), 2000 * step, contact_solve=st.GaussSeidel(sweeps=1), **words)
+    np.testing.assert_array_equal(once.normal_force, st.simulate(make(), 2000 * step, **words).normal_force)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from dataclasses import replace
 from importlib.util import find_spec
 
@@ -156,3 +159,84 @@ def test_no_system_is_no_record():
 def test_without_a_gpu_the_error_says_what_is_missing():
     with pytest.raises(RuntimeError, match="numba-cuda, which is not installed"):
         st.simulate_many(squeals(2), 1e-3, device="cuda")
+
+
+@pytest.mark.parametrize("still_first", [True, False])
+def test_what_varies_in_time_beside_what_does_not(still_first):
+    """Forces that are constant, rise and swing; belts that stand and move: in one vector."""
+    mass = st.PointMass(1.0)
+    histories = (st.Constant(), st.Ramp(1e-3), st.Harmonic(100.0), st.Constant())
+    belts = (0.0, 0.02, 0.03, 0.0)
+    systems = [
+        st.System(
+            st.PointContact(mass.centre, st.RigidTrack(velocity), friction=st.Coulomb(0.3)),
+            [st.Gravity(), st.Force(mass.centre, x=4.0, history=history)],
+        )
+        for history, velocity in zip(histories, belts, strict=True)
+    ][:: 1 if still_first else -1]
+    words = {"step": 1e-4, "sample_rate": 2e3, "probes": [st.Velocity(mass.centre, "x")]}
+    for run, one in zip(st.simulate_many(systems, 0.02, **words), systems, strict=True):
+        assert_like(run, st.simulate(one, 0.02, **words), 1e-9)
+
+
+def test_probes_of_a_run_that_ended_long_before_the_others():
+    """Its last samples are completed from its own last value, not from what the others marched on."""
+    system = CASES["stable"]()
+    speeds = (0.0, 60.0, 0.2, 0.1, 0.3)
+    systems = [st.System(system.contact, [*system.drives, st.InitialVelocity(system.slider, x=v)]) for v in speeds]
+    words = {"step": STEP, "sample_rate": 0.1 / STEP, "probes": [st.Velocity(system.slider.root, "x")]}
+    run = st.simulate_many(systems, 0.25, **words)[1]
+    assert run.attrs["ended"] == "off the track"
+    assert_like(run, st.simulate(systems[1], 0.25, **words), 1e-6)
+
+
+def test_an_interrupt_between_chunks_ends_all():
+    def stop(progress):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        st.simulate_many(squeals(4), 1.0, watchers=[stop], **WORDS)
+
+
+def test_an_error_names_the_system():
+    systems = squeals(3)
+    with pytest.raises(ValueError, match=r"systems\[1\]: probe must be on a body of this system"):
+        st.simulate_many(systems, 1e-3, probes=[st.Displacement(systems[0].slider.tip, "x")])
+    with pytest.raises(ValueError, match=r"systems\[2\]: system must be a System"):
+        st.simulate_many([*systems[:2], 5], 1e-3)
+
+
+def test_a_step_found_for_all_is_not_held_against_one():
+    mass = st.PointMass(1.0)
+    free = st.System(st.PointContact(mass.centre, st.RigidTrack()), [st.Gravity()])
+    first, second = st.simulate_many([free, CASES["stable"]()], 1e-6, sample_rate=2e7)
+    assert first.attrs["step"] == second.attrs["step"] == pytest.approx(5e-8)
+
+
+def test_progress_of_runs_that_end_early_is_complete():
+    system = CASES["stable"]()
+    thrown = st.System(system.contact, [*system.drives, st.InitialVelocity(system.slider, x=80.0)])
+    seen = []
+    st.simulate_many([thrown] * 4, 0.5, watchers=[seen.append], **WORDS)
+    assert seen[-1].time == pytest.approx(seen[-1].duration) == pytest.approx(2.0)
+
+
+PLAIN = """
+import sys
+import numpy as np
+import stridula as st
+from unit.test_many import squeals
+words = {"step": 5e-6, "sample_rate": 1e5}
+alone = [float(st.simulate(one, 6e-5, **words).kinetic_and_elastic[-1]) for one in squeals(2)]
+many = st.simulate_many(squeals(5), 6e-5, lambda run: float(run.kinetic_and_elastic[-1]), **words)
+print(*alone, *many[:2])
+"""
+
+
+def test_plain_python_gives_the_same():
+    """With NUMBA_DISABLE_JIT every function is the plain one: one mode of one run at a time."""
+    environment = os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run([sys.executable, "-c", PLAIN], env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    expected = [float(st.simulate(one, 6e-5, step=STEP, sample_rate=1e5).kinetic_and_elastic[-1]) for one in squeals(2)]
+    np.testing.assert_allclose([float(word) for word in done.stdout.split()], expected * 2, rtol=1e-9)

@@ -96,6 +96,8 @@ def solve_all(gaps, slips, compliance, contacts, laws, carried, step, tolerance,
             change = max(change, abs(normal - forces[i, 0]), abs(tangential - forces[i, 1]))
             largest = max(largest, normal, abs(tangential))
             forces[i, 0], forces[i, 1] = normal, tangential
+        if count == 1:
+            return 1, 0.0
         if change <= ROUND_OFF * largest:
             return sweep + 1, (change / largest if largest > 0.0 else 0.0)
         # The changes of a linear iteration fall by a constant factor, which tells what is still to come.

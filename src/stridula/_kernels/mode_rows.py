@@ -12,17 +12,8 @@ from typing import Any
 
 import numba
 
+from .block_rows import AMPLITUDE, FORCE, KEPT, LOADS, NORMAL, SLOPE, STIFFNESS, TANGENTIAL, D, Q
 from .lanes import fused, load, spread, store, total
-from .traces import NUMBER
-
-# Rows of a block: state, share of an increment kept, stiffness of a step, loads of this step; of a fixed block its rows
-# at the contact, of harmonics their amplitude and that of their derivatives; then sines and cosines at the contact,
-# those of the last step and of this one in turn, and the numbers of the harmonics; then unit loads, then probes.
-Q, D, KEPT, STIFFNESS, FORCE = range(5)
-NORMAL = AMPLITUDE = FORCE + 1
-TANGENTIAL = SLOPE = FORCE + 2
-WAVES = SLOPE + 1
-LOADS = NUMBER + 1
 
 # No rule of arithmetic is relaxed: a step is the same to the last bit wherever it is completed.
 OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "forceinline": True}

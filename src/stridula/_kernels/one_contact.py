@@ -5,15 +5,11 @@ import math
 import numba
 
 from . import layout as at
+from .block_rows import LOADS, NORMAL, WAVES, D, Q
 from .contact import SLIDING, STICKING
 from .friction import set_valued
 from .lanes import anywhere, choose, everywhere, magnitude, read, spread, total, write
 from .mode_rows import (
-    LOADS,
-    NORMAL,
-    WAVES,
-    D,
-    Q,
     pass_fixed,
     pass_harmonics,
     product,
@@ -112,6 +108,22 @@ def steps(
         First column of these runs, and how many columns there are.
     blocks : tuple of int
         Number of blocks of fixed, bending and axial modes.
+    law, laws : int, ndarray of shape (runs, parameters)
+        Code of the law of friction, and its parameters in each run.
+    numbers, carried, energies : ndarray, one column a run
+        Constants of the contact; what it carries from step to step; energies since the start. The last two are updated.
+    rows : ndarray, shape (blocks, rows, lanes)
+        What is known of the modes; the state in them is updated.
+    given : ndarray, shape (loads, runs)
+        Scratch: work of each unit load when its amplitude last changed.
+    signals, motion : ndarray, one row a step, or one
+        Amplitudes of the loads and what else is imposed; motions imposed on the contact, from a step before the first.
+    probes : tuple of ndarray
+        Kinds, spans of blocks, shares of the signals and of the contact forces, values at the last step.
+    energy_record, record, raw : ndarray
+        A row a sample for energies and contact, a row a step for the probes.
+    stops : ndarray, shape (2, runs)
+        What became of each run.
     """
     fixed, bending, axial = blocks
     whole, loads = fixed + bending + axial, given.shape[0]
@@ -196,7 +208,7 @@ def steps(
             if anywhere(gap < 0.0):
                 stuck = magnitude(status - STICKING) < 0.5
                 strayed = choose(stuck, material - anchor, zero)
-                if law == at.COULOMB and everywhere(w_tt > 0.0):
+                if law == at.COULOMB and everywhere(choose(ended > 0.0, 1.0, w_tt) > 0.0):
                     normal, tangential, new_status, jammed = coulomb(gap, slip + strayed, w_nn, w_nt, w_tt, coefficient)
                 else:
                     normal, tangential, new_status, jammed = solve(
@@ -306,3 +318,9 @@ def march_run(blocks, *arguments):
 def march_runs(blocks, *arguments):
     """March `LANES` runs side by side."""
     steps(spread(0.0), 0, LANES, blocks, *arguments)
+
+
+def march_one_by_one(runs, blocks, *arguments):
+    """March runs one after the other in plain Python, where nothing is compiled."""
+    for run in range(runs):
+        steps(0.0, run, runs, blocks, *arguments)

@@ -22,7 +22,10 @@ def next_states(law, laws, run, status, state, velocity, step):
 
 @numba.njit(cache=True, inline="always")
 def coulomb(gap, slip, w_nn, w_nt, w_tt, mu):
-    """Do `solve` under Coulomb's law, with `slip` how far the tip is from where sticking would hold it."""
+    """Do `solve` under Coulomb's law without branches; `slip` is how far the tip is from where sticking would hold it.
+
+    The same as `contact.solve_coulomb`, to which a test holds it.
+    """
     share = 1.0 / (w_nn * w_tt - w_nt * w_nt)
     held = (w_nn * slip - w_nt * gap) * share
     pressed = (w_nt * slip - w_tt * gap) * share

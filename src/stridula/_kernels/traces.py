@@ -5,6 +5,7 @@ import math
 import numba
 from numba.extending import overload
 
+from .block_rows import NUMBER
 from .lanes import fused, lane, load, store, whole
 from .vectors import LANES, VECTOR
 
@@ -45,11 +46,6 @@ def harmonics(theta, count, sines, cosines):
             cosines[filled + k] = c * cosines[k] - s * sines[k]
         s, c = 2.0 * s * c, 1.0 - 2.0 * s * s
         filled *= 2
-
-
-# Rows of the harmonics at a contact among the rows over modes.
-# the rows of sines and cosines are given.
-NUMBER = 11
 
 
 def set_harmonics(theta, count, rows, first, sine, run):

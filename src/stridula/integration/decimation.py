@@ -50,7 +50,7 @@ class Decimator:
         if self.tail is None:
             self.tail = self._pending = np.repeat(raw[:1], self.memory, axis=0)
         if raw.shape[0]:
-            self.last = raw[-1:]
+            self.last = raw[-1:].copy()
         tail = np.concatenate([self.tail, raw])
         self.tail = tail[tail.shape[0] - self.memory :]
         raw, self._skip = raw[self._skip :], max(self._skip - raw.shape[0], 0)

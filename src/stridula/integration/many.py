@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import threading
+import time
 from collections.abc import Callable, Hashable, Sequence
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from typing import Any
 
 import xarray as xr
 
+from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
 from ..checks import count
 from ..records import Probe
@@ -25,7 +27,7 @@ from .together import march_together
 from .watchers import Progress, Watcher
 
 # Modes above which runs side by side leave a processor's first cache, so that one at a time is as fast.
-MOST_MODES = 160
+MOST_MODES = 120
 # Fewer runs of a kind than these march one by one: a vector costs the same, full or not.
 FEWEST_RUNS = 4
 # Runs at a time on a card: their records go through its memory and ours.
@@ -46,12 +48,16 @@ def simulate_many(
     device: str = "cpu",
     workers: int | None = None,
     watchers: Sequence[Watcher] = (),
+    title: str = "",
 ) -> list[Any]:
     """March many systems in time, several at once on each processor.
 
     Runs of the same kind march side by side: of one contact, between bodies of uncoupled modes, with the same numbers
     of modes and loads, the same law of friction and kinds of probes. Coefficients, angles, loads, damping and lengths
     may differ. All others march one by one.
+
+    Side by side, sums over modes have another order than alone: records are the same but for round-off, which chaotic
+    runs amplify. Which runs share a vector does not matter.
 
     Parameters
     ----------
@@ -62,13 +68,16 @@ def simulate_many(
     reduce : callable, optional
         Called with each record as soon as it is there, in a thread; what it returns is kept in its place.
     scheme, step, sample_rate, probes, contact_solve
-        As for `simulate`, for all systems. A step that is left out is the shortest of those that they take alone.
+        As for `simulate`, for all systems. A step that is left out is the shortest of those that they take alone;
+        probes that are given must be on bodies of all systems.
     device : {"cpu", "cuda"}, optional
         Where runs of the same kind march: on the processors, or all at once on an NVIDIA GPU, one in each thread.
     workers : int, optional
         Runs or groups of them at a time; as many as there are processors if left out.
     watchers : sequence of callable, optional
         Called with the `Progress` of all runs, from threads: simulated times are sums over the runs.
+    title : str, optional
+        Title of the records.
 
     Returns
     -------
@@ -93,37 +102,48 @@ def simulate_many(
         raise ValueError(f"reduce must be a function of a record, got {reduce!r}")
     if workers is not None:
         count("workers", workers)
-    if device not in DEVICES:
+    if not isinstance(watchers, Sequence):
+        raise ValueError(f"watchers must be a list of callables, got {watchers!r}")
+    if not isinstance(device, str) or device not in DEVICES:
         raise ValueError(f"device must be one of {', '.join(DEVICES)}, got {device!r}")
     if device == "cuda":
         require_cuda()
     asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve)
-    arrays = [asked.arrays(system) for system in systems]
+    arrays = [_numbered(number, asked.arrays, system) for number, system in enumerate(systems)]
+    steps = [_numbered(number, asked.timing, one).step for number, one in enumerate(arrays)]
     if step is None:
-        asked.step = min((asked.timing(one).step for one in arrays), default=None)
-    together = _Together(asked, arrays, reduce, watchers, DEVICES[device])
-    largest = LANES if device == "cpu" else MOST_ON_A_CARD
-    together.march_all(_groups(arrays, largest), workers or os.cpu_count() or 1)
+        asked.common_step = min(steps, default=None)
+    together = _Together(asked, arrays, reduce, watchers, DEVICES[device], title)
+    together.march_all(_groups(arrays, device), workers or os.cpu_count() or 1)
     return [together.results[number] for number in range(len(systems))]
 
 
-def _groups(arrays: Sequence[Arrays], largest: int = LANES) -> list[list[int]]:
+def _numbered(number: int, function: Callable[[Any], Any], thing: Any) -> Any:
+    """Return what a function makes of a system, whose number an error names."""
+    try:
+        return function(thing)
+    except ValueError as error:
+        raise ValueError(f"systems[{number}]: {error}") from None
+
+
+def _groups(arrays: Sequence[Arrays], device: str = "cpu") -> list[list[int]]:
     """Return the numbers of the systems that march together, the largest groups first."""
+    largest, fewest, most_modes = (LANES, FEWEST_RUNS, MOST_MODES) if device == "cpu" else (MOST_ON_A_CARD, 1, None)
     kinds: dict[Hashable, list[int]] = {}
     for number, one in enumerate(arrays):
-        kinds.setdefault(_kind(one) or number, []).append(number)
+        kinds.setdefault(_kind(one, most_modes) or number, []).append(number)
     groups = []
     for numbers in kinds.values():
         for first in range(0, len(numbers), largest):
             group = numbers[first : first + largest]
-            groups += [group] if len(group) >= FEWEST_RUNS else [[number] for number in group]
+            groups += [group] if len(group) >= fewest else [[number] for number in group]
     return sorted(groups, key=len, reverse=True)
 
 
-def _kind(arrays: Arrays) -> Hashable | None:
+def _kind(arrays: Arrays, most_modes: int | None) -> Hashable | None:
     """Return what runs that march side by side share, None for a run that marches alone."""
     flat = arrays.flat
-    if len(flat.contacts) > 1 or flat.coupled or flat.mode_count > MOST_MODES:
+    if len(flat.contacts) > 1 or flat.coupled or (most_modes and flat.mode_count > most_modes):
         return None
     (one,) = flat.contacts
     law = type(one.contact.friction), getattr(one.contact.friction, "evolution", None)
@@ -145,8 +165,9 @@ class _Together:
         reduce: Callable[[xr.Dataset], Any] | None,
         watchers: Sequence[Watcher],
         side_by_side: type[SimpleMarch],
+        title: str,
     ) -> None:
-        self.side_by_side = side_by_side
+        self.side_by_side, self.title, self.began = side_by_side, title, time.perf_counter()
         self.asked, self.arrays, self.reduce, self.watchers = asked, arrays, reduce, watchers
         self.results: dict[int, Any] = {}
         self.stop, self.lock, self.simulated = threading.Event(), threading.Lock(), 0.0
@@ -168,8 +189,9 @@ class _Together:
 
     def march(self, group: Sequence[int]) -> None:
         """March a group and keep its results."""
-        runs = [self.asked.run(self.arrays[number]) for number in group]
-        march_together(runs, self._march_of(runs), [self._watch(len(runs))])
+        runs = [self.asked.run(self.arrays[number], title=self.title) for number in group]
+        if march_together(runs, self._march_of(runs), [self._watch(runs)]):
+            raise KeyboardInterrupt
         for number, run in zip(group, runs, strict=True):
             record = run.record()
             if run.has_diverged:
@@ -178,12 +200,12 @@ class _Together:
 
     def _march_of(self, runs: Sequence[Run]) -> March:
         timing, first = runs[0].timing, runs[0]
-        if len(runs) == 1:
+        if len(runs) == 1 and (self.side_by_side is SimpleMarch or not first.blocks.is_simple):
             return march_of(first.blocks, first.state, timing.step, timing.ratio, self.asked.solve)
         blocks, states = [run.blocks for run in runs], [run.state for run in runs]
         return self.side_by_side(blocks, states, timing.step, timing.ratio)
 
-    def _watch(self, runs: int) -> Watcher:
+    def _watch(self, runs: Sequence[Run]) -> Watcher:
         """Return what tells the watchers how far all runs are, and stops a group when another one has failed."""
         before = 0.0
 
@@ -191,10 +213,14 @@ class _Together:
             nonlocal before
             if self.stop.is_set():
                 raise _Cancelled
+            # A run that has ended is as far as it will come.
+            over = all(run.ended != FINISHED for run in runs)
+            reached = progress.duration if over else progress.time
             with self.lock:
-                self.simulated += (progress.time - before) * runs
-                before = progress.time
-                whole = Progress(self.simulated, progress.duration * len(self.arrays), progress.wall_time)
+                self.simulated += (reached - before) * len(runs)
+                before = reached
+                seconds = time.perf_counter() - self.began
+                whole = Progress(self.simulated, progress.duration * len(self.arrays), seconds)
                 for one in self.watchers:
                     one(whole)
 

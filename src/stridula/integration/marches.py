@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
-from typing import Protocol
+from functools import partial
+from typing import Any, Protocol
 
 import numpy as np
+from numba.core import config
 
 from .._kernels import layout as at
 from .._kernels.march import march
-from .._kernels.one_contact import march_run, march_runs
+from .._kernels.one_contact import march_one_by_one, march_run, march_runs
 from .._kernels.vectors import LANES
 from ..assembly import Assembly
 from ..bodies.modes import Array
@@ -19,6 +21,9 @@ from ..records.state import State
 from .blocks import Blocks
 from .contact_solve import GaussSeidel
 from .packing import aligned, numbers_of, pack, places, rows_of, side_by_side
+
+# Whether numba has been told to compile nothing.
+PLAIN = bool(config.DISABLE_JIT)  # type: ignore[attr-defined]
 
 
 @dataclass(frozen=True)
@@ -165,10 +170,14 @@ class SimpleMarch:
         self.work_of_loads = aligned(len(first.modes.loads), self.runs)
         self.probe_count = len(first.probes.direct)
         self.room: tuple[Array, ...] = (aligned(0, 0),)
+        # Signals that no load and no probe takes need not be looked at.
+        loads = len(first.modes.loads)
+        taken = np.any([one.probes.direct.any(axis=0) for one in blocks], axis=0)
+        self.heard = [j for j in range(taken.size) if j < loads or taken[j]]
         self.probes = (
             first.probes.kinds,
             self._probe_spans(),
-            side_by_side([one.probes.direct for one in blocks]),
+            side_by_side([one.probes.direct[:, self.heard] for one in blocks]),
             side_by_side([one.probes.contact.reshape(-1) for one in blocks]),
             aligned(self.probe_count, self.runs),
         )
@@ -178,6 +187,8 @@ class SimpleMarch:
 
         A vector of runs is filled up with copies of the last.
         """
+        if PLAIN:
+            return self.given, 1, self.given
         return (1, LANES, LANES) if self.given == 1 else (LANES, 1, LANES)
 
     def _probe_spans(self) -> Array:
@@ -218,7 +229,13 @@ class SimpleMarch:
         steps, runs = samples * self.ratio, self.runs
         imposed = [*imposed, *[imposed[-1]] * (runs - self.given)]
         energies, record, raw, stops = self._room(samples)
-        self._march(_signals(imposed), _motion(imposed), energies, record, raw, stops)
+        signals = _each(lambda one: one.signals[:, self.heard], imposed)
+        motions = _each(lambda one: one.motion[:, 0], imposed)
+        if all((one == one[0]).all() for one in signals):
+            signals = [one[:1] for one in signals]
+        if not any(one.any() for one in motions):
+            motions = [one[:1] for one in motions]
+        self._march(_beside(signals), _beside(motions), energies, record, raw, stops)
         energies, record = energies.reshape(samples, -1, runs), record.reshape(samples, 1, -1, runs)
         raw = raw.reshape(steps, -1, runs)
         return [
@@ -228,7 +245,9 @@ class SimpleMarch:
 
     def _march(self, signals: Array, motion: Array, *outputs: Array) -> None:
         """March through a chunk and fill `outputs`: energies, record, probes at every step, what became of each run."""
-        kernel = march_run if self.runs == 1 else march_runs
+        kernel: Any = march_run if self.runs == 1 else march_runs
+        if PLAIN:
+            kernel = partial(march_one_by_one, self.runs)
         kernel(
             self.places.blocks,
             self.ratio,
@@ -247,15 +266,16 @@ class SimpleMarch:
         )
 
 
-def _signals(imposed: Sequence[Imposed]) -> Array:
-    """Return signals side by side, one row of them where they are constant."""
-    if all((one.signals == one.signals[0]).all() for one in imposed):
-        return side_by_side([one.signals[:1] for one in imposed])
-    return side_by_side([one.signals for one in imposed])
+def _beside(imposed: Sequence[Array]) -> Array:
+    """Return numbers of runs at every step, shape (steps, numbers) for each, side by side."""
+    first, rows = imposed[0], max(map(len, imposed))
+    if any(one is not first for one in imposed):
+        # What does not vary has one row.
+        return side_by_side([np.broadcast_to(one, (rows, one.shape[1])) for one in imposed])
+    return np.ascontiguousarray(first) if len(imposed) == 1 else np.repeat(first, len(imposed), axis=1)
 
 
-def _motion(imposed: Sequence[Imposed]) -> Array:
-    """Return motions side by side, one row of them where nothing moves."""
-    if not any(one.motion.any() for one in imposed):
-        return side_by_side([one.motion[:1, 0] for one in imposed])
-    return side_by_side([one.motion[:, 0] for one in imposed])
+def _each(change: Callable[[Imposed], Array], imposed: Sequence[Imposed]) -> list[Array]:
+    """Return what a function makes of each, made once of one that serves several runs."""
+    made = {id(one): change(one) for one in {id(one): one for one in imposed}.values()}
+    return [made[id(one)] for one in imposed]

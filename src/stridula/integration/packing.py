@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._kernels import layout as at
-from .._kernels.mode_rows import LOADS, WAVES
-from .._kernels.traces import NUMBER
+from .._kernels.block_rows import LOADS, NUMBER, WAVES
 from .._kernels.vectors import LANES
 from ..bodies.modes import Array
 from ..records.state import State

@@ -36,6 +36,8 @@ def state_of(
         and duration.
     """
     instance("start", start, xr.Dataset)
+    if "state_modal" in start and "state_remainder" not in start:
+        start = start.assign(state_remainder=0.0 * start["state_modal"])
     needed = (*(f"state_{name}" for name in STATE), "state_raw")
     if any(name not in start for name in needed):
         raise ValueError(f"start must be a record of simulate with its final state, got variables {list(start)}")

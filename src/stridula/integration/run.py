@@ -94,14 +94,14 @@ class Run:
         return self.ended not in (at.FINISHED, at.OFF_TRACK)
 
     @property
-    def steps_ahead(self) -> int:
+    def samples_ahead(self) -> int:
         """Samples beyond the end that the low-pass of the probes needs."""
         waits = bool(self.probes) and self.filled < self.done and self.ended == at.FINISHED
         return -(-self.decimator.lookahead // self.timing.ratio) if waits else 0
 
     def imposed(self, first_sample: int, samples: int) -> Imposed:
         """Return what is imposed on the steps of some samples."""
-        if self.blocks.is_simple and self.arrays.steady:
+        if self.blocks.is_simple and self.arrays.prescribed.is_steady:
             return self._steady
         ratio = self.timing.ratio
         return imposed_on(self.arrays, self.first_step + first_sample * ratio, samples * ratio, self.timing.step)

@@ -134,7 +134,8 @@ class Asked:
         probes: Sequence[Probe] | None,
         contact_solve: GaussSeidel | None,
     ) -> None:
-        self.duration, self.step, self.sample_rate = duration, step, sample_rate
+        self.duration, self.step, self.sample_rate = positive("duration", duration), step, sample_rate
+        self.common_step: float | None = None
         self.scheme: Scheme = ExactModal() if scheme is None else scheme
         instance("scheme", self.scheme, (CentralDifference, ExactModal))
         if probes is not None and not isinstance(probes, Sequence):
@@ -154,6 +155,8 @@ class Asked:
 
     def timing(self, arrays: Arrays) -> Timing:
         """Return the step and the sampling of a system."""
+        if self.common_step is not None:
+            return _sampled(self.common_step, round(1.0 / (self.sample_rate * self.common_step)), self.duration)
         return choose_timing(arrays.flat, self.scheme, self.duration, self.step, self.sample_rate)
 
     def run(self, arrays: Arrays, start: xr.Dataset | None = None, title: str = "") -> Run:
@@ -192,6 +195,10 @@ def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float
             f"sample_rate must be at least {1.0 / (LARGEST_RATIO * step):.3g} Hz at a step of {step:.3g} s, "
             f"got {sample_rate!r}"
         )
+    return _sampled(step, ratio, duration)
+
+
+def _sampled(step: float, ratio: int, duration: float) -> Timing:
     interval = step * ratio
     if duration < 0.5 * interval:
         raise ValueError(f"duration must be at least half a sample interval of {interval:.6g} s, got {duration!r}")

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 
 from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
 from .interrupts import DeferredInterrupt
-from .marches import March
+from .marches import Imposed, March
 from .run import Run
 from .watchers import Progress, Watcher
 
@@ -23,7 +23,7 @@ def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher
     with DeferredInterrupt() as interrupt:
         while done < timing.samples and any(run.ended == FINISHED for run in runs) and not interrupt.requested:
             count = min(samples_per_chunk, timing.samples - done)
-            chunks = march.advance([run.imposed(done, count) for run in runs], count)
+            chunks = march.advance(_imposed(runs, done, count), count)
             for run, chunk in zip(runs, chunks, strict=True):
                 run.take(chunk)
             done += count
@@ -34,9 +34,19 @@ def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher
                     watch(progress)
             except KeyboardInterrupt:
                 interrupt.requested = True
-        ahead = max(run.steps_ahead for run in runs)
-        beyond = march.copy().advance([run.imposed(done, ahead) for run in runs], ahead) if ahead else None
+        ahead = max(run.samples_ahead for run in runs)
+        beyond = march.copy().advance(_imposed(runs, done, ahead), ahead) if ahead else None
     for number, (run, state) in enumerate(zip(runs, march.states, strict=True)):
-        run.finish(state, beyond[number] if beyond and run.steps_ahead else None)
+        run.finish(state, beyond[number] if beyond and run.samples_ahead else None)
         run.wall_time = (clock.perf_counter() - began) / len(runs)
     return interrupt.requested
+
+
+def _imposed(runs: Sequence[Run], first_sample: int, samples: int) -> list[Imposed]:
+    """Return what is imposed on each run, one and the same for runs that share it."""
+    found: dict[tuple[Hashable, int], Imposed] = {}
+    for run in runs:
+        key = run.arrays.prescribed, run.first_step
+        if key not in found:
+            found[key] = run.imposed(first_sample, samples)
+    return [found[run.arrays.prescribed, run.first_step] for run in runs]

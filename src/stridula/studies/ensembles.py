@@ -65,7 +65,7 @@ def ensemble(
     workers : int, optional
         Runs at a time; as many as there are processors if left out.
     **options
-        Arguments of `simulate` such as `scheme`, `step`, `sample_rate` and `probes`.
+        Arguments of `simulate_many` such as `scheme`, `step`, `sample_rate`, `probes` and `device`.
 
     Returns
     -------
@@ -88,7 +88,7 @@ def ensemble(
     count("seed", seed, low=0)
     if workers is not None:
         count("workers", workers)
-    for word in ("start", "watchers"):
+    for word in ("start", "watchers", "reduce"):
         if word in options:
             raise ValueError(f"{word} must be left out of an ensemble, which sets its own, got {options[word]!r}")
     shares = np.random.default_rng(seed).uniform(-perturbation, perturbation, runs)
