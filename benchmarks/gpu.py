@@ -90,7 +90,7 @@ def cases(frictions: Iterable[float], angles: Iterable[float], step: float) -> I
         arrays = assemble(squeal(angle, 1.0), [])
         blocks = blocks_of(arrays, scheme, step)
         state = state_at_start(arrays, scheme, step, blocks, st.GaussSeidel())
-        whole = imposed_on(arrays, 0, 1, step)
+        whole = imposed_on(arrays, blocks.heard, 0, 1, step)
         imposed = Imposed(whole.signals[:1], whole.motion[:1])
         for friction in frictions:
             laws = blocks.contacts.laws.copy()

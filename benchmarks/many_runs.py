@@ -26,8 +26,8 @@ def rows() -> Iterator[Ratio]:
         lambda: st.simulate_many(systems, workers=1, **GIVEN),
         lambda: st.simulate_many(systems, workers=cores, **GIVEN),
     )
-    yield Ratio(f"{RUNS} squeals of 1 s, one worker", over(sequence, one), least=BAR)
-    yield Ratio(f"{RUNS} squeals of 1 s, {cores} workers", over(sequence, all_cores))
+    yield Ratio(f"{RUNS} squeals of 1 s, one worker: lanes alone", over(sequence, one))
+    yield Ratio(f"{RUNS} squeals of 1 s, {cores} workers: lanes and threads", over(sequence, all_cores), least=BAR)
     for modes in SIZES:
         yield Ratio(f"march alone, {LANES} runs of some {modes} modes", of_the_march(modes))
 

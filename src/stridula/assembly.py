@@ -287,11 +287,13 @@ def _motion(system: System, imposed: Signal) -> Signal:
         for number, contact in enumerate(system.contacts):
             (normal_x, _), (tangent_x, _) = contact.frame
             if system.is_held(contact.tip.body):
-                values[:, number, 0] += tangent_x * imposed(time, step)
-                values[:, number, 2] += normal_x * imposed(time, step)
+                moved = imposed(time, step)
+                values[:, number, 0] += tangent_x * moved
+                values[:, number, 2] += normal_x * moved
             if isinstance(contact.track, BodyPoint) and system.is_held(contact.track.body):
-                values[:, number, 1] += tangent_x * imposed(time, step)
-                values[:, number, 2] -= normal_x * imposed(time, step)
+                moved = imposed(time, step)
+                values[:, number, 1] += tangent_x * moved
+                values[:, number, 2] -= normal_x * moved
             if isinstance(contact.track, RigidTrack):
                 track = contact.track
                 values[:, number, 1] += track.velocity * track.history.integral(time)

@@ -79,7 +79,7 @@ class Prepared:
         self.state = state_at_start(self.arrays, scheme, STEP, self.blocks, st.GaussSeidel())
 
     def imposed(self, first: int, samples: int):
-        return imposed_on(self.arrays, first * RATIO, samples * RATIO, STEP)
+        return imposed_on(self.arrays, self.blocks.heard, first * RATIO, samples * RATIO, STEP)
 
 
 def marched(kind, prepared) -> list[dict[str, np.ndarray]]:

@@ -237,6 +237,12 @@ class Blocks:
         """Whether there is one contact, between bodies of uncoupled modes."""
         return len(self.contacts.constants) == 1 and not self.modes.matrices.size
 
+    @property
+    def heard(self) -> tuple[int, ...]:
+        """Signals that a load or a probe takes; the others need not be known."""
+        taken = np.flatnonzero(self.probes.direct.any(axis=0))
+        return tuple(sorted({*range(len(self.modes.loads)), *(int(j) for j in taken)}))
+
 
 def blocks_of(arrays: Assembly, scheme: Scheme, step: float) -> Blocks:
     """Return a system under a scheme as the march reads it."""

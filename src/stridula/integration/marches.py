@@ -42,10 +42,12 @@ class Imposed:
     motion: Array
 
 
-def imposed_on(arrays: Assembly, first: int, steps: int, step: float) -> Imposed:
-    """Return what is imposed on `steps` steps from number `first` on."""
+def imposed_on(arrays: Assembly, heard: Sequence[int], first: int, steps: int, step: float) -> Imposed:
+    """Return what is imposed on `steps` steps from number `first` on; signals that are not heard are left zero."""
     times = np.arange(first - 1, first + steps + 1) * step
-    signals = np.stack([signal(times[1:-1], step) for signal in arrays.signals], axis=1)
+    signals = np.zeros((steps, len(arrays.signals)))
+    for j in heard:
+        signals[:, j] = arrays.signals[j](times[1:-1], step)
     return Imposed(signals, arrays.motion(times, step))
 
 
@@ -170,10 +172,7 @@ class SimpleMarch:
         self.work_of_loads = aligned(len(first.modes.loads), self.runs)
         self.probe_count = len(first.probes.direct)
         self.room: tuple[Array, ...] = (aligned(0, 0),)
-        # Signals that no load and no probe takes need not be looked at.
-        loads = len(first.modes.loads)
-        taken = np.any([one.probes.direct.any(axis=0) for one in blocks], axis=0)
-        self.heard = [j for j in range(taken.size) if j < loads or taken[j]]
+        self.heard = sorted({j for one in blocks for j in one.heard})
         self.probes = (
             first.probes.kinds,
             self._probe_spans(),

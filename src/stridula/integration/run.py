@@ -101,15 +101,21 @@ class Run:
 
     def imposed(self, first_sample: int, samples: int) -> Imposed:
         """Return what is imposed on the steps of some samples."""
-        if self.blocks.is_simple and self.arrays.prescribed.is_steady:
+        if self.is_steady:
             return self._steady
         ratio = self.timing.ratio
-        return imposed_on(self.arrays, self.first_step + first_sample * ratio, samples * ratio, self.timing.step)
+        first, step = self.first_step + first_sample * ratio, self.timing.step
+        return imposed_on(self.arrays, self.blocks.heard, first, samples * ratio, step)
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether what is imposed is the same at every step, and the march takes it once."""
+        return self.blocks.is_simple and self.arrays.prescribed.is_steady
 
     @cached_property
     def _steady(self) -> Imposed:
         """What is imposed on every step, in one row."""
-        imposed = imposed_on(self.arrays, self.first_step, 1, self.timing.step)
+        imposed = imposed_on(self.arrays, self.blocks.heard, self.first_step, 1, self.timing.step)
         return Imposed(imposed.signals, imposed.motion[:1])
 
     def take(self, chunk: Chunk) -> None:

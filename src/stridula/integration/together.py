@@ -12,7 +12,7 @@ from .marches import Imposed, March
 from .run import Run
 from .watchers import Progress, Watcher
 
-STEPS_PER_CHUNK = 20_000
+STEPS_PER_CHUNK, SAMPLES_PER_CHUNK = 20_000, 1000
 
 
 def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher] = ()) -> bool:
@@ -20,6 +20,11 @@ def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher
     began, timing, done = clock.perf_counter(), runs[0].timing, 0
     vectors = -(-len(runs) // LANES)
     samples_per_chunk = max(1, STEPS_PER_CHUNK // (timing.ratio * vectors))
+    if all(run.is_steady and not run.probes for run in runs):
+        # Nothing has a row for each step: chunks may be longer.
+        samples_per_chunk = max(
+            samples_per_chunk, min(SAMPLES_PER_CHUNK // vectors, 10 * STEPS_PER_CHUNK // timing.ratio)
+        )
     with DeferredInterrupt() as interrupt:
         while done < timing.samples and any(run.ended == FINISHED for run in runs) and not interrupt.requested:
             count = min(samples_per_chunk, timing.samples - done)
@@ -44,9 +49,9 @@ def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher
 
 def _imposed(runs: Sequence[Run], first_sample: int, samples: int) -> list[Imposed]:
     """Return what is imposed on each run, one and the same for runs that share it."""
-    found: dict[tuple[Hashable, int], Imposed] = {}
-    for run in runs:
-        key = run.arrays.prescribed, run.first_step
+    keys: list[Hashable] = [(run.arrays.prescribed, run.blocks.heard, run.first_step) for run in runs]
+    found: dict[Hashable, Imposed] = {}
+    for run, key in zip(runs, keys, strict=True):
         if key not in found:
             found[key] = run.imposed(first_sample, samples)
-    return [found[run.arrays.prescribed, run.first_step] for run in runs]
+    return [found[key] for key in keys]
