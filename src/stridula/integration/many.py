@@ -67,9 +67,16 @@ def simulate_many(
         Time to simulate [s].
     reduce : callable, optional
         Called with each record as soon as it is there, in a thread; what it returns is kept in its place.
-    scheme, step, sample_rate, probes, contact_solve
-        As for `simulate`, for all systems. A step that is left out is the shortest of those that they take alone;
-        probes that are given must be on bodies of all systems.
+    scheme : CentralDifference or ExactModal, optional
+        Time scheme, the exact modal one if left out.
+    step : float, optional
+        Time step [s]; if left out, the shortest of those that the systems take alone.
+    sample_rate : float, optional
+        Samples per second to record [Hz].
+    probes : sequence of Displacement, Velocity, Acceleration or Reaction, optional
+        What else to record, on bodies of all systems; as for `simulate` if left out.
+    contact_solve : GaussSeidel, optional
+        How several contacts are solved together.
     device : {"cpu", "cuda"}, optional
         Where runs of the same kind march: on the processors, or all at once on an NVIDIA GPU, one in each thread.
     workers : int, optional
