@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 
 from hypothesis import settings
@@ -21,3 +22,8 @@ def pytest_configure(config):
         for compiled in (kernels / "__pycache__").glob("*.nb[ic]"):
             if compiled.stat().st_mtime < newest:
                 compiled.unlink()
+
+
+# A runner in the background starts with Ctrl-C ignored: tests of Ctrl-C need Python's own handler.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
