@@ -28,7 +28,7 @@ PLAIN = bool(config.DISABLE_JIT)  # type: ignore[attr-defined]
 
 @dataclass(frozen=True)
 class Imposed:
-    """What is imposed on a chunk of steps.
+    """What is imposed on a chunk of steps; one row of each serves the march of one contact where nothing varies.
 
     Attributes
     ----------
