@@ -42,9 +42,9 @@ def sliding_stability(
 
     so that, with ``Z = null(G)`` and ``Y = null(G - s mu T)``, exponents are those of ``(Y'Z, Y'DZ, Y'KZ)``, which is
     not symmetric: two modes can lock in and one of them grow. A sticking contact also holds ``T q = 0``; a separated
-    one nothing. Friction that depends on the slip speed adds the normal force times its slope to D; laws with an internal
-    state add that. A load adds what the deflected track does to a contact point that shifts along it. The place of the
-    contact point, which travels, is taken as it is at the start.
+    one nothing. Friction that depends on the slip speed adds the normal force times its slope to D; laws with an
+    internal state add that. A load adds what the deflected track does to a contact point that shifts along it. The
+    place of the contact point, which travels, is taken as it is at the start.
 
     Parameters
     ----------
@@ -72,6 +72,7 @@ def sliding_stability(
         ``attrs["equilibrium"]`` is ``sliding``; ``held``: friction holds a contact for good; ``lifted off``; or
         ``jammed``: it neither slides on nor opens, and there are no modes unless `status` is given. With `status` it
         says what would come of that instead.
+        ``attrs["round_off"]`` is the growth [1/s] up to which a mode does not count as unstable.
 
     Raises
     ------
@@ -212,7 +213,7 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents, v
         coordinates["contact"] = list(system.contact_names)
     for name, units, meaning, numbers in _contacts(structure, equilibrium, velocity):
         data[name] = ("contact" if several else (), numbers if several else numbers[0], _words(units, meaning))
-    return xr.Dataset(data, coordinates, {"equilibrium": equilibrium.kind})
+    return xr.Dataset(data, coordinates, {"equilibrium": equilibrium.kind, "round_off": _round_off(structure)})
 
 
 def _contacts(structure: Structure, at: Equilibrium, velocity: float | None) -> list[tuple[str, str, str, Array]]:
