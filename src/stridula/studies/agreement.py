@@ -43,7 +43,7 @@ def agreement(found: xr.Dataset) -> xr.Dataset:
     for name in ("regime", "unstable_modes", "equilibrium"):
         if name not in found:
             raise ValueError(
-                f"found must have {name}, which the measure regime gives, got {', '.join(found.data_vars)}"
+                f"found must have {name}, which the measure regime gives, got {', '.join(map(str, found.data_vars))}"
             )
     regime = found["regime"].values.ravel()
     grows = np.nan_to_num(found["unstable_modes"].values.ravel()) > 0

@@ -231,7 +231,7 @@ def _followed(steps: Sequence[Array]) -> Array:
         before = rows[-2][: last.size] if len(rows) > 1 else last
         lead = np.where(np.isnan(before), last, 2.0 * last - before)
         row = np.full(last.size, complex(np.nan, np.nan))
-        there = np.flatnonzero(~np.isnan(lead))
+        there = np.flatnonzero(np.logical_not(np.isnan(lead)))
         taken, chosen = linear_sum_assignment(np.abs(lead[there, None] - step[None, :]))
         row[there[taken]] = step[chosen]
         new = np.delete(step, chosen)
