@@ -176,7 +176,7 @@ def critical_values(loci: xr.Dataset, find: Callable[[float, float], xr.Dataset]
     key = parameter_of(loci)
     grows = loci["unstable"].values.any(axis=1)
     grid = loci[key].values
-    return [find(float(grid[k]), float(grid[k + 1])) for k in np.flatnonzero(grows[1:] != grows[:-1])]
+    return [find(float(grid[k]), float(grid[k + 1])) for k in np.flatnonzero(np.diff(grows))]
 
 
 def parameter_of(loci: xr.Dataset) -> str:
@@ -229,9 +229,9 @@ def _followed(steps: Sequence[Array]) -> Array:
     for step in steps[1:]:
         last = rows[-1]
         before = rows[-2][: last.size] if len(rows) > 1 else last
-        lead = np.where(np.isnan(before), last, 2.0 * last - before)
+        lead = np.where(np.isfinite(before.real), 2.0 * last - before, last)
         row = np.full(last.size, complex(np.nan, np.nan))
-        there = np.flatnonzero(np.logical_not(np.isnan(lead)))
+        there = np.flatnonzero(np.isfinite(lead.real))
         taken, chosen = linear_sum_assignment(np.abs(lead[there, None] - step[None, :]))
         row[there[taken]] = step[chosen]
         new = np.delete(step, chosen)
