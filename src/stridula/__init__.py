@@ -52,6 +52,7 @@ _HOME = {
         "simulate_many",
     ),
     "analysis.stability": ("sliding_stability",),
+    "studies.root_loci": ("critical_value", "root_loci"),
     "studies": ("ensemble",),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
