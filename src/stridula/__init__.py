@@ -51,6 +51,7 @@ _HOME = {
         "simulate",
         "simulate_many",
     ),
+    "analysis": ("regime",),
     "studies": ("ensemble",),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
