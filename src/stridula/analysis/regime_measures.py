@@ -15,6 +15,8 @@ from .tones import Frames, frames, strongest_tone
 # Samples within which the status changes, from which the cycle lies inside the samples: one sampled eight times a
 # period has a quarter of them.
 UNRESOLVED = 0.5
+# Share of `faint` from which a tone that grows counts.
+BUDDING = 0.02
 
 
 class Signals(NamedTuple):
@@ -88,20 +90,22 @@ class Measures:
         Root mean square of the heard forces over the mean normal force [1].
     growth : float
         Loudness of the later half of the time over that of the earlier one [1], NaN where there is one frame.
-    frequency : float
-        Of what the samples hide, else of the strongest tone if it is heard, else of the stick phases [Hz].
+    tone : float
+        Frequency of what the samples hide, else of the strongest tone that is heard [Hz]; NaN if nothing is.
+    cycle : float
+        Frequency of the stick phases, or of what the samples hide [Hz]; NaN for fewer than two.
     periodicity : float
         Regularity of the beginnings of the stick phases [1], NaN for fewer than three.
     impact_rate, slip_rate : float
         Landings, and stick phases that begin, per second [1/s].
+    change_rate : float
+        Cycles of changing status per second, the least that explain the samples [1/s].
     settle_time : float
         Time from the first sample interval on, from which the status changes no more [s]; NaN if it does.
     level, swing : float
         Root mean square of the fluctuation over the mean normal force [1]: of the normal force, and of both forces.
     unsettled : float
         Share of the record before the status settles [1], 1 if it does not.
-    unresolved : float
-        Share of the samples within which the status changes [1].
     loss, loss_growth : float
         Energy lost to damping and impacts over that lost to friction in the later half of the time, and over that
         lost so in the earlier half [1].
@@ -110,7 +114,7 @@ class Measures:
     stick_phases : int
         Stick phases that begin.
     is_short : bool
-        Whether there is less than a frame to listen to.
+        Whether there are fewer than two frames to listen to.
     """
 
     separated: float
@@ -119,15 +123,16 @@ class Measures:
     tonality: float
     loudness: float
     growth: float
-    frequency: float
+    tone: float
+    cycle: float
     periodicity: float
     impact_rate: float
     slip_rate: float
+    change_rate: float
     settle_time: float
     level: float
     swing: float
     unsettled: float
-    unresolved: float
     loss: float
     loss_growth: float
     last_status: int
@@ -155,29 +160,24 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     heard_from = min(max(first, rest), count - 1) if settles else first
     time = (count - first) * interval
 
-    forces = signals.forces[:, heard_from:]
     mean = float(np.abs(signals.forces[0, first:]).mean()) or 1.0
-    heard = _heard(forces, interval, limits)
+    onsets = stick_onsets(signals.share[first:, 1], max(1, round(0.5 / (limits.lowest_tone * interval))))
+    landed = _landings(signals, first)
+    change_rate = max(changes(status[first:]) / 2.0, landed) / time
+    loss, loss_growth = _losses(signals, heard_from)
+    swing = float(np.sqrt(signals.forces[:, heard_from:].var(axis=1).sum())) / mean
+    heard = _heard(signals.forces[:, heard_from:], interval, limits)
     counted = heard.later_half() if settles else heard
     loudness = counted.level / mean
-    unresolved = float(np.mean(status[first:] == MIXED))
-    onsets = stick_onsets(signals.share[first:, 1], max(1, round(1.0 / (limits.lowest_tone * interval))))
-    landed = _landings(signals, first)
-    is_hidden = loudness < limits.faint and unresolved >= UNRESOLVED
-    loss, loss_growth = _losses(signals, heard_from)
-    swing = float(np.sqrt(forces.var(axis=1).sum())) / mean
-    if is_hidden:
-        tonality = _likeness(signals.forces[:, first:], mean)
-        frequency = max(changes(status[first:]) / 2.0, landed) / time
-    elif loudness >= limits.faint or (settles and heard.growth > 1.0):
-        tonality = counted.tonality
-        frequency = strongest_tone(forces, interval, limits.frame, limits.lowest_tone)
+    tonality, tone, cycle = counted.tonality, float("nan"), _cycle(onsets, interval)
+    is_loud = loudness >= limits.faint or change_rate >= limits.lowest_tone
+    if loudness < limits.faint and np.mean(status[first:] == MIXED) >= UNRESOLVED:
+        tonality, tone, cycle = _likeness(signals.forces[:, first:], mean), change_rate, change_rate
+    elif is_loud or (heard.growth > 1.0 and loudness >= BUDDING * limits.faint):
+        tone = strongest_tone(signals.forces[:, heard_from:], interval, limits.frame, limits.lowest_tone)
     elif settles and loss >= limits.lossy and swing < limits.faint:
         # What the samples do not show goes on at their rate, or a multiple of it.
-        tonality, frequency = 1.0, 1.0 / interval
-    else:
-        tonality = counted.tonality
-        frequency = (onsets.size - 1) / ((onsets[-1] - onsets[0]) * interval) if onsets.size > 1 else float("nan")
+        tonality, tone = 1.0, 1.0 / interval
     separated, sticking, sliding = signals.share[first:].mean(axis=0).tolist()
     return Measures(
         separated=separated,
@@ -186,20 +186,21 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         tonality=tonality,
         loudness=loudness,
         growth=heard.growth,
-        frequency=float(frequency),
+        tone=tone,
+        cycle=cycle,
         periodicity=regularity(onsets),
         impact_rate=landed / time,
         slip_rate=onsets.size / time,
+        change_rate=change_rate,
         settle_time=rest * interval if rest < count else float("nan"),
         level=float(signals.forces[0, first:].std()) / mean,
         swing=swing,
         unsettled=rest / count,
-        unresolved=unresolved,
         loss=loss,
         loss_growth=loss_growth,
         last_status=int(status[-1]) if settles else MIXED,
         stick_phases=int(onsets.size),
-        is_short=(count - heard_from) * interval < limits.frame,
+        is_short=(count - heard_from) * interval < 1.5 * limits.frame,
     )
 
 
@@ -209,8 +210,9 @@ def _heard(forces: Array, interval: float, limits: Thresholds) -> Frames:
     A record of forces is one of means: this is the record that a lower rate would have given.
     """
     ratio = max(1, int(1.0 / (limits.rate * interval) * (1.0 + 1e-9)))
-    kept = forces[:, : forces.shape[1] // ratio * ratio].reshape(2, -1, ratio).mean(axis=2) if ratio > 1 else forces
-    return frames(kept, ratio * interval, limits.frame, limits.lowest_tone)
+    end = forces.shape[1] // ratio * ratio
+    means = np.asarray(sum(forces[:, i:end:ratio] for i in range(ratio)) / ratio)
+    return frames(means, ratio * interval, limits.frame, limits.lowest_tone)
 
 
 def _landings(signals: Signals, first: int) -> float:
@@ -218,6 +220,11 @@ def _landings(signals: Signals, first: int) -> float:
     if signals.landings is None:
         return float(least_landings(signals.share[first:, 0]))
     return float(signals.landings[first:].sum())
+
+
+def _cycle(onsets: Array, interval: float) -> float:
+    """Return the mean frequency of the stick phases that begin at some samples [Hz], NaN for fewer than two."""
+    return (onsets.size - 1) / (float(onsets[-1] - onsets[0]) * interval) if onsets.size > 1 else float("nan")
 
 
 def _likeness(forces: Array, mean: float) -> float:

@@ -8,17 +8,18 @@ import numpy as np
 import xarray as xr
 
 from ..checks import within
-from .regime_measures import UNRESOLVED, Measures, Signals, Thresholds, measures
+from .regime_measures import BUDDING, Measures, Signals, Thresholds, measures
 from .signals import of_one_contact
 
 REGIMES = ("stable sliding", "sticking", "stick-slip", "squeal", "judder", "off the track")
 SLIDES, STICKS, SLIPS, SQUEALS, JUDDERS, LEFT = REGIMES
 
+LIMITS = Thresholds()
 # Share of the record that is left aside where no start is given.
 TRANSIENT = 0.1
 # Growth of a tone from one half of the time to the other: below the first it dies away, above the second it is on its
-# way up. What is on its way counts from this share of `faint`.
-KEPT, GROWING, BUDDING = 0.5, 2.0, 0.02
+# way up.
+KEPT, GROWING = 0.5, 2.0
 # Ends of a run that cannot be believed.
 FAILED = ("not finite", "contact unsolved", "energy created")
 MEANINGS = {
@@ -30,7 +31,7 @@ MEANINGS = {
     "tonality": ("1", "share of the heard power that repeats itself"),
     "loudness": ("1", "heard forces over the mean normal force"),
     "periodicity": ("1", "regularity of the stick phases"),
-    "frequency": ("Hz", "dominant frequency"),
+    "frequency": ("Hz", "frequency of the strongest tone, or of the stick phases"),
     "impact_rate": ("1/s", "landings per second"),
     "slip_rate": ("1/s", "stick phases per second"),
     "settle_time": ("s", "time from which the status does not change"),
@@ -70,7 +71,7 @@ def regime(
     faint : float, optional
         Heard forces over the mean normal force [1], below which nothing is heard.
     lossy : float, optional
-        Energy lost to damping over that lost to friction [1], from which a contact that slides evenly hides a vibration.
+        Energy lost to damping over that lost to friction [1], from which even sliding hides a vibration.
     rare : float, optional
         Share of the time [1] below which a status does not count.
     lowest_tone : float, optional
@@ -86,7 +87,8 @@ def regime(
         Scalars: ``regime``, one of `REGIMES`; ``confidence`` [1], ``0.5 + 0.5 min(1, |log2 r|)`` with r the factor by
         which the least clear of the decisive measures is away from its threshold; the shares ``separated``,
         ``sticking`` and ``sliding``; ``tonality``, ``loudness``, ``periodicity``, ``frequency``, ``impact_rate``,
-        ``slip_rate``, ``settle_time`` and ``level``.
+        ``slip_rate``, ``settle_time`` and ``level``. The frequency is that of the stick phases in stick-slip, else that
+        of the strongest tone; it is NaN where nothing is heard, and a lower bound where the samples hide the cycle.
 
     Raises
     ------
@@ -99,9 +101,7 @@ def regime(
     return xr.Dataset({name: ((), values[name], words[name]) for name in MEANINGS})
 
 
-def regime_of(
-    run: xr.Dataset, *, start: float | None = None, limits: Thresholds = Thresholds()
-) -> dict[str, float | str]:
+def regime_of(run: xr.Dataset, *, start: float | None = None, limits: Thresholds = LIMITS) -> dict[str, float | str]:
     """Return the regime of a run, its confidence and the measures of `regime` by name, in a fraction of the time.
 
     Parameters
@@ -119,7 +119,8 @@ def regime_of(
     found = measures(signals, left_aside, limits)
     name, confidence = decide(found, limits, str(run.attrs.get("ended", "finished")))
     values: dict[str, float | str] = {"regime": name, "confidence": confidence}
-    return values | {name: getattr(found, name) for name in MEANINGS if name not in values}
+    values["frequency"] = found.cycle if name == SLIPS else found.tone
+    return values | {word: getattr(found, word) for word in MEANINGS if word not in values}
 
 
 def signals_of(run: xr.Dataset) -> Signals:
@@ -173,7 +174,7 @@ def _at_rest(found: Measures, limits: Thresholds) -> tuple[str, float]:
         _above(found.loss, limits.lossy),
         _above(found.loss_growth, KEPT),
         -_above(found.swing, limits.faint),
-        _above(found.frequency, limits.lowest_tone),
+        _above(found.tone, limits.lowest_tone),
     )
     squeals = max(kept, growing, hidden)
     return (SQUEALS, squeals) if squeals >= 0.0 else (SLIDES, -squeals)
@@ -181,9 +182,9 @@ def _at_rest(found: Measures, limits: Thresholds) -> tuple[str, float]:
 
 def _on_the_move(found: Measures, limits: Thresholds) -> tuple[str, float]:
     """Return the regime of a run whose status goes on changing, and its margin."""
-    seen = _above(found.loudness, limits.faint)
-    hidden = min(_odds_above(found.unresolved, UNRESOLVED), _above(found.frequency, limits.lowest_tone))
-    squeals = min(max(seen, hidden), _odds_above(found.tonality, limits.tonal))
+    # A cycle of states this fast is a limit cycle, however little of it the forces show.
+    heard = max(_above(found.loudness, limits.faint), _above(found.change_rate, limits.lowest_tone))
+    squeals = min(heard, _odds_above(found.tonality, limits.tonal))
     if squeals >= 0.0:
         return SQUEALS, squeals
     # Of the time that it does not stick: how long it sticks between is another matter.
@@ -208,4 +209,3 @@ def _odds_above(share: float, threshold: float) -> float:
     if not 0.0 < share < 1.0:
         return math.inf if share >= 1.0 else -math.inf
     return _above(share / (1.0 - share), threshold / (1.0 - threshold))
-

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -75,27 +76,29 @@ def frames(forces: Array, interval: float, length: float, lowest: float) -> Fram
     if size < FEWEST:
         return Frames(np.zeros(0), np.zeros(0))
     pieces = np.lib.stride_tricks.sliding_window_view(forces, size, axis=1)[:, :: max(size // 2, 1)]
-    window = np.hanning(size + 1)[:-1]
     padded = 2 ** int(np.ceil(np.log2(size + lags)))
-    spectra = np.fft.rfft((pieces - pieces.mean(axis=2, keepdims=True)) * window, padded, axis=2)
-    power = np.sum(spectra.real**2 + spectra.imag**2, axis=0)
     first = int(np.ceil(lowest * padded * interval))
-    # Both sides of the spectrum: all but the last frequency stand for two.
-    power[:, :first] = 0.0
-    power[:, 1:-1] *= 2.0
-    overlap = _overlap(window, min(lags, size // 2))
-    angle = 2.0 * np.pi / padded * np.outer(np.arange(first, power.shape[1]), np.arange(overlap.size))
-    correlation = power[:, first:] @ np.cos(angle) / padded / overlap
-    amplitude = np.sqrt(np.maximum(correlation[:, 0], 0.0))
+    window, waves = _basis(size, padded, first, min(lags, size // 2))
+    spectra = np.fft.rfft((pieces - pieces.mean(axis=2, keepdims=True)) * window, padded, axis=2)[:, :, first:]
+    correlation = np.sum(spectra.real**2 + spectra.imag**2, axis=0) @ waves
+    power = np.maximum(correlation[:, 0], 0.0)
     beyond = np.logical_or.accumulate(correlation < 0.0, axis=1)
     highest = np.where(beyond, correlation, 0.0).max(axis=1)
-    repeating = np.clip(highest / np.maximum(correlation[:, 0], 1e-300), 0.0, 1.0)
-    return Frames(amplitude, repeating)
+    return Frames(np.sqrt(power), np.clip(highest / np.maximum(power, 1e-300), 0.0, 1.0))
 
 
-def _overlap(window: Array, lags: int) -> Array:
-    """Return the sum of products of a window and itself moved by each of the first lags."""
-    return np.array([window[lag:] @ window[: window.size - lag] for lag in range(lags)])
+@lru_cache(maxsize=16)
+def _basis(size: int, padded: int, first: int, lags: int) -> tuple[Array, Array]:
+    """Return a Hann window, and what makes the autocorrelation at the first lags of spectra under it, from `first` on.
+
+    Both sides of the spectrum count, and the overlap of the window with itself is divided by.
+    """
+    window = np.hanning(size + 1)[:-1]
+    overlap = np.array([window[lag:] @ window[: size - lag] for lag in range(lags)])
+    number = np.arange(first, padded // 2 + 1)
+    sides = np.where((number == 0) | (number == padded // 2), 1.0, 2.0)
+    waves = np.cos(2.0 * np.pi / padded * np.outer(number, np.arange(lags)))
+    return window, sides[:, None] * waves / (padded * overlap)
 
 
 def strongest_tone(forces: Array, interval: float, length: float, lowest: float) -> float:
@@ -118,16 +121,15 @@ def strongest_tone(forces: Array, interval: float, length: float, lowest: float)
     size = forces.shape[1]
     if size < FEWEST:
         return float("nan")
-    window = np.hanning(size + 1)[:-1]
-    spectra = np.fft.rfft((forces - forces.mean(axis=1, keepdims=True)) * window, axis=1)
-    power = np.sum(spectra.real**2 + spectra.imag**2, axis=0)
     step = 1.0 / (size * interval)
-    power = power[int(np.ceil(lowest / step)) :]
+    first = int(np.ceil(lowest / step))
+    spectra = np.fft.rfft(forces, axis=1)[:, first:]
+    power = np.sum(spectra.real**2 + spectra.imag**2, axis=0)
     width = max(1, round(1.0 / (length * step)))
     bands = power[: power.size // width * width].reshape(-1, width).sum(axis=1)
     if not bands.size or not bands.max() > 0.0:
         return float("nan")
     top = int(bands.argmax())
     near = slice(max(top - 1, 0) * width, (top + 2) * width)
-    frequency = (np.ceil(lowest / step) + np.arange(power.size)[near]) * step
+    frequency = (first + np.arange(power.size)[near]) * step
     return float(power[near] @ frequency / power[near].sum())
