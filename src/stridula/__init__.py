@@ -52,7 +52,9 @@ _HOME = {
         "simulate_many",
     ),
     "analysis.stability": ("sliding_stability",),
+    "studies.agreement": ("agreement",),
     "studies.root_loci": ("critical_value", "root_loci"),
+    "analysis": ("regime",),
     "studies": ("ensemble",),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}

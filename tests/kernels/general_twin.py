@@ -22,7 +22,7 @@ from scipy.optimize import brentq, root
 import stridula as st
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
-KEPT = ["normal", "tangential", "status", "position", "gap", "height", "state", "solutions"]
+KEPT = ["normal", "tangential", "status", "landings", "position", "gap", "height", "state", "solutions"]
 KEPT += ["stored", "drive", "contact", "friction", "convection", "damping"]
 
 
@@ -468,6 +468,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         middle = (q_new - q_before) / 2
         work["drive"] += impulse @ f @ middle / h
         work["contact"] += push @ middle
+        landings = []
         for one, motion, trace, (status, normal, tangential) in zip(touches, motions, traces, found, strict=True):
             tip, track, lift = np.subtract(motion, one.motions(now - h)) / 2
             frame = tangential * (tip - track) - normal * lift
@@ -485,6 +486,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
                 one.state = (
                     state_of_new(one.law) if status == SEPARATED else state_after(one.law, one.state, velocity_seen, h)
                 )
+            landings.append(int(one.status == SEPARATED and status != SEPARATED))
             one.status, one.material, one.last_slip = status, material, slip
             one.place_before, one.place = one.place, place
         d = q_new - q
@@ -501,6 +503,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         out.normal.append([normal for _, normal, _ in found])
         out.tangential.append([tangential for _, _, tangential in found])
         out.status.append([status for status, _, _ in found])
+        out.landings.append(landings)
         out.position.append([one.place for one in touches])
         out.state.append([one.state for one in touches])
         out.gap.append(

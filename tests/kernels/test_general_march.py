@@ -63,6 +63,9 @@ def disagreements(run, trail) -> dict[str, float]:
     status = run.status.values.reshape(trail.status.shape)
     if np.any(status != trail.status):
         found["status"] = float(np.mean(status != trail.status))
+    landings = run.landings.values.reshape(trail.landings.shape)
+    if np.any(landings != trail.landings):
+        found["landings"] = float(np.mean(landings != trail.landings))
     return found
 
 

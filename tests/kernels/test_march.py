@@ -62,6 +62,7 @@ def test_kernel_and_twin_agree_at_every_step(name, scheme, form):
     run, trail = every_step(system, STEPS, scheme), twin.march(system, form, STEP, STEPS)
     assert set(run.status.values) - {0}, "no contact in the steps compared: the case tests nothing"
     np.testing.assert_array_equal(run.status.values, trail.status)
+    np.testing.assert_array_equal(run.landings.values, trail.landings)
     assert disagreements(run, trail) == {}
     position, before = trail.last[1], trail.last[0]
     scale = np.abs(position).max()

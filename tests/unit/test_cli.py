@@ -66,7 +66,8 @@ def test_a_run_leaves_garbage_collection_on(stridula):
 def test_run_writes_record_and_figure_and_says_what_came_of_it(stridula, tmp_path):
     code, out, err = stridula("run", "squeal", *SHORT, "--set", "friction=0.4", "--out", "run.nc", "--plot", "run.png")
     assert (code, err) == (0, "")
-    for word in ("finished at t = 0.002 s", "separated", "dominant frequency", "peak", "residual", "run.nc", "run.png"):
+    words = ("finished at t = 0.002 s", "separated", "dominant frequency", "peak", "residual", "run.nc", "run.png")
+    for word in (*words, "regime", "(confidence 0.50)"):
         assert word in out
     assert st.load_scenario("run.nc").system.contact.friction == st.Coulomb(0.4)
     assert (tmp_path / "run.png").read_bytes().startswith(b"\x89PNG")
@@ -186,6 +187,7 @@ def test_a_reduced_body_on_two_contacts_runs_exports_and_compares(stridula, tmp_
     assert (code, err) == (0, "")
     lines = out.splitlines()
     assert sum("contact 1" in line for line in lines) == sum("heel" in line for line in lines) == 1
+    assert out.count("(confidence ") == 2
     for path in (tmp_path / "matrices").iterdir():
         path.unlink()
     assert stridula("run", "run.nc", "--out", "again.nc")[0] == 0

@@ -51,9 +51,10 @@ ENERGIES = 8
     CONTACT_GAP,
     SLIP_VELOCITY,
     JAMMED,
+    LANDINGS,
     LAW_STATE,
-) = range(11)
-COLUMNS = 11
+) = range(12)
+COLUMNS = 12
 
 # Kinds of probe rows: on positions, on centred velocities, on second differences.
 DISPLACEMENT, VELOCITY, ACCELERATION = range(3)

@@ -308,6 +308,8 @@ def march(
                 if status == SEPARATED:
                     sums[i, at.SEPARATED] += 1
                 else:
+                    if int(carried[i, at.STATUS]) == SEPARATED:
+                        sums[i, at.LANDINGS] += 1
                     if status == STICKING:
                         sums[i, at.STICKING] += 1
                         sums[i, at.JAMMED] += jammed[i]
@@ -368,5 +370,6 @@ def march(
                 steps_per_sample * step
             )
             record[sample, i, at.JAMMED] = sums[i, at.JAMMED]
+            record[sample, i, at.LANDINGS] = sums[i, at.LANDINGS]
             record[sample, i, at.LAW_STATE] = carried[i, at.FRICTION_STATE]
     return record.shape[0], at.FINISHED

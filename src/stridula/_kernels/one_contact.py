@@ -149,7 +149,7 @@ def steps(
 
     n, pending, sines = 0, False, WAVES
     for sample in range(record.shape[0]):
-        normals, tangentials, jams, sticking, sliding = zero, zero, zero, zero, zero
+        normals, tangentials, jams, landings, sticking, sliding = zero, zero, zero, zero, zero, zero
         first_material = material
         for i in range(steps_per_sample):
             if differ(signals, n, loads, run, runs, zero):
@@ -222,6 +222,7 @@ def steps(
                 sticking += choose(sticks, 1.0, 0.0)
                 sliding += choose(new_status > SLIDING - 0.5, 1.0, 0.0)
                 jams += jammed
+                landings += choose(status < 0.5 * STICKING, choose(new_status > 0.5 * STICKING, 1.0, 0.0), 0.0)
                 if moving:
                     tip_motion = centred(motion, n, at.TIP_MOTION * runs + run, zero)
                     track_motion = centred(motion, n, at.TRACK_MOTION * runs + run, zero)
@@ -287,6 +288,7 @@ def steps(
         write(record, sample, at.CONTACT_GAP * runs + run, gap)
         write(record, sample, at.SLIP_VELOCITY * runs + run, (material - first_material) * (share / step))
         write(record, sample, at.JAMMED * runs + run, jams)
+        write(record, sample, at.LANDINGS * runs + run, landings)
         write(record, sample, at.LAW_STATE * runs + run, law_state)
 
     write(stops, COMPLETED, run, choose(ended > 0.0, completed, float(record.shape[0])))

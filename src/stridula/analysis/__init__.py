@@ -1,10 +1,14 @@
-"""What a record means: phases, frequencies, levels."""
+"""What a record means: phases, frequencies, levels, regimes."""
 
 from .levels import largest_jump, peak_level, swing
 from .phases import advance, bursts, complete, longest_unchanged, phases, settling_time, status_share, stops
+from .regime_measures import Thresholds
+from .regimes import REGIMES, regime, regime_of
 from .spectra import dominant_frequency, envelope, envelope_correlation, frequency_resolution, spectrum
 
 __all__ = [
+    "REGIMES",
+    "Thresholds",
     "advance",
     "bursts",
     "complete",
@@ -16,6 +20,8 @@ __all__ = [
     "longest_unchanged",
     "peak_level",
     "phases",
+    "regime",
+    "regime_of",
     "settling_time",
     "spectrum",
     "status_share",

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from ..analysis import bursts, dominant_frequency
+from ..analysis import bursts, dominant_frequency, regime_of
 from ..analysis.phases import inside
 from ..records.variables import ENERGY, STATUS_WORDS
 
@@ -71,6 +71,7 @@ def _one_contact(record: xr.Dataset) -> dict[str, str]:
         "tip": f"from {place[0]:.4g} m to {place[-1]:.4g} m along the track",
         "normal force": f"mean {force.mean():.4g} N, peak {force.max():.4g} N",
         "dominant frequency": _frequency(record),
+        "regime": _regime(record),
     }
     return lines | ({"jammed": f"{jammed} steps in which sliding would have jammed"} if jammed else {})
 
@@ -88,6 +89,14 @@ def _frequency(record: xr.Dataset) -> str:
     frequency = dominant_frequency(record["normal_force"], between if len(between) else None)
     where = " of the normal force" + (" between the stops" if len(between) else "")
     return "none" if math.isnan(frequency) else f"{frequency:.4g} Hz{where}"
+
+
+def _regime(record: xr.Dataset) -> str:
+    """Return the regime, which takes at least 2 samples."""
+    if record.sizes["time"] < 2:
+        return "none"
+    found = regime_of(record)
+    return f"{found['regime']} (confidence {found['confidence']:.2f})"
 
 
 def _energy(record: xr.Dataset) -> dict[str, str]:

@@ -37,6 +37,7 @@ CONTACT_COLUMN = {
     "gap": at.CONTACT_GAP,
     "slip_velocity": at.SLIP_VELOCITY,
     "jammed_steps": at.JAMMED,
+    "landings": at.LANDINGS,
     "friction_state": at.LAW_STATE,
 }
 ENERGY_COLUMN = {

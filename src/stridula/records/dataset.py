@@ -59,8 +59,8 @@ def to_dataset(
     dominant = 2 - np.argmax(status_share[..., ::-1], axis=-1)
     data[STATUS.name] = (along, dominant.astype(np.int8), {**_attributes(STATUS), **flags})
     data[STATUS_SHARE.name] = ((*along, "contact_status"), status_share, _attributes(STATUS_SHARE))
-    jammed = contact_columns["jammed_steps"].T.astype(np.int64)
-    data["jammed_steps"] = (along, jammed, data["jammed_steps"][2])
+    for name in ("jammed_steps", "landings"):
+        data[name] = (along, contact_columns[name].T.astype(np.int64), data[name][2])
     data |= _friction_state(system, contact_columns[FRICTION_STATE.name])
     if len(system.contacts) > 1:
         for variable in SOLVE:

@@ -37,6 +37,7 @@ CONTACT = (
     Variable("gap", "m", "distance from tip to track"),
     Variable("slip_velocity", "m/s", "velocity of the tip along the track's material", "mean"),
     Variable("jammed_steps", "1", "steps in which sliding would have jammed", "sum"),
+    Variable("landings", "1", "landings: steps at which an open contact closes", "sum"),
 )
 # Units are those of the law: m for LuGre's bristles, s for the state of rate and state.
 FRICTION_STATE = Variable("friction_state", "1", "internal state of the law of friction")

@@ -1,0 +1,240 @@
+"""The measures that decide the regime of a contact, from the plain arrays of its record."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..bodies.modes import Array
+from ..checks import positive, within
+from .status_changes import MIXED, changes, last_rest, least_landings, regularity, stick_onsets, whole_status
+from .tones import Frames, frames, strongest_tone
+
+# Samples within which the status changes, from which the cycle lies inside the samples: one sampled eight times a
+# period has a quarter of them.
+UNRESOLVED = 0.5
+# Share of `faint` from which a tone that grows counts.
+BUDDING = 0.02
+
+
+class Signals(NamedTuple):
+    """The arrays of a record that decide.
+
+    Attributes
+    ----------
+    interval : float
+        Interval of the samples [s].
+    share : ndarray, shape (samples, 3)
+        Share of each status [1].
+    forces : ndarray, shape (2, samples)
+        Normal and tangential force [N].
+    landings : ndarray, shape (samples,), or None
+        Landings in each sample [1]; counted from the shares where there are none.
+    lost, rubbed : ndarray, shape (samples,)
+        Energy lost to damping and impacts, and to friction, since the start [J].
+    """
+
+    interval: float
+    share: Array
+    forces: Array
+    landings: Array | None
+    lost: Array
+    rubbed: Array
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """What separates the regimes; `regime` says what each is.
+
+    Attributes
+    ----------
+    rest, tonal, faint, lossy, rare : float
+        Shares and ratios [1].
+    lowest_tone : float
+        Frequency [Hz].
+    frame : float
+        Length [s].
+    rate : float
+        Samples per second [Hz].
+    """
+
+    rest: float = 0.5
+    tonal: float = 0.5
+    faint: float = 0.05
+    lossy: float = 0.01
+    rare: float = 0.05
+    lowest_tone: float = 300.0
+    frame: float = 30e-3
+    rate: float = 10e3
+
+    def __post_init__(self) -> None:
+        for name in ("rest", "tonal", "rare"):
+            within(name, getattr(self, name), 0.0, 1.0, ends=False)
+        for name in ("faint", "lossy", "lowest_tone", "frame", "rate"):
+            positive(name, getattr(self, name))
+
+
+@dataclass(frozen=True)
+class Measures:
+    """What decides the regime of a run, after the start that is left aside.
+
+    Attributes
+    ----------
+    separated, sticking, sliding : float
+        Shares of the time [1].
+    tonality : float
+        Share of the heard power that repeats itself [1]; of what the samples hide, how alike they are.
+    loudness : float
+        Root mean square of the heard forces over the mean normal force [1].
+    growth : float
+        Loudness of the later half of the time over that of the earlier one [1], NaN where there is one frame.
+    tone : float
+        Frequency of what the samples hide, else of the strongest tone that is heard [Hz]; NaN if nothing is.
+    cycle : float
+        Frequency of the stick phases, or of what the samples hide [Hz]; NaN for fewer than two.
+    periodicity : float
+        Regularity of the beginnings of the stick phases [1], NaN for fewer than three.
+    impact_rate, slip_rate : float
+        Landings, and stick phases that begin, per second [1/s].
+    change_rate : float
+        Cycles of changing status per second, the least that explain the samples [1/s].
+    settle_time : float
+        Time from the first sample interval on, from which the status changes no more [s]; NaN if it does.
+    level, swing : float
+        Root mean square of the fluctuation over the mean normal force [1]: of the normal force, and of both forces.
+    unsettled : float
+        Share of the record before the status settles [1], 1 if it does not.
+    loss, loss_growth : float
+        Energy lost to damping and impacts over that lost to friction in the later half of the time, and over that
+        lost so in the earlier half [1].
+    last_status : int
+        Status in which the run settles: 0 separated, 1 sticking, 2 sliding, -1 none.
+    stick_phases : int
+        Stick phases that begin.
+    is_short : bool
+        Whether there are fewer than two frames to listen to.
+    """
+
+    separated: float
+    sticking: float
+    sliding: float
+    tonality: float
+    loudness: float
+    growth: float
+    tone: float
+    cycle: float
+    periodicity: float
+    impact_rate: float
+    slip_rate: float
+    change_rate: float
+    settle_time: float
+    level: float
+    swing: float
+    unsettled: float
+    loss: float
+    loss_growth: float
+    last_status: int
+    stick_phases: int
+    is_short: bool
+
+
+def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
+    """Return the measures of a run.
+
+    Parameters
+    ----------
+    signals : Signals
+        Its record.
+    start : float
+        Time at the beginning that is left aside [s].
+    limits : Thresholds
+        What counts as settled, heard and tonal.
+    """
+    interval, count = signals.interval, signals.share.shape[0]
+    first = min(round(start / interval), count - 1)
+    status = whole_status(signals.share)
+    rest = last_rest(status)
+    settles = rest <= limits.rest * count
+    heard_from = min(max(first, rest), count - 1) if settles else first
+    time = (count - first) * interval
+
+    mean = float(np.abs(signals.forces[0, first:]).mean()) or 1.0
+    onsets = stick_onsets(signals.share[first:, 1], max(1, round(0.5 / (limits.lowest_tone * interval))))
+    landed = _landings(signals, first)
+    change_rate = max(changes(status[first:]) / 2.0, landed) / time
+    loss, loss_growth = _losses(signals, heard_from)
+    swing = float(np.sqrt(signals.forces[:, heard_from:].var(axis=1).sum())) / mean
+    heard = _heard(signals.forces[:, heard_from:], interval, limits)
+    counted = heard.later_half() if settles else heard
+    loudness = counted.level / mean
+    tonality, tone, cycle = counted.tonality, float("nan"), _cycle(onsets, interval)
+    is_loud = loudness >= limits.faint or change_rate >= limits.lowest_tone
+    if loudness < limits.faint and np.mean(status[first:] == MIXED) >= UNRESOLVED:
+        tonality, tone, cycle = _likeness(signals.forces[:, first:], mean), change_rate, change_rate
+    elif is_loud or (heard.growth > 1.0 and loudness >= BUDDING * limits.faint):
+        tone = strongest_tone(signals.forces[:, heard_from:], interval, limits.frame, limits.lowest_tone)
+    elif settles and loss >= limits.lossy and swing < limits.faint:
+        # What the samples do not show goes on at their rate, or a multiple of it.
+        tonality, tone = 1.0, 1.0 / interval
+    separated, sticking, sliding = signals.share[first:].mean(axis=0).tolist()
+    return Measures(
+        separated=separated,
+        sticking=sticking,
+        sliding=sliding,
+        tonality=tonality,
+        loudness=loudness,
+        growth=heard.growth,
+        tone=tone,
+        cycle=cycle,
+        periodicity=regularity(onsets),
+        impact_rate=landed / time,
+        slip_rate=onsets.size / time,
+        change_rate=change_rate,
+        settle_time=rest * interval if rest < count else float("nan"),
+        level=float(signals.forces[0, first:].std()) / mean,
+        swing=swing,
+        unsettled=rest / count,
+        loss=loss,
+        loss_growth=loss_growth,
+        last_status=int(status[-1]) if settles else MIXED,
+        stick_phases=int(onsets.size),
+        is_short=(count - heard_from) * interval < 1.5 * limits.frame,
+    )
+
+
+def _heard(forces: Array, interval: float, limits: Thresholds) -> Frames:
+    """Return what is heard of the forces, brought to about the rate by means over whole numbers of samples.
+
+    A record of forces is one of means: this is the record that a lower rate would have given.
+    """
+    ratio = max(1, int(1.0 / (limits.rate * interval) * (1.0 + 1e-9)))
+    end = forces.shape[1] // ratio * ratio
+    means = np.asarray(sum(forces[:, i:end:ratio] for i in range(ratio)) / ratio)
+    return frames(means, ratio * interval, limits.frame, limits.lowest_tone)
+
+
+def _landings(signals: Signals, first: int) -> float:
+    """Return how often the contact lands from a sample on."""
+    if signals.landings is None:
+        return float(least_landings(signals.share[first:, 0]))
+    return float(signals.landings[first:].sum())
+
+
+def _cycle(onsets: Array, interval: float) -> float:
+    """Return the mean frequency of the stick phases that begin at some samples [Hz], NaN for fewer than two."""
+    return (onsets.size - 1) / (float(onsets[-1] - onsets[0]) * interval) if onsets.size > 1 else float("nan")
+
+
+def _likeness(forces: Array, mean: float) -> float:
+    """Return how alike successive samples are, 1 less the root mean square of their differences over the mean force."""
+    return max(0.0, 1.0 - float(np.sqrt(np.mean(np.diff(forces, axis=1) ** 2) * 2.0)) / mean)
+
+
+def _losses(signals: Signals, first: int) -> tuple[float, float]:
+    """Return what is lost to damping and impacts in the later half over what friction takes, and over the earlier."""
+    middle = (first + signals.lost.size - 1) // 2
+    early, late = float(signals.lost[middle] - signals.lost[first]), float(signals.lost[-1] - signals.lost[middle])
+    rubbed = float(signals.rubbed[-1] - signals.rubbed[middle])
+    return late / rubbed if rubbed > 0.0 else 0.0, late / early if early > 0.0 else float("nan")

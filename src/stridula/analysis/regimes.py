@@ -1,0 +1,211 @@
+"""The regime of a contact: whether it slides, sticks, slips, squeals, judders or has left its track."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from ..checks import within
+from .regime_measures import BUDDING, Measures, Signals, Thresholds, measures
+from .signals import of_one_contact
+
+REGIMES = ("stable sliding", "sticking", "stick-slip", "squeal", "judder", "off the track")
+SLIDES, STICKS, SLIPS, SQUEALS, JUDDERS, LEFT = REGIMES
+
+LIMITS = Thresholds()
+# Share of the record that is left aside where no start is given.
+TRANSIENT = 0.1
+# Growth of a tone from one half of the time to the other: below the first it dies away, above the second it is on its
+# way up.
+KEPT, GROWING = 0.5, 2.0
+# Ends of a run that cannot be believed.
+FAILED = ("not finite", "contact unsolved", "energy created")
+MEANINGS = {
+    "regime": ("1", "regime of the contact"),
+    "confidence": ("1", "confidence in the regime, 0.5 at a threshold"),
+    "separated": ("1", "share of the time separated"),
+    "sticking": ("1", "share of the time sticking"),
+    "sliding": ("1", "share of the time sliding"),
+    "tonality": ("1", "share of the heard power that repeats itself"),
+    "loudness": ("1", "heard forces over the mean normal force"),
+    "periodicity": ("1", "regularity of the stick phases"),
+    "frequency": ("Hz", "frequency of the strongest tone, or of the stick phases"),
+    "impact_rate": ("1/s", "landings per second"),
+    "slip_rate": ("1/s", "stick phases per second"),
+    "settle_time": ("s", "time from which the status does not change"),
+    "level": ("1", "fluctuation of the normal force over its mean"),
+}
+
+
+def regime(
+    run: xr.Dataset,
+    *,
+    start: float | None = None,
+    rest: float = Thresholds.rest,
+    tonal: float = Thresholds.tonal,
+    faint: float = Thresholds.faint,
+    lossy: float = Thresholds.lossy,
+    rare: float = Thresholds.rare,
+    lowest_tone: float = Thresholds.lowest_tone,
+    frame: float = Thresholds.frame,
+    rate: float = Thresholds.rate,
+) -> xr.Dataset:
+    """Return the regime of a run of one contact, and the measures that decide it.
+
+    A run is at rest if its status does not change over the last half of it: then it slides stably, sticks, or has left
+    its track, but squeals if it slides with a tone that does not die away. Else it squeals if what is heard is tonal;
+    judders if it separates; and sticks and slips if it sticks. The documentation has the reasons.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A record of `simulate`.
+    start : float, optional
+        Time at its beginning that is left aside [s]; a tenth of the record if left out.
+    rest : float, optional
+        Share of the record [1]: a status that settles before this is the regime, whatever came before.
+    tonal : float, optional
+        Share of the heard power [1] that repeats itself within ``1 / lowest_tone``, from which it is a tone.
+    faint : float, optional
+        Heard forces over the mean normal force [1], below which nothing is heard.
+    lossy : float, optional
+        Energy lost to damping over that lost to friction [1], from which even sliding hides a vibration.
+    rare : float, optional
+        Share of the time [1] below which a status does not count.
+    lowest_tone : float, optional
+        Lowest frequency of a tone [Hz]; what is slower is stick-slip.
+    frame : float, optional
+        Length of the frames in which tones are looked for [s].
+    rate : float, optional
+        Rate to which the forces are averaged down for that [Hz]: from there on, the answer does not depend on sampling.
+
+    Returns
+    -------
+    xarray.Dataset
+        Scalars: ``regime``, one of `REGIMES`; ``confidence`` [1], ``0.5 + 0.5 min(1, |log2 r|)`` with r the factor by
+        which the least clear of the decisive measures is away from its threshold; the shares ``separated``,
+        ``sticking`` and ``sliding``; ``tonality``, ``loudness``, ``periodicity``, ``frequency``, ``impact_rate``,
+        ``slip_rate``, ``settle_time`` and ``level``. The frequency is that of the stick phases in stick-slip, else that
+        of the strongest tone; it is NaN where nothing is heard, and a lower bound where the samples hide the cycle.
+
+    Raises
+    ------
+    ValueError
+        If the record has several contacts or fewer than 2 samples, or an argument is out of its range.
+    """
+    limits = Thresholds(rest, tonal, faint, lossy, rare, lowest_tone, frame, rate)
+    values = regime_of(run, start=start, limits=limits)
+    words = {name: {"units": units, "long_name": meaning} for name, (units, meaning) in MEANINGS.items()}
+    return xr.Dataset({name: ((), values[name], words[name]) for name in MEANINGS})
+
+
+def regime_of(run: xr.Dataset, *, start: float | None = None, limits: Thresholds = LIMITS) -> dict[str, float | str]:
+    """Return the regime of a run, its confidence and the measures of `regime` by name, in a fraction of the time.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A record of `simulate`, of one contact.
+    start : float, optional
+        Time at its beginning that is left aside [s]; a tenth of the record if left out.
+    limits : Thresholds, optional
+        The thresholds of `regime`.
+    """
+    signals = signals_of(run)
+    length = signals.interval * signals.share.shape[0]
+    left_aside = TRANSIENT * length if start is None else within("start", start, 0.0, length)
+    found = measures(signals, left_aside, limits)
+    name, confidence = decide(found, limits, str(run.attrs.get("ended", "finished")))
+    values: dict[str, float | str] = {"regime": name, "confidence": confidence}
+    values["frequency"] = found.cycle if name == SLIPS else found.tone
+    return values | {word: getattr(found, word) for word in MEANINGS if word not in values}
+
+
+def signals_of(run: xr.Dataset) -> Signals:
+    """Return the plain arrays of a record that decide its regime."""
+    held = of_one_contact(run).variables
+    time = held["time"].values
+    if time.size < 2:
+        raise ValueError(f"run must have at least 2 samples, got {time.size}")
+    return Signals(
+        interval=float((time[-1] - time[0]) / (time.size - 1)),
+        share=held["status_share"].values,
+        forces=np.stack([held["normal_force"].values, held["tangential_force"].values]),
+        landings=held["landings"].values if "landings" in held else None,
+        lost=held["damping_loss"].values + held["impact_loss"].values,
+        rubbed=held["friction_loss"].values,
+    )
+
+
+def decide(found: Measures, limits: Thresholds, ended: str = "finished") -> tuple[str, float]:
+    """Return the regime that measures stand for, and the confidence in it.
+
+    Each measure becomes a margin, the binary logarithm of its ratio to its threshold; of shares, of the ratio of odds.
+    What needs several conditions has the least of their margins, what needs one of several the largest.
+
+    Parameters
+    ----------
+    found : Measures
+        The measures of a run.
+    limits : Thresholds
+        Their thresholds.
+    ended : str, optional
+        How the run ended. One that ran off its track is of that regime; one that failed is judged by what came before.
+    """
+    if ended == LEFT:
+        return LEFT, 1.0
+    name, margin = _at_rest(found, limits) if found.last_status >= 0 else _on_the_move(found, limits)
+    margin = min(margin, abs(_above(found.unsettled, limits.rest)))
+    if ended in FAILED or found.is_short:
+        margin = 0.0
+    return name, 0.5 + 0.5 * min(1.0, margin)
+
+
+def _at_rest(found: Measures, limits: Thresholds) -> tuple[str, float]:
+    """Return the regime of a run whose status settles, and its margin."""
+    if found.last_status != 2:
+        return (STICKS if found.last_status == 1 else LEFT), math.inf
+    tonal, loud = _odds_above(found.tonality, limits.tonal), _above(found.loudness, limits.faint)
+    kept = min(tonal, loud, _above(found.growth, KEPT))
+    growing = min(tonal, _above(found.loudness, BUDDING * limits.faint), _above(found.growth, GROWING))
+    hidden = min(
+        _above(found.loss, limits.lossy),
+        _above(found.loss_growth, KEPT),
+        -_above(found.swing, limits.faint),
+        _above(found.tone, limits.lowest_tone),
+    )
+    squeals = max(kept, growing, hidden)
+    return (SQUEALS, squeals) if squeals >= 0.0 else (SLIDES, -squeals)
+
+
+def _on_the_move(found: Measures, limits: Thresholds) -> tuple[str, float]:
+    """Return the regime of a run whose status goes on changing, and its margin."""
+    # A cycle of states this fast is a limit cycle, however little of it the forces show.
+    heard = max(_above(found.loudness, limits.faint), _above(found.change_rate, limits.lowest_tone))
+    squeals = min(heard, _odds_above(found.tonality, limits.tonal))
+    if squeals >= 0.0:
+        return SQUEALS, squeals
+    # Of the time that it does not stick: how long it sticks between is another matter.
+    moving = found.separated + found.sliding
+    opens = _odds_above(found.separated / moving if moving else 0.0, limits.rare)
+    if opens >= 0.0:
+        return JUDDERS, min(-squeals, opens)
+    sticks = _odds_above(found.sticking, limits.rare)
+    if sticks < 0.0:
+        return SLIDES, min(-squeals, -opens, -sticks)
+    holds = _odds_above(found.sticking, 1.0 - limits.rare) if found.stick_phases < 2 else -math.inf
+    return (STICKS, min(-squeals, holds)) if holds >= 0.0 else (SLIPS, min(-squeals, -opens, sticks, -holds))
+
+
+def _above(value: float, threshold: float) -> float:
+    """Return by how many factors of two a measure is above its threshold; one that is not known is below it."""
+    return math.log2(value / threshold) if value > 0.0 else -math.inf
+
+
+def _odds_above(share: float, threshold: float) -> float:
+    """Return by how many factors of two the odds of a share are above those of its threshold."""
+    if not 0.0 < share < 1.0:
+        return math.inf if share >= 1.0 else -math.inf
+    return _above(share / (1.0 - share), threshold / (1.0 - threshold))

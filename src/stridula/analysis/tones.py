@@ -1,0 +1,135 @@
+"""How much of a vibration is heard, and how much of what is heard is a tone: short frames of the recorded forces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ..bodies.modes import Array
+
+# Samples below which a frame says nothing.
+FEWEST = 8
+
+
+@dataclass(frozen=True)
+class Frames:
+    """What is heard in successive frames, which overlap by half.
+
+    Attributes
+    ----------
+    amplitude : ndarray, shape (frames,)
+        Root mean square of the forces above the lowest tone [N].
+    repeating : ndarray, shape (frames,)
+        Share of that power which repeats itself within a period of the lowest tone [1].
+    """
+
+    amplitude: Array
+    repeating: Array
+
+    @property
+    def tonality(self) -> float:
+        """Mean repeating share [1], each frame weighing as it is strong."""
+        total = float(self.amplitude.sum())
+        return float(self.amplitude @ self.repeating) / total if total > 0.0 else 0.0
+
+    @property
+    def level(self) -> float:
+        """Root mean square over all frames [N]."""
+        return float(np.sqrt(np.mean(self.amplitude**2))) if self.amplitude.size else 0.0
+
+    @property
+    def growth(self) -> float:
+        """Root mean square of the later half of the frames over that of the earlier half [1]; NaN for one frame."""
+        middle = self.amplitude.size // 2
+        early = float(np.sum(self.amplitude[:middle] ** 2))
+        late = float(np.sum(self.amplitude[self.amplitude.size - middle :] ** 2))
+        return float(np.sqrt(late / early)) if early > 0.0 else float("nan")
+
+    def later_half(self) -> Frames:
+        """Return the later half of the frames."""
+        middle = self.amplitude.size // 2
+        return Frames(self.amplitude[middle:], self.repeating[middle:])
+
+
+def frames(forces: Array, interval: float, length: float, lowest: float) -> Frames:
+    """Return what is heard in each frame.
+
+    Each is taken less its mean, under a Hann window, without its spectrum below `lowest`. The share of its power that
+    repeats itself is the highest value, beyond the first negative one, of the autocorrelation at lags up to
+    ``1 / lowest``: that of a tone in noise is the tone's share of the power.
+
+    Parameters
+    ----------
+    forces : ndarray, shape (forces, samples)
+        Recorded forces [N], whose powers are added up.
+    interval : float
+        Interval of the samples [s].
+    length : float
+        Length of a frame [s]; all that there is if that is shorter.
+    lowest : float
+        Lowest tone [Hz].
+    """
+    size = min(round(length / interval), forces.shape[1])
+    lags = int(np.ceil(1.0 / (lowest * interval))) + 1
+    if size < FEWEST:
+        return Frames(np.zeros(0), np.zeros(0))
+    pieces = np.lib.stride_tricks.sliding_window_view(forces, size, axis=1)[:, :: max(size // 2, 1)]
+    padded = 2 ** int(np.ceil(np.log2(size + lags)))
+    first = int(np.ceil(lowest * padded * interval))
+    window, waves = _basis(size, padded, first, min(lags, size // 2))
+    spectra = np.fft.rfft((pieces - pieces.mean(axis=2, keepdims=True)) * window, padded, axis=2)[:, :, first:]
+    correlation = np.sum(spectra.real**2 + spectra.imag**2, axis=0) @ waves
+    power = np.maximum(correlation[:, 0], 0.0)
+    beyond = np.logical_or.accumulate(correlation < 0.0, axis=1)
+    highest = np.where(beyond, correlation, 0.0).max(axis=1)
+    return Frames(np.sqrt(power), np.clip(highest / np.maximum(power, 1e-300), 0.0, 1.0))
+
+
+@lru_cache(maxsize=16)
+def _basis(size: int, padded: int, first: int, lags: int) -> tuple[Array, Array]:
+    """Return a Hann window, and what makes the autocorrelation at the first lags of spectra under it, from `first` on.
+
+    Both sides of the spectrum count, and the overlap of the window with itself is divided by.
+    """
+    window = np.hanning(size + 1)[:-1]
+    overlap = np.array([window[lag:] @ window[: size - lag] for lag in range(lags)])
+    number = np.arange(first, padded // 2 + 1)
+    sides = np.where((number == 0) | (number == padded // 2), 1.0, 2.0)
+    waves = np.cos(2.0 * np.pi / padded * np.outer(number, np.arange(lags)))
+    return window, sides[:, None] * waves / (padded * overlap)
+
+
+def strongest_tone(forces: Array, interval: float, length: float, lowest: float) -> float:
+    """Return the frequency above `lowest` [Hz] about which the forces carry most power, NaN where they carry none.
+
+    The spectrum is added up in bands as wide as a frame of `length` seconds can tell apart; the centre of power of the
+    strongest band and its neighbours is returned.
+
+    Parameters
+    ----------
+    forces : ndarray, shape (forces, samples)
+        Recorded forces [N].
+    interval : float
+        Interval of the samples [s].
+    length : float
+        Length of a frame [s].
+    lowest : float
+        Lowest tone [Hz].
+    """
+    size = forces.shape[1]
+    if size < FEWEST:
+        return float("nan")
+    step = 1.0 / (size * interval)
+    first = int(np.ceil(lowest / step))
+    spectra = np.fft.rfft(forces, axis=1)[:, first:]
+    power = np.sum(spectra.real**2 + spectra.imag**2, axis=0)
+    width = max(1, round(1.0 / (length * step)))
+    bands = power[: power.size // width * width].reshape(-1, width).sum(axis=1)
+    if not bands.size or not bands.max() > 0.0:
+        return float("nan")
+    top = int(bands.argmax())
+    near = slice(max(top - 1, 0) * width, (top + 2) * width)
+    frequency = (first + np.arange(power.size)[near]) * step
+    return float(power[near] @ frequency / power[near].sum())

@@ -1,0 +1,63 @@
+"""How far linear theory and what really happens agree on a map."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from ..analysis.regimes import REGIMES
+
+UNSTABLE = "unstable"
+VERDICTS = (UNSTABLE, "sliding", "held", "lifted off", "jammed")
+# What must be seen for linear theory to be right; of the others it says nothing.
+VIBRATING = ("stick-slip", "squeal", "judder")
+EXPECTED = {UNSTABLE: VIBRATING, "sliding": ("stable sliding",), "held": ("sticking",)}
+# A run that leaves its track was cut short.
+UNDECIDED = "off the track"
+
+
+def agreement(found: xr.Dataset) -> xr.Dataset:
+    """Return how often each regime was seen under each verdict of linear theory.
+
+    They agree where a mode grows and the run vibrates (stick-slip, squeal or judder), where all modes of steady sliding
+    decay and the run slides, and where friction holds the contact and the run sticks. Runs off the track, failed ones,
+    and points that linear theory has jammed or lifted off are left out of the count.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        What `sweep` returned with the measure ``regime``.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``runs`` over ``verdict`` and ``regime``; ``agree`` and ``compared``, numbers of runs, and the numbers of runs
+        ``missed`` (linear theory saw nothing and it vibrates) and of ``false_alarms`` (it saw growth and nothing
+        vibrates).
+
+    Raises
+    ------
+    ValueError
+        If the sweep has no regimes or no linear analysis.
+    """
+    for name in ("regime", "unstable_modes", "equilibrium"):
+        if name not in found:
+            raise ValueError(
+                f"found must have {name}, which the measure regime gives, got {', '.join(map(str, found.data_vars))}"
+            )
+    regime = found["regime"].values.ravel()
+    grows = np.nan_to_num(found["unstable_modes"].values.ravel()) > 0
+    verdict = np.where(grows, UNSTABLE, found["equilibrium"].values.ravel())
+    runs = np.array([[np.count_nonzero((verdict == v) & (regime == r)) for r in REGIMES] for v in VERDICTS])
+    table = xr.DataArray(runs, {"verdict": list(VERDICTS), "regime": list(REGIMES)}, ("verdict", "regime"))
+    compared = table.sel(verdict=list(EXPECTED)).drop_sel(regime=UNDECIDED)
+    right = sum(int(table.sel(verdict=v, regime=list(words)).sum()) for v, words in EXPECTED.items())
+    return xr.Dataset(
+        {
+            "runs": table,
+            "agree": ((), right),
+            "compared": ((), int(compared.sum())),
+            "missed": ((), int(compared.drop_sel(verdict=UNSTABLE).sel(regime=list(VIBRATING)).sum())),
+            "false_alarms": ((), int(compared.sel(verdict=UNSTABLE).drop_sel(regime=list(VIBRATING)).sum())),
+        }
+    )

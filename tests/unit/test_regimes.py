@@ -1,0 +1,414 @@
+"""Regimes of synthetic records whose answers are known by construction, and of the shipped cases."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stridula as st
+from stridula import analysis
+from stridula.analysis.status_changes import MIXED, changes, last_rest, least_landings, regularity, stick_onsets
+from stridula.analysis.tones import frames, strongest_tone
+
+RATE = 20e3
+SEPARATED, STICKING, SLIDING = range(3)
+SECOND = np.arange(1, round(RATE) + 1) / RATE
+NOISE = np.random.default_rng(1).normal(size=SECOND.size)
+
+
+def record(status, normal=1.0, rate=RATE, share=None, lost=0.0, landings=None, ended="finished"):
+    """Return a record of a status over time and a normal force, with a tangential force of 0.3."""
+    size = len(status)
+    time = np.arange(1, size + 1) / rate
+    data = {
+        "status_share": (("time", "contact_status"), np.eye(3)[status] if share is None else share),
+        "normal_force": ("time", np.broadcast_to(np.asarray(normal, dtype=float), size)),
+        "tangential_force": ("time", np.full(size, 0.3)),
+        "damping_loss": ("time", lost * time),
+        "impact_loss": ("time", 0.0 * time),
+        "friction_loss": ("time", time),
+    }
+    if landings is not None:
+        data["landings"] = ("time", np.full(size, landings))
+    return xr.Dataset(data, {"time": time}, {"ended": ended})
+
+
+def always(status, size=SECOND.size):
+    return np.full(size, status)
+
+
+def tone(frequency=1000.0, amplitude=0.3):
+    return amplitude * np.sin(2.0 * np.pi * frequency * SECOND)
+
+
+def stick_slip(frequency, time=SECOND, stick=0.7):
+    """Status and friction of a contact that sticks for a share of each period and slips for the rest."""
+    phase = frequency * time % 1.0
+    friction = np.where(phase < stick, -0.15 + 0.3 * phase / stick, 0.15 - 0.3 * (phase - stick) / (1.0 - stick))
+    return np.where(phase < stick, STICKING, SLIDING), 0.3 + friction
+
+
+def bursts(sound, until=1.0, every=0.1, length=0.03):
+    """Status and normal force of bursts of a sound between stops; in them the tip sticks, slides and separates."""
+    inside = (SECOND % every < length) & (until > SECOND)
+    status = np.where(inside, np.arange(SECOND.size) // 4 % 3, STICKING)
+    return status, np.where(inside, 1.0 + sound, 1.0)
+
+
+def named(run, **words):
+    found = analysis.regime(run, **words)
+    return str(found.regime.values), float(found.confidence)
+
+
+# Each regime.
+
+
+def test_even_sliding_is_stable():
+    found = analysis.regime(record(always(SLIDING)))
+    assert (found.regime, found.confidence, found.sliding, found.settle_time) == ("stable sliding", 1.0, 1.0, 0.0)
+    assert np.isnan(found.frequency)
+
+
+def test_slow_swings_and_drifts_of_sliding_are_stable():
+    """Beams swing at tens of hertz for a second; a slider under a force speeds up and its force drifts."""
+    assert named(record(always(SLIDING), 1.0 + tone(25.0, 0.8)))[0] == "stable sliding"
+    assert named(record(always(SLIDING), 1.0 + SECOND**2))[0] == "stable sliding"
+
+
+def test_held_is_sticking_and_open_has_left():
+    assert named(record(always(STICKING), 1.0 + tone(20.0))) == ("sticking", 1.0)
+    assert named(record(always(SEPARATED), 0.0)) == ("off the track", 1.0)
+
+
+@pytest.mark.parametrize("frequency", [3.0, 20.0, 90.0, 200.0])
+def test_stick_slip(frequency):
+    status, friction = stick_slip(frequency)
+    run = record(status)
+    run["tangential_force"] = ("time", friction)
+    found = analysis.regime(run)
+    assert found.regime == "stick-slip"
+    # At 200 Hz the changes are within a factor of 1.5 of the lowest tone.
+    assert found.confidence > (0.75 if frequency == 200.0 else 0.9)
+    assert found.frequency == pytest.approx(frequency, rel=2e-3) or frequency == 3.0
+    assert found.slip_rate == pytest.approx(frequency, abs=1.2)
+    assert not found.periodicity < 0.99
+
+
+def test_five_slow_cycles_are_periodic():
+    time = np.arange(1, 20_001) / 1e3
+    status, friction = stick_slip(0.27, time)
+    run = record(status, rate=1e3)
+    run["tangential_force"] = ("time", friction)
+    found = analysis.regime(run)
+    assert (found.regime, found.confidence) == ("stick-slip", 1.0)
+    assert found.periodicity > 0.99
+    assert found.frequency == pytest.approx(0.27, rel=1e-3)
+
+
+def test_one_slip_is_stick_slip_unless_next_to_nothing():
+    status = always(STICKING)
+    status[10_000:13_000] = SLIDING
+    found = analysis.regime(record(status))
+    assert found.regime == "stick-slip"
+    assert np.isnan(found.periodicity)
+    status[10_010:13_000] = STICKING
+    assert named(record(status))[0] == "sticking"
+
+
+@pytest.mark.parametrize("frequency", [450.0, 903.0, 3100.0, 4700.0])
+def test_tonal_bursts_between_stops_are_squeal(frequency):
+    found = analysis.regime(record(*bursts(tone(frequency, 0.8))))
+    assert (found.regime, found.confidence) == ("squeal", 1.0)
+    assert found.frequency == pytest.approx(frequency, abs=10.0)
+
+
+def test_a_tone_while_sliding_is_squeal():
+    found = analysis.regime(record(always(SLIDING), 1.0 + tone()))
+    assert (found.regime, found.confidence) == ("squeal", 1.0)
+    assert found.frequency == pytest.approx(1000.0, abs=1.0)
+    assert found.tonality > 0.99
+    assert found.loudness == pytest.approx(0.3 / np.sqrt(2.0), rel=2e-2)
+
+
+def hammering(rng):
+    """Status and normal force of impacts at random times, 400 a second, of random strength."""
+    hits = np.sort(rng.choice(SECOND.size // 8, 400, replace=False)) * 8
+    closed, force = np.zeros(SECOND.size, dtype=bool), np.zeros(SECOND.size)
+    for hit, strength in zip(hits, rng.exponential(20.0, hits.size), strict=True):
+        closed[hit : hit + 6] = True
+        force[hit : hit + 6] = strength * np.hanning(8)[1:-1]
+    return np.where(closed, SLIDING, SEPARATED), force
+
+
+def test_random_impacts_are_judder():
+    status, force = hammering(np.random.default_rng(2))
+    found = analysis.regime(record(status, force))
+    assert (found.regime, found.confidence) == ("judder", 1.0)
+    assert found.tonality < 0.4
+    assert found.impact_rate == pytest.approx(400.0, abs=20.0)
+
+
+def test_a_run_off_its_track_is_that_whatever_came_before():
+    found = analysis.regime(record(always(SLIDING), 1.0 + tone(), ended="off the track"))
+    assert (found.regime, found.confidence) == ("off the track", 1.0)
+    assert found.tonality > 0.99
+
+
+# Negative controls and boundaries.
+
+
+def test_bursts_of_noise_are_not_squeal():
+    found = analysis.regime(record(*bursts(0.8 * NOISE)))
+    assert found.regime == "judder"
+    assert found.tonality < 0.35
+    assert named(record(always(SLIDING), 1.0 + 0.3 * NOISE))[0] == "stable sliding"
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.4, "judder"), (0.6, "squeal")])
+def test_a_tone_must_carry_half_of_the_power(share, expected):
+    """Tone in noise, of which half is left at the reduced rate of 10 kHz, less what lies below 300 Hz."""
+    heard = 0.5 * (1.0 - 300.0 / 5000.0)
+    sound = tone(1000.0, np.sqrt(2.0 * share)) + np.sqrt((1.0 - share) / heard) * NOISE
+    name, confidence = named(record(*bursts(0.5 * sound)))
+    assert name == expected
+    assert 0.5 < confidence < 1.0
+
+
+@pytest.mark.parametrize(("level", "expected"), [(0.03, "stable sliding"), (0.07, "squeal")])
+def test_a_tone_is_heard_from_a_twentieth_of_the_mean_force_on(level, expected):
+    name, confidence = named(record(always(SLIDING), 1.0 + tone(1000.0, np.sqrt(2.0) * level)))
+    assert name == expected
+    ratio = max(level / 0.05, 0.05 / level)
+    assert confidence == pytest.approx(0.5 + 0.5 * min(1.0, np.log2(ratio)), abs=0.02)
+
+
+@pytest.mark.parametrize(("frequency", "expected"), [(200.0, "stick-slip"), (250.0, "stick-slip"), (400.0, "squeal")])
+def test_from_300_hertz_on_stick_slip_is_squeal(frequency, expected):
+    status, friction = stick_slip(frequency)
+    run = record(status)
+    run["tangential_force"] = ("time", friction)
+    assert named(run)[0] == expected
+    assert named(run, lowest_tone=500.0)[0] == "stick-slip"
+
+
+def test_ringing_that_dies_away_is_not_squeal_and_growth_is():
+    assert named(record(always(SLIDING), 1.0 + np.exp(-SECOND / 0.1) * tone(1000.0, 0.9))) == ("stable sliding", 1.0)
+    grows = analysis.regime(record(always(SLIDING), 1.0 + np.exp((SECOND - 1.0) / 0.2) * tone(1000.0, 0.02)))
+    assert (grows.regime, grows.confidence) == ("squeal", 1.0)
+    assert grows.loudness < 0.05
+
+
+def test_the_start_does_not_decide():
+    """Bursts in the first tenth; bursts for most of the time, and then a rest; bursts for half of it."""
+    status, force = bursts(tone(900.0, 0.8), until=0.1)
+    assert named(record(status, force)) == ("sticking", 1.0)
+    status, force = bursts(tone(900.0, 0.8), until=0.85)
+    found = analysis.regime(record(status, force))
+    assert found.regime == "squeal"
+    assert found.settle_time == pytest.approx(0.83, abs=1e-3)
+    status, force = bursts(tone(900.0, 0.8), until=0.5)
+    assert named(record(status, force), start=0.0)[1] < 0.7
+
+
+def test_the_start_may_be_chosen():
+    status, _ = stick_slip(20.0)
+    run = record(np.where(SECOND < 0.4, SEPARATED, status))
+    assert analysis.regime(run).separated > 0.3
+    assert analysis.regime(run, start=0.4).separated == 0.0
+
+
+# What lies within the sample intervals.
+
+
+@pytest.mark.parametrize(("rate", "expected"), [(900.0, "squeal"), (100.0, "stick-slip")])
+def test_a_limit_cycle_sampled_at_its_period_is_no_fixed_point(rate, expected):
+    """Every sample is the same mixture of the states."""
+    share = np.tile([0.0, 0.6, 0.4], (400, 1))
+    found = analysis.regime(record(always(SLIDING, 400), rate=rate, share=share))
+    assert found.regime == expected
+    assert found.frequency == pytest.approx(rate, rel=1e-6)
+    assert np.isnan(found.settle_time)
+
+
+def test_landings_within_the_intervals_are_counted():
+    share = np.tile([0.3, 0.0, 0.7], (400, 1))
+    found = analysis.regime(record(always(SLIDING, 400), rate=400.0, share=share, landings=2))
+    assert (found.regime, found.confidence) == ("squeal", 1.0)
+    assert found.frequency == found.impact_rate == pytest.approx(800.0)
+
+
+def test_damping_betrays_a_vibration_that_the_samples_hide():
+    """It slides at every step with equal forces; a steady state would lose nothing to damping."""
+    run = record(always(SLIDING, 1000), rate=1000.0, lost=0.1)
+    found = analysis.regime(run)
+    assert (found.regime, found.confidence) == ("squeal", 1.0)
+    assert named(run, lossy=0.2) == ("stable sliding", 1.0)
+    assert named(record(always(SLIDING, 1000), rate=1000.0, lost=0.001)) == ("stable sliding", 1.0)
+    run["damping_loss"] = 0.1 * (1.0 - np.exp(-run.time / 0.1))
+    assert named(run) == ("stable sliding", 1.0)
+
+
+def relay(frequency):
+    """The block on a belt, so stiff that it sticks and slips at a frequency [Hz]."""
+    factor = frequency / 0.27335
+    block = st.PointMass(1.0)
+    belt = st.RigidTrack(velocity=0.5 / factor)
+    contact = st.PointContact(block.centre, belt, friction=st.StaticKinetic(0.4, 0.25))
+    drives = [st.Force(block.centre, y=-10.0), st.InitialVelocity(block, x=0.5 / factor)]
+    return st.System(contact, drives, [st.Spring(block.centre, stiffness=4.0 * factor**2, direction="x")])
+
+
+@pytest.mark.parametrize("rate", [400.0, 800.0, 801.0, 5000.0, 20e3])
+@pytest.mark.parametrize(("frequency", "expected"), [(800.0, "squeal"), (2.0, "stick-slip")])
+def test_a_relay_recorded_at_any_rate(frequency, expected, rate):
+    rate *= frequency / 800.0
+    step = 1.0 / (500.0 * frequency)
+    run = st.simulate(relay(frequency), 200.0 / frequency, step=step, sample_rate=rate, probes=[])
+    assert named(run)[0] == expected
+
+
+# Records of every kind.
+
+
+@pytest.mark.parametrize("ended", ["not finite", "contact unsolved", "energy created"])
+def test_a_run_that_failed_is_not_trusted(ended):
+    assert named(record(always(SLIDING), ended=ended)) == ("stable sliding", 0.5)
+    assert named(record(always(SLIDING), ended="interrupted")) == ("stable sliding", 1.0)
+
+
+def test_short_records_are_judged_without_confidence():
+    assert named(record(always(SLIDING, 2))) == ("stable sliding", 0.5)
+    assert named(record(np.array([STICKING, SLIDING])))[1] == 0.5
+    assert named(record(always(SLIDING, 400)))[1] == 0.5
+
+
+def test_landings_are_counted_from_the_shares_where_they_are_not_recorded():
+    status, force = hammering(np.random.default_rng(2))
+    counted = analysis.regime(record(status, force)).impact_rate
+    share = np.eye(3)[status]
+    assert least_landings(share[:, 0]) == np.sum((status[1:] != 0) & (status[:-1] == 0))
+    coarse = share.reshape(-1, 20, 3).mean(axis=1)
+    forces = force.reshape(-1, 20).mean(axis=1)
+    found = analysis.regime(record(always(SLIDING, 1000), forces, rate=1e3, share=coarse)).impact_rate
+    assert 0.4 * counted < found <= counted
+
+
+def test_every_number_has_its_unit_and_meaning():
+    found = analysis.regime(record(always(SLIDING)))
+    assert set(found) >= {"regime", "confidence", "tonality", "periodicity", "frequency", "impact_rate", "settle_time"}
+    assert all(found[name].dims == () and {"units", "long_name"} <= set(found[name].attrs) for name in found)
+    plain = analysis.regime_of(record(always(SLIDING)))
+    assert set(plain) == set(found)
+    assert set(analysis.REGIMES) == {
+        "stable sliding", "sticking", "stick-slip", "squeal", "judder", "off the track"
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"start": -1.0}, "start must be from 0 to 1"),
+        ({"rest": 1.0}, "rest must be strictly between 0 and 1"),
+        ({"faint": 0.0}, "faint must be above 0"),
+        ({"lowest_tone": "low"}, "lowest_tone must be a number"),
+    ],
+)
+def test_bad_arguments(words, message):
+    with pytest.raises(ValueError, match=message):
+        analysis.regime(record(always(SLIDING)), **words)
+
+
+def test_records_that_are_not_of_one_contact_or_too_short():
+    run = record(always(SLIDING))
+    several = xr.concat([run, run], xr.IndexVariable("contact", ["a", "b"]))
+    with pytest.raises(ValueError, match="run must be of one contact"):
+        analysis.regime(several)
+    with pytest.raises(ValueError, match="at least 2 samples"):
+        analysis.regime(run.isel(time=slice(1)))
+
+
+# The parts.
+
+
+def test_the_last_rest_must_outlast_all_before():
+    assert last_rest(np.array([1, 1, 2, 2, 2])) == 2
+    assert last_rest(np.array([1, 1, 1, 2, 2])) == 5
+    assert last_rest(np.array([1, 1, 2, 2, MIXED])) == 5
+    assert last_rest(np.array([MIXED, MIXED, MIXED, 2, 2])) == 3
+    assert last_rest(np.array([2, 2])) == 0
+
+
+def test_changes_and_onsets():
+    assert changes(np.array([1, 2, 1])) == 2
+    assert changes(np.array([1, MIXED, 2, MIXED, 2])) == 3
+    assert changes(np.array([MIXED, MIXED])) == 4
+    np.testing.assert_array_equal(stick_onsets(np.array([0.0, 0, 1, 1, 0, 1, 0]), 1), [2, 5])
+    assert regularity(np.array([0, 10, 20, 30])) == 1.0
+    assert regularity(np.cumsum(np.random.default_rng(3).exponential(1.0, 20_000))) == pytest.approx(0.5, abs=0.02)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.9])
+def test_tonality_is_the_share_of_the_tone(share):
+    """Noise adds the peak of its own autocorrelation, at most some 0.15 for 150 periods of 5 kHz."""
+    sound = tone(1000.0, np.sqrt(2.0 * share)) + np.sqrt(2.0 * (1.0 - share)) * NOISE
+    reduced = (sound[::2] + sound[1::2])[None] / 2.0
+    assert frames(reduced, 1e-4, 0.03, 300.0).tonality == pytest.approx(share, abs=0.1 + 0.1 * (1.0 - share))
+
+
+def test_frames_keep_the_power_and_leave_low_frequencies_aside():
+    found = frames(tone(900.0, 0.5)[None] + tone(50.0, 3.0), 1.0 / RATE, 0.03, 300.0)
+    assert found.level == pytest.approx(0.5 / np.sqrt(2.0), rel=1e-2)
+    assert found.growth == pytest.approx(1.0, abs=0.01)
+    assert strongest_tone(tone(900.0, 0.5)[None], 1.0 / RATE, 0.03, 300.0) == pytest.approx(900.0, abs=1.0)
+    assert np.isnan(strongest_tone(np.zeros((1, 100)), 1.0 / RATE, 0.03, 300.0))
+
+
+# Shipped cases.
+
+EXPECTED = {
+    "stable-sliding": "stable sliding",
+    "axial-sliding": "stable sliding",
+    "squeal": "squeal",
+    "judder": "judder",
+    "weak-pressure": "judder",
+    "strong-pressure": "squeal",
+    "belt": "stick-slip",
+    "lugre": "stick-slip",
+}
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_shipped_cases(name):
+    case = st.load_scenario(name)
+    rate = min(case.sample_rate, 20e3)
+    run = st.simulate(case.system, case.duration, step=case.step, sample_rate=rate, probes=[])
+    found = st.regime(run)
+    assert found.regime == EXPECTED[name]
+    assert found.confidence > 0.8
+
+
+def test_the_regime_does_not_depend_on_the_sample_rate():
+    """Of one and the same march: the forces are means, and those of a lower rate means of them."""
+    case = st.load_scenario("strong-pressure")
+    runs = [st.simulate(case.system, 0.6, step=5e-6, sample_rate=rate, probes=[]) for rate in (10e3, 20e3, 50e3, 100e3)]
+    first, *others = (analysis.regime_of(run) for run in runs)
+    assert first["regime"] == "squeal"
+    for found in others:
+        assert found["regime"] == first["regime"]
+        assert found["tonality"] == pytest.approx(first["tonality"], rel=1e-6)
+        assert found["impact_rate"] == pytest.approx(first["impact_rate"], rel=0.02)
+
+
+def test_low_friction_is_stable_and_high_friction_jams():
+    case = st.load_scenario("squeal")
+    for coefficient, expected in ((0.4, "off the track"), (0.8, "stable sliding"), (1.4, "squeal")):
+        contact = replace(case.system.contact, friction=st.Coulomb(coefficient))
+        run = st.simulate(replace(case.system, contact=contact), 1.0, sample_rate=10e3, probes=[])
+        assert named(run)[0] == expected
+    steep = replace(case.system.slider, angle=np.radians(70.0))
+    contact = replace(case.system.contact, tip=steep.tip)
+    run = st.simulate(st.System(contact, [st.Force(steep.root, transverse=3.676)]), 1.0, sample_rate=10e3, probes=[])
+    assert named(run) == ("sticking", 1.0)
