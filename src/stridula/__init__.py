@@ -51,7 +51,7 @@ _HOME = {
         "simulate",
         "simulate_many",
     ),
-    "studies": ("ensemble",),
+    "studies": ("Grid", "LatinHypercube", "ensemble", "sweep"),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
 __all__ = ["__version__", *_MODULE]

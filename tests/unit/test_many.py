@@ -60,7 +60,7 @@ def test_runs_side_by_side_are_those_alone():
 def test_groups_are_of_one_kind_and_full_where_they_can():
     asked = Asked(0.1, None, STEP, 1e4, None, None)
     systems = [*squeals(10), CASES["judder"](), *squeals(3)]
-    groups = many._groups([asked.arrays(system) for system in systems])
+    groups = many._groups({number: asked.arrays(system) for number, system in enumerate(systems)})
     assert groups == [[0, 1, 2, 3, 4, 5, 6, 7], [8, 9, 11, 12, 13], [10]]
 
 
