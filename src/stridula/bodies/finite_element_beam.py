@@ -21,7 +21,7 @@ from .modes import Array, BodyPoint, Modes
 from .sections import Circle, Material, Rectangle, Section
 
 LARGEST_ELEMENTS = 500
-# Beams of few elements whose modes are kept: a sweep comes back to the same ones. Of large beams fewer, for their memory.
+# Beams whose modes are kept: a sweep comes back to the same ones. Of those of many elements fewer, for their memory.
 FEW_ELEMENTS, MANY_BEAMS, FEW_BEAMS = 60, 128, 16
 
 

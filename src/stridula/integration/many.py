@@ -93,7 +93,7 @@ def simulate_many(
         Whether a system that cannot be simulated, or a record on which `reduce` fails, ends all runs, or leaves its
         exception in its place while the others go on.
     provenance : bool, optional
-        Whether each record says in ``attrs["scenario"]`` what it is of; records that are reduced at once can do without.
+        Whether each record says in ``attrs["scenario"]`` what it is of; those reduced at once can do without.
 
     Returns
     -------

@@ -88,9 +88,7 @@ def _general(system: System) -> dict[str, Any]:
         return {"kind": "beam", "body": system.body_name(contact.track)}
 
     tables: dict[str, Any] = {
-        "bodies": {
-            system.body_name(body): _general_body(body, system) for body in system.bodies
-        },
+        "bodies": {system.body_name(body): _general_body(body, system) for body in system.bodies},
         "contacts": [
             {**_contact(contact), "tip": place(contact.tip), "track": track(contact)} for contact in system.contacts
         ],

@@ -30,9 +30,7 @@ def overridden(tables: dict[str, Any], overrides: Mapping[str, Any]) -> tuple[di
     return changed, problems
 
 
-def located(
-    tables: dict[str, Any], overrides: Mapping[str, Any]
-) -> tuple[dict[str, Any], dict[str, Path], list[str]]:
+def located(tables: dict[str, Any], overrides: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Path], list[str]]:
     """Return the tables with values set by key, the path that each key means, and what is wrong with the others."""
     changed = copy.deepcopy(tables)
     places: dict[str, Path] = {}

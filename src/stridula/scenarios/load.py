@@ -154,8 +154,8 @@ def with_matrices(written: dict[str, Any], usable: dict[str, Any]) -> dict[str, 
     ScenarioError
         With every problem found.
     """
-    bodies = written.get("bodies")
-    files = {name for name, body in bodies.items() if names_files(body)} if isinstance(bodies, dict) else set()
+    bodies: dict[str, Any] = written.get("bodies") or {}
+    files = {name for name, body in bodies.items() if names_files(body)}
     if not files:
         return written
     _, builder = _checked(usable)
@@ -173,4 +173,6 @@ def _checked(written: dict[str, Any], problems: Sequence[str] = ()) -> tuple[Sce
         raise ScenarioError(found + explain(error, tables, written)) from None
     if found:
         raise ScenarioError(found)
-    return checked, Builder({"drives": []} | checked.model_dump(exclude_unset=True), partial(as_written, written=written))
+    return checked, Builder(
+        {"drives": []} | checked.model_dump(exclude_unset=True), partial(as_written, written=written)
+    )

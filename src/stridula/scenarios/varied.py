@@ -1,4 +1,4 @@
-"""Keys of a scenario that go through several values: where they are, what they take, what their values are in numbers."""
+"""Keys of a scenario that go through several values: where they are, and what they take."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def varied_keys(tables: dict[str, Any], keys: Sequence[str], sets: Sequence[Sequ
         If a key is not known, means several places or a place that another one means, or names a file.
     """
     changed, places = _places(tables, keys, sets)
-    found = []
+    found: list[Varied] = []
     for key in keys:
         path = places[key]
         full = as_written(path, changed)

@@ -10,11 +10,11 @@ _HOME = {
     "LatinHypercube": "points",
     "MEASURES": "measures",
     "Measure": "measures",
-    "SweepProgress": "sweep",
+    "SweepProgress": "sweeps",
     "ensemble": "ensembles",
     "mean_and_interval": "ensembles",
     "share_of": "ensembles",
-    "sweep": "sweep",
+    "sweep": "sweeps",
 }
 __all__ = [*_HOME]
 

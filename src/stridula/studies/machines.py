@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -26,16 +26,14 @@ def client_of(address: str) -> Any:
     try:
         from distributed import Client
     except ImportError:
-        raise ValueError(
-            "scheduler needs dask.distributed: install stridula[distributed], or leave it out"
-        ) from None
+        raise ValueError("scheduler needs dask.distributed: install stridula[distributed], or leave it out") from None
     try:
         return Client(address, timeout=PATIENCE)
     except (OSError, ValueError, TimeoutError) as error:
         raise ValueError(f"scheduler must answer, got {address!r}: {message_of(error)}") from None
 
 
-def on_machines(client: Any, task: Task, parts: Mapping[int, Points]) -> Iterator[tuple[int, list[Outcome]]]:
+def on_machines(client: Any, task: Task, parts: Mapping[int, Points]) -> Generator[tuple[int, list[Outcome]]]:
     """Go through the parts as they are done, with what came of their points.
 
     Parameters

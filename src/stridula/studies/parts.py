@@ -51,7 +51,9 @@ class Parts:
             raise ValueError(f"out must be a new file or that of this sweep, got {str(self.out)!r}, another file")
         found = load(self.out)
         if {name: found.attrs.get(name) for name in self.identity} != self.identity:
-            raise ValueError(f"out must be a new file or that of this sweep, got {str(self.out)!r}{self._why(found.attrs)}")
+            raise ValueError(
+                f"out must be a new file or that of this sweep, got {str(self.out)!r}{self._why(found.attrs)}"
+            )
         return found
 
     def _check_folder(self) -> None:
@@ -76,7 +78,13 @@ class Parts:
 
     def _why(self, other: dict[str, Any]) -> str:
         """Return in words in what another sweep differs."""
-        words = {"scenario": "another scenario", "sweep": "other points or options", "stridula_version": "another version"}
+        words = {
+            "scenario": "another scenario",
+            "sweep": "other points or options",
+            "stridula_version": "another version",
+        }
+        if "sweep" not in other:
+            return ", another file"
         differing = [word for name, word in words.items() if name in other and other[name] != self.identity[name]]
         return f", of {' and '.join(differing)}" if differing else ""
 

@@ -69,7 +69,11 @@ def swept(
         known = [outcome["values"].get(column.name) for outcome in outcomes]
         words = {"long_name": column.long_name} | ({"units": column.units} if column.units else {})
         if column.is_text or any(isinstance(value, str) for value in known):
-            data[column.name] = (dimensions, laid(("" if value is None else str(value) for value in known), object), words)
+            data[column.name] = (
+                dimensions,
+                laid(("" if value is None else str(value) for value in known), object),
+                words,
+            )
         else:
             numbers = (float("nan") if value is None else value for value in known)
             data[column.name] = (dimensions, laid(numbers, float), words)

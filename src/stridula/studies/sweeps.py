@@ -6,10 +6,11 @@ import json
 import os
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,7 @@ from ..scenarios.read import read_tables
 from ..scenarios.varied import Varied, varied_keys
 from ..version import __version__
 from .machines import on_machines
-from .measures import Asked, asked_for
+from .measures import asked_for
 from .parts import Parts
 from .points import Grid, LatinHypercube, Layout, laid_out, plain_python
 from .swept import check_names, swept
@@ -127,60 +128,96 @@ def sweep(
         If a part fails on other machines; finished parts are kept.
     """
     began = time.perf_counter()
-    asked = asked_for(measures)
-    layout = laid_out(points)
-    check_names(layout, asked.columns)
     if workers is not None:
         count("workers", workers)
     if not isinstance(watchers, Sequence):
         raise ValueError(f"watchers must be a list of callables, got {watchers!r}")
     if client is not None and not callable(getattr(client, "submit", None)):
         raise ValueError(f"client must be a client of dask.distributed, got {client!r}")
-    fixed = {key: plain_python(value) for key, value in (overrides or {}).items()}
-    timing = {"duration": plain_python(duration), "sample_rate": plain_python(sample_rate)}
-    given = {f"simulation.{name}": value for name, value in timing.items() if value is not None}
-    tables, keys, values, has_own_rate = _scenario(scenario, fixed | given, layout)
-    with_probes = bool(asked.functions) if probes is None else bool(probes)
-    highest_rate = float("inf") if has_own_rate else SAMPLE_RATE
-    task = Task(tables, tuple(key.path for key in keys), asked, highest_rate, with_probes)
-    wanted = {"measures": list(asked.names), "functions": list(asked.functions), "overrides": fixed, **timing}
-    attributes = {
-        "title": str(tables.get("title", "")),
-        "scenario": toml(tables),
-        "stridula_version": __version__,
-        "sweep": json.dumps({"points": layout.asked, **wanted, "probes": with_probes}, ensure_ascii=False, default=str),
-    }
-
-    store = None if out is None else Parts(out, {name: attributes[name] for name in attributes if name != "title"})
+    plan = _planned(scenario, points, measures, overrides or {}, duration, sample_rate, probes)
+    store = None if out is None else Parts(out, plan.identity)
     if store is not None and store.finished is not None:
         store.clear()
         return store.finished
-
-    starts = range(0, len(values), POINTS_OF_A_PART)
-    parts = {number: values[first : first + POINTS_OF_A_PART] for number, first in enumerate(starts)}
-    done = {} if store is None else store.done({number: len(part) for number, part in parts.items()})
-    left = {number: part for number, part in parts.items() if number not in done}
+    done = {} if store is None else store.done({number: len(part) for number, part in plan.parts.items()})
+    left = {number: part for number, part in plan.parts.items() if number not in done}
 
     def report() -> None:
         reached = sum(map(len, done.values()))
         for watch in watchers:
-            watch(SweepProgress(reached, len(values), time.perf_counter() - began))
+            watch(SweepProgress(reached, len(plan.values), time.perf_counter() - began))
 
     if done:
         report()
     with one_thread_each():
-        computed = on_machines(client, task, left) if client is not None else _here(task, left, workers)
+        computed = _here(plan.task, left, workers) if client is None else on_machines(client, plan.task, left)
         with closing(computed):
             for number, outcomes in computed:
                 if store is not None:
                     store.keep(number, outcomes)
                 done[number] = outcomes
                 report()
-    outcomes = [outcome for number in parts for outcome in done[number]]
-    found = swept(layout, keys, values, asked.columns, outcomes, attributes)
+    found = plan.dataset([outcome for number in plan.parts for outcome in done[number]])
     if store is not None:
         store.finish(found)
     return found
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """A sweep before it starts: what is done at each point, the points, and what the result says of them."""
+
+    task: Task
+    layout: Layout
+    keys: list[Varied]
+    values: list[tuple[Any, ...]]
+    attributes: dict[str, str]
+
+    @property
+    def identity(self) -> dict[str, str]:
+        """What tells this sweep from others."""
+        return {name: self.attributes[name] for name in ("scenario", "sweep", "stridula_version")}
+
+    @cached_property
+    def parts(self) -> dict[int, list[tuple[Any, ...]]]:
+        """Values of the points of each part."""
+        starts = range(0, len(self.values), POINTS_OF_A_PART)
+        return {number: self.values[first : first + POINTS_OF_A_PART] for number, first in enumerate(starts)}
+
+    def dataset(self, outcomes: Sequence[Outcome]) -> xr.Dataset:
+        """Return what came of the points."""
+        return swept(self.layout, self.keys, self.values, self.task.asked.columns, outcomes, self.attributes)
+
+
+def _planned(
+    scenario: Any,
+    points: Any,
+    measures: Any,
+    overrides: Mapping[str, Any],
+    duration: Any,
+    sample_rate: Any,
+    probes: bool | None,
+) -> _Plan:
+    """Return a sweep from the arguments of `sweep`, checked."""
+    asked = asked_for(measures)
+    layout = laid_out(points)
+    check_names(layout, asked.columns)
+    fixed = {key: plain_python(value) for key, value in overrides.items()}
+    timing = {"duration": plain_python(duration), "sample_rate": plain_python(sample_rate)}
+    given = {f"simulation.{name}": value for name, value in timing.items() if value is not None}
+    tables, keys, values, has_own_rate = _scenario(scenario, fixed | given, layout)
+    with_probes = bool(asked.functions) if probes is None else bool(probes)
+    highest_rate = float("inf") if has_own_rate else SAMPLE_RATE
+    task = Task(tables, tuple(key.path for key in keys), asked, highest_rate, with_probes)
+    wanted = {"points": layout.asked, "measures": list(asked.names), "functions": list(asked.functions)}
+    wanted |= {"overrides": fixed, **timing, "probes": with_probes}
+    attributes = {
+        "title": str(tables.get("title", "")),
+        "scenario": toml(tables),
+        "stridula_version": __version__,
+        "sweep": json.dumps(wanted, ensure_ascii=False, default=str),
+    }
+    return _Plan(task, layout, keys, values, attributes)
 
 
 def _scenario(
@@ -198,7 +235,10 @@ def _scenario(
         twin = next((name for name, path in places.items() if path == key.path), None)
         if twin is not None:
             raise ScenarioError([f"key must be set or varied, got both {twin!r} and {key.key!r}"])
-    columns = [[key.read(value) for value in column] for key, column in zip(keys, zip(*layout.values, strict=True), strict=True)]
+    columns = [
+        [key.read(value) for value in column]
+        for key, column in zip(keys, zip(*layout.values, strict=True), strict=True)
+    ]
     values = list(zip(*columns, strict=True))
     has_own_rate = ("simulation", "sample_rate") in [*places.values(), *(key.path for key in keys)]
     return _usable(tables, keys, values), keys, values, has_own_rate
@@ -209,17 +249,16 @@ def _usable(tables: dict[str, Any], keys: Sequence[Varied], values: Sequence[Seq
 
     They must alone or at the first or last point: what the points lack is no fault of theirs.
     """
-    first: ScenarioError | None = None
+    errors = []
     for given in (None, values[0], values[-1]):
         tried = tables if given is None else with_values(tables, [(key.path, given[n]) for n, key in enumerate(keys)])
         try:
             scenario_of_tables(tried)
         except ScenarioError as error:
-            first = first or error
+            errors.append(error)
         else:
             return with_matrices(tables, tried)
-    assert first is not None
-    raise first
+    raise errors[0]
 
 
 class _Stopped(Exception):
@@ -228,7 +267,7 @@ class _Stopped(Exception):
 
 def _here(
     task: Task, parts: Mapping[int, Sequence[Sequence[Any]]], workers: int | None
-) -> Iterator[tuple[int, list[Outcome]]]:
+) -> Generator[tuple[int, list[Outcome]]]:
     """Go through the parts as they are done in threads of this process, with what came of their points."""
     if not parts:
         return
