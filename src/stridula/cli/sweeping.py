@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
@@ -17,7 +18,7 @@ from ..studies.measures import asked_for
 from ..studies.points import Grid
 from ..studies.sweeps import SweepProgress, sweep
 from ..studies.swept import failed_points
-from .exits import INTERRUPTED, Stopped
+from .exits import FAILED, INTERRUPTED, Stopped
 from .points import Points
 from .running import check_outputs
 
@@ -42,7 +43,7 @@ def sweep_scenario(
     OSError
         If an output cannot be written; finished parts are kept.
     Stopped
-        On Ctrl-C; finished parts are kept.
+        On Ctrl-C, or if other machines fail; finished parts are kept.
     """
     check_outputs(out, plot)
     asked = asked_for(list(measures))
@@ -73,6 +74,9 @@ def sweep_scenario(
             raise Stopped("interrupted before any point was safe; the same command starts again", INTERRUPTED) from None
         words = f"interrupted; {reached.done} of {reached.points} points are safe in {out}.parts"
         raise Stopped(f"{words}; the same command goes on from there", INTERRUPTED) from None
+    except RuntimeError as error:
+        # What other machines raise; points that fail are no errors.
+        raise Stopped(f"{error} in {out}.parts", FAILED) from None
     if plot is not None:
         _draw(found, plot)
     return _closing(found, out)
@@ -102,8 +106,13 @@ def _client(address: str | None) -> Iterator[Any]:
     if address is None:
         yield None
         return
-    with client_of(address) as client:
-        yield client
+    # What it has to say of lost machines comes as one line of ours.
+    logging.disable(logging.CRITICAL)
+    try:
+        with client_of(address) as client:
+            yield client
+    finally:
+        logging.disable(logging.NOTSET)
 
 
 @contextmanager

@@ -88,7 +88,7 @@ def is_record(path: str | Path) -> bool:
 
 @contextmanager
 def _locks_of_this_process() -> Iterator[None]:
-    """Keep xarray from asking the scheduler of a dask client for the lock of what is in memory here, and nowhere else."""
+    """Keep xarray from asking the scheduler of a dask client for a lock on what is in the memory of this process."""
     dask = sys.modules.get("dask")
     if dask is None:
         yield

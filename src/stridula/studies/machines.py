@@ -28,7 +28,8 @@ def client_of(address: str) -> Any:
     except ImportError:
         raise ValueError("scheduler needs dask.distributed: install stridula[distributed], or leave it out") from None
     try:
-        return Client(address, timeout=PATIENCE)
+        # Not for all that dask does in this process: one that cannot connect would stay in the way.
+        return Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise ValueError(f"scheduler must answer, got {address!r}: {message_of(error)}") from None
 
@@ -54,7 +55,9 @@ def on_machines(client: Any, task: Task, parts: Mapping[int, Points]) -> Generat
 
     futures = {client.submit(_outcomes, task, points, __version__, pure=False): n for n, points in parts.items()}
     try:
-        for future in as_completed(futures):
+        with client.as_current():
+            finished = as_completed(futures)
+        for future in finished:
             try:
                 outcomes = future.result()
             except Exception as error:

@@ -209,7 +209,7 @@ def _planned(
     with_probes = bool(asked.functions) if probes is None else bool(probes)
     highest_rate = float("inf") if has_own_rate else SAMPLE_RATE
     task = Task(tables, tuple(key.path for key in keys), asked, highest_rate, with_probes)
-    wanted = {"points": layout.asked, "measures": list(asked.names), "functions": list(asked.functions)}
+    wanted: dict[str, Any] = {"points": layout.asked, "measures": list(asked.names), "functions": list(asked.functions)}
     wanted |= {"overrides": fixed, **timing, "probes": with_probes}
     attributes = {
         "title": str(tables.get("title", "")),
