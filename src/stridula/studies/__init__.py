@@ -8,8 +8,6 @@ from typing import Any
 _HOME = {
     "Grid": "points",
     "LatinHypercube": "points",
-    "MEASURES": "measures",
-    "Measure": "measures",
     "SweepProgress": "sweeps",
     "ensemble": "ensembles",
     "mean_and_interval": "ensembles",

@@ -39,7 +39,7 @@ class Grid:
         if not isinstance(self.values, Mapping) or not self.values:
             raise ValueError(f"values must be lists of values by key, got {self.values!r}")
         for key, given in self.values.items():
-            if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)) or np.ndim(given) != 1:
+            if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)):
                 raise ValueError(f"values[{key!r}] must be a list of values, got {given!r}")
             if not len(given):
                 raise ValueError(f"values[{key!r}] must hold at least one value, got none")
