@@ -77,8 +77,8 @@ def sweep(
 
     Points are computed in parts of 64, in their order. Within a part runs march side by side, with the shortest of the
     time steps that they would take alone. A part does not depend on who computes it: any number of workers, other
-    machines of the same kind, or a sweep that was stopped and started again give the same to the last bit. Linear algebra
-    runs in one thread meanwhile, since its last bits depend on how many there are.
+    machines of the same kind, or a sweep that was stopped and started again give the same to the last bit. To that
+    end, linear algebra runs in one thread meanwhile.
 
     A point that cannot be built, started, believed or measured is kept with its message, and the others go on.
 
