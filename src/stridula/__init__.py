@@ -51,6 +51,8 @@ _HOME = {
         "simulate",
         "simulate_many",
     ),
+    "analysis.stability": ("sliding_stability",),
+    "studies.root_loci": ("critical_value", "root_loci"),
     "studies": ("Grid", "LatinHypercube", "ensemble", "sweep"),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}

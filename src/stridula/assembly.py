@@ -88,6 +88,8 @@ class Assembly:
         One for each probe.
     prescribed : Prescribed
         What decides how signals and motion go in time.
+    spans : dict
+        First mode of each body and the one after its last, by the body's name.
     """
 
     angular_frequency: Array
@@ -102,6 +104,7 @@ class Assembly:
     velocity: Array
     probes: list[ProbeRows]
     prescribed: Prescribed
+    spans: dict[str, tuple[int, int]]
 
     @property
     def mode_count(self) -> int:
@@ -143,6 +146,7 @@ def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
         velocity=velocity,
         probes=[_probe(probe, layout, loads) for probe in probes],
         prescribed=_prescribed(system, histories),
+        spans={system.body_name(body): layout.spans[body] for body in system.bodies},
     )
 
 

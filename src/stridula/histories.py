@@ -23,10 +23,20 @@ class History(Protocol):
         """Return its integral from 0 [s]."""
         ...
 
+    @property
+    def settled(self) -> float | None:
+        """Time [s] from which it no longer varies, None if it always does."""
+        ...
+
 
 @dataclass(frozen=True)
 class Constant:
     """The stated value from the start to the end."""
+
+    @property
+    def settled(self) -> float:
+        """Time [s] from which it no longer varies: 0."""
+        return 0.0
 
     def factor(self, time: Array) -> Array:
         """Return 1."""
@@ -51,6 +61,11 @@ class Ramp:
 
     def __post_init__(self) -> None:
         positive("duration", self.duration)
+
+    @property
+    def settled(self) -> float:
+        """Time [s] from which it no longer varies: the end of the rise."""
+        return self.duration
 
     def factor(self, time: Array) -> Array:
         """Return ``min(t / duration, 1)``."""
@@ -85,6 +100,11 @@ class Harmonic:
         positive("frequency", self.frequency)
         for name in ("amplitude", "mean", "phase"):
             finite(name, getattr(self, name))
+
+    @property
+    def settled(self) -> float | None:
+        """None, since it always varies, unless its amplitude is 0."""
+        return None if self.amplitude else 0.0
 
     def factor(self, time: Array) -> Array:
         """Return the mean plus the sine."""
@@ -127,6 +147,11 @@ class Sampled:
             )
         if self.time[0] < 0.0 or np.any(np.diff(self.time) <= 0.0):
             raise ValueError(f"time must rise from 0 or above, got {self.time!r}")
+
+    @property
+    def settled(self) -> float:
+        """Time [s] from which it no longer varies: its last."""
+        return self.time[-1]
 
     def factor(self, time: Array) -> Array:
         """Return the interpolated value."""

@@ -129,6 +129,27 @@ def sweep(
 
 
 @app.command()
+def stability(
+    name: NameOrFile,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change a value: its full key or any unique ending of one."),
+    ] = None,
+    status: Annotated[
+        str | None,
+        typer.Option(metavar="WORD", help="Take the contacts as sliding, sticking or separated, in turn with commas."),
+    ] = None,
+    velocity: Annotated[
+        float | None, typer.Option(metavar="M/S", help="Slip speed where nothing prescribes it and friction needs it.")
+    ] = None,
+) -> None:
+    """Say what linear theory says of sliding: equilibrium, modes and which of them grow."""
+    from .stability import print_stability
+
+    print_stability(name, _pairs(set_ or []), status, velocity)
+
+
+@app.command()
 def export(
     record: Annotated[str, typer.Argument(metavar="RUN.nc", help="A record.")],
     out: Annotated[str, typer.Option(metavar="FILE", help="Table to write: .csv or .mat.")],

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..bodies.modes import Array
 from ..checks import non_negative
+from .linearised import Linearised
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,10 @@ class Coulomb:
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]."""
         return np.full(np.shape(velocity), float(self.coefficient))
+
+    def linearised_at(self, velocity: float) -> Linearised:
+        """Return small changes about steady sliding at `velocity` [m/s]: none."""
+        return Linearised()
 
     def __str__(self) -> str:
         return f"{self.coefficient:.4g}"
@@ -64,6 +69,10 @@ class StaticKinetic:
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]; the static one at 0."""
         return np.where(np.asarray(velocity) == 0.0, self.static, self.kinetic)
+
+    def linearised_at(self, velocity: float) -> Linearised:
+        """Return small changes about steady sliding at `velocity` [m/s]: none."""
+        return Linearised()
 
     def __str__(self) -> str:
         return f"{self.static:.4g} static, {self.kinetic:.4g} kinetic"

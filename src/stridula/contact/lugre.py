@@ -10,7 +10,8 @@ import numpy as np
 from ..bodies.modes import Array
 from ..checks import non_negative, positive
 from .coulomb import check_static
-from .weakening import stribeck_curve
+from .linearised import Linearised
+from .weakening import stribeck_curve, stribeck_slope
 
 
 @dataclass(frozen=True)
@@ -64,6 +65,16 @@ class LuGre:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s], 0 at rest."""
         curve = stribeck_curve(self.static, self.kinetic, self.velocity, 2.0, self.viscous, velocity)
         return np.where(np.asarray(velocity) == 0.0, 0.0, curve)
+
+    def linearised_at(self, velocity: float) -> Linearised:
+        """Return small changes about steady sliding at `velocity` [m/s], not 0, where ``z = g(v) / stiffness``."""
+        speed = abs(velocity)
+        curve = float(stribeck_curve(self.static, self.kinetic, self.velocity, 2.0, 0.0, speed))
+        slope = stribeck_slope(self.static, self.kinetic, self.velocity, 2.0, 0.0, speed)
+        by_velocity, by_state = speed * slope / curve, -self.stiffness * speed / curve
+        return Linearised(
+            self.damping * by_velocity + self.viscous, self.stiffness + self.damping * by_state, by_velocity, by_state
+        )
 
     def __str__(self) -> str:
         return f"LuGre, {self.static:.4g} to {self.kinetic:.4g}, bristles {self.stiffness:.3g} 1/m"

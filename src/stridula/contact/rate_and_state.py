@@ -9,6 +9,7 @@ import numpy as np
 
 from ..bodies.modes import Array
 from ..checks import choice, positive
+from .linearised import Linearised
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,18 @@ class RateAndState:
         # asinh(exp(x)) without overflow.
         ratio = self.a * np.where(exponent > 30.0, exponent + np.log(2.0), np.arcsinh(np.exp(np.minimum(exponent, 30))))
         return np.where(speed == 0.0, 0.0, ratio)
+
+    def linearised_at(self, velocity: float) -> Linearised:
+        """Return small changes about steady sliding at `velocity` [m/s], not 0, where ``theta = D / |V|``."""
+        speed = abs(velocity)
+        # u / sqrt(1 + u²) of asinh's argument u, which is 1 but where regularised.
+        share = float(np.tanh(self.coefficient_at(speed) / self.a))
+        return Linearised(
+            slope=self.a * share / speed,
+            by_state=self.b * share * speed / self.slip_distance,
+            state_by_velocity=-1.0 / speed,
+            state_by_state=-speed / self.slip_distance,
+        )
 
     def __str__(self) -> str:
         return f"rate and state ({self.evolution}), {self.reference:.4g}, a {self.a:.3g}, b {self.b:.3g}"

@@ -10,6 +10,7 @@ import numpy as np
 from ..bodies.modes import Array
 from ..checks import non_negative, positive
 from .coulomb import check_static
+from .linearised import Linearised
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,12 @@ class Stribeck:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]."""
         return stribeck_curve(self.static, self.kinetic, self.velocity, self.exponent, self.viscous, velocity)
 
+    def linearised_at(self, velocity: float) -> Linearised:
+        """Return small changes about steady sliding at `velocity` [m/s], not 0."""
+        return Linearised(
+            stribeck_slope(self.static, self.kinetic, self.velocity, self.exponent, self.viscous, velocity)
+        )
+
     def __str__(self) -> str:
         return f"Stribeck, {self.static:.4g} to {self.kinetic:.4g} over {self.velocity:.3g} m/s"
 
@@ -84,6 +91,10 @@ class ExponentialWeakening:
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]."""
         return stribeck_curve(self.static, self.kinetic, self.velocity, 1.0, 0.0, velocity)
+
+    def linearised_at(self, velocity: float) -> Linearised:
+        """Return small changes about steady sliding at `velocity` [m/s], not 0."""
+        return Linearised(stribeck_slope(self.static, self.kinetic, self.velocity, 1.0, 0.0, velocity))
 
     def __str__(self) -> str:
         return f"exponential, {self.static:.4g} to {self.kinetic:.4g} over {self.velocity:.3g} m/s"
@@ -118,6 +129,10 @@ class LinearWeakening:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]."""
         return np.maximum(self.static - self.slope * np.abs(velocity), self.kinetic)
 
+    def linearised_at(self, velocity: float) -> Linearised:
+        """Return small changes about steady sliding at `velocity` [m/s], not 0."""
+        return Linearised(-self.slope if self.static - self.slope * abs(velocity) > self.kinetic else 0.0)
+
     def __str__(self) -> str:
         return f"linear, {self.static:.4g} falling by {self.slope:.3g} s/m to {self.kinetic:.4g}"
 
@@ -128,3 +143,10 @@ def stribeck_curve(
     """Return Stribeck's curve at slip velocities `at` [m/s]."""
     speed = np.abs(at)
     return kinetic + (static - kinetic) * np.exp(-((speed / velocity) ** exponent)) + viscous * speed
+
+
+def stribeck_slope(static: float, kinetic: float, velocity: float, exponent: float, viscous: float, at: float) -> float:
+    """Return the slope [s/m] of Stribeck's curve over the slip speed, at slip velocity `at` [m/s], not 0."""
+    speed = abs(at)
+    power = (speed / velocity) ** exponent
+    return float(viscous - (static - kinetic) * exponent * power / speed * np.exp(-power))

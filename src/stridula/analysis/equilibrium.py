@@ -1,0 +1,253 @@
+"""Equilibrium of contacts that slide steadily, or in the accelerating frame of a slider that a force drives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from ..bodies.modes import Array
+from ..contact import Coulomb, FrictionLaw, StaticKinetic
+from .structure import SEPARATED, SLIDING, STICKING, Structure
+
+# Relative size below which a force or an acceleration is round-off.
+ROUND_OFF = 1e-9
+# Laws whose coefficient in sliding is the same at every speed.
+CONSTANT_LAWS = (Coulomb, StaticKinetic)
+# Contacts up to which all minors are looked at.
+MOST_CONTACTS = 10
+HELD, LIFTED_OFF, JAMMED = "held", "lifted off", "jammed"
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """Where a system is when nothing vibrates.
+
+    Attributes
+    ----------
+    kind : str
+        ``sliding``; ``held``: friction stops a contact; ``lifted off``: a contact does not stay closed; ``jammed``:
+        a contact neither slides on nor opens.
+    status : tuple of str
+        Status of each contact.
+    sense : ndarray, shape (contacts,)
+        Sense in which each slides, +1 or -1; 0 where nothing moves it.
+    ratio : ndarray, shape (contacts,)
+        Tangential over normal force of each in sliding, without its sense [1].
+    normal_force, tangential_force : ndarray, shape (contacts,)
+        Contact forces [N], the tangential ones on the track along its tangent.
+    slip_acceleration : ndarray, shape (contacts,)
+        Accelerations of the slip [m/s²] by rigid motions that nothing holds.
+    displacement : ndarray, shape (modes,)
+        Modal displacements, less those motions.
+    """
+
+    kind: str
+    status: tuple[str, ...]
+    sense: Array
+    ratio: Array
+    normal_force: Array
+    tangential_force: Array
+    slip_acceleration: Array
+    displacement: Array
+
+
+def find_equilibrium(structure: Structure, velocity: float | None, status: Sequence[str] | None = None) -> Equilibrium:
+    """Return the equilibrium of a system, or that of given statuses of its contacts.
+
+    All contacts slide at first. One that does not press is opened, one that comes to a stop is held, until all are as
+    they should be. Where nothing prescribes the sense of sliding, it is that of the motion without friction.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    velocity : float or None
+        Slip speed [m/s] of contacts for which nothing prescribes it, where their law depends on it.
+    status : sequence of str, optional
+        Statuses of the contacts, taken as given.
+
+    Raises
+    ------
+    ValueError
+        If a slip speed that a law depends on is not known.
+    """
+    tried = [SLIDING] * len(structure.lines) if status is None else list(status)
+    while True:
+        found = _at(structure, velocity, tried)
+        wrong = _wrong(structure, found)
+        if wrong is None:
+            kind = LIFTED_OFF if SEPARATED in tried else HELD if STICKING in tried else SLIDING
+            return _equilibrium(kind, tried, found)
+        contact, kind = wrong
+        if status is not None or kind == JAMMED:
+            return _equilibrium(kind, tried, found)
+        tried[contact] = STICKING if kind == HELD else SEPARATED
+
+
+def slip_speed(structure: Structure, contact: int, velocity: float | None) -> float:
+    """Return the slip speed [m/s] of a contact under a law that depends on it."""
+    speed = abs(float(structure.prescribed[contact])) or velocity
+    if not speed:
+        name, law = structure.system.contact_names[contact], structure.system.contacts[contact].friction
+        raise ValueError(
+            f"velocity must be given for {name}: its {law.law} friction depends on the slip speed, "
+            f"and nothing prescribes that; got {velocity!r}"
+        )
+    return speed
+
+
+def depends_on_speed(law: FrictionLaw) -> bool:
+    """Return whether friction in sliding depends on its speed."""
+    return not isinstance(law, CONSTANT_LAWS)
+
+
+@dataclass(frozen=True)
+class _Balance:
+    """Forces in balance: attributes as those of `Equilibrium`; sign of the determinant of the equations."""
+
+    status: Sequence[str]
+    sense: Array
+    ratio: Array
+    normal_force: Array
+    tangential_force: Array
+    slip_acceleration: Array
+    displacement: Array
+    determinant: float
+
+
+def _equilibrium(kind: str, status: Sequence[str], found: tuple[_Balance, _Balance]) -> Equilibrium:
+    _, it = found
+    return Equilibrium(
+        kind,
+        tuple(status),
+        it.sense,
+        it.ratio,
+        it.normal_force,
+        it.tangential_force,
+        it.slip_acceleration,
+        it.displacement,
+    )
+
+
+def _at(structure: Structure, velocity: float | None, status: Sequence[str]) -> tuple[_Balance, _Balance]:
+    """Return the balance of forces without and with friction in sliding."""
+    nothing = np.zeros(len(status))
+    plain = _balance(structure, status, np.sign(structure.prescribed), nothing)
+    moved = np.where(np.abs(plain.slip_acceleration) > ROUND_OFF * _acceleration(structure), plain.slip_acceleration, 0)
+    sense = np.where(structure.prescribed != 0.0, np.sign(structure.prescribed), np.sign(moved))
+    ratio = nothing.copy()
+    for number, contact in enumerate(structure.system.contacts):
+        if status[number] == SLIDING:
+            law = contact.friction
+            speed = slip_speed(structure, number, velocity) if depends_on_speed(law) else 1.0
+            ratio[number] = float(law.coefficient_at(speed))
+    return plain, _balance(structure, status, sense, ratio)
+
+
+def _acceleration(structure: Structure) -> float:
+    """Return the largest acceleration that the loads could give a contact [m/s²]."""
+    rows = np.array([line.tangent for line in structure.lines])
+    return float(np.linalg.norm(rows, axis=1).max() * np.linalg.norm(structure.load))
+
+
+def _balance(structure: Structure, status: Sequence[str], sense: Array, ratio: Array) -> _Balance:
+    """Solve for displacement, accelerations of free rigid motions and contact forces, all at once."""
+    held, pushes, closed, stuck = held_rows(structure, status, sense * ratio)
+    free, modes, count = structure.free_motions(held), structure.mode_count, len(held)
+    _check_unbraked(structure, free)
+    motions, size = free.shape[1], modes + free.shape[1] + count
+    matrix, right = np.zeros((size, size)), np.zeros(size)
+    matrix[:modes] = np.hstack([structure.stiffness, free, -pushes.T])
+    matrix[modes : modes + motions, :modes] = free.T
+    matrix[modes + motions :, :modes] = held
+    right[:modes] = structure.load
+    right[modes + motions : modes + motions + len(closed)] = -structure.gaps[closed]
+    scale = np.sqrt(np.maximum(np.abs(np.diag(matrix)), 1.0))
+    scaled = matrix / np.outer(scale, scale)
+    determinant = float(np.linalg.slogdet(scaled)[0])
+    solved = np.linalg.solve(scaled, right / scale) / scale if determinant else np.full(size, np.nan)
+    displacement, acceleration, forces = np.split(solved, [modes, modes + motions])
+    normal, tangential = np.zeros((2, len(status)))
+    normal[closed] = forces[: len(closed)]
+    tangential[closed] = (sense * ratio * normal)[closed]
+    tangential[stuck] = forces[len(closed) :]
+    slips = np.array([line.tangent @ free @ acceleration for line in structure.lines])
+    return _Balance(status, sense, ratio, normal, tangential, slips, displacement, determinant)
+
+
+def held_rows(structure: Structure, status: Sequence[str], share: Array) -> tuple[Array, Array, list[int], list[int]]:
+    """Return what closed contacts hold and how their forces act.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    status : sequence of str
+        Status of each contact.
+    share : ndarray, shape (contacts,)
+        Tangential over normal force of those that slide, with its sense [1].
+
+    Returns
+    -------
+    held, pushes : ndarray, shape (held, modes)
+        Rows that closed contacts hold along their normals, then those that sticking ones hold along their tangents;
+        modal forces of a unit of the force that holds each.
+    closed, stuck : list of int
+        Numbers of the contacts that both kinds of rows belong to.
+    """
+    closed = [k for k, one in enumerate(status) if one != SEPARATED]
+    stuck = [k for k in closed if status[k] == STICKING]
+    lines, size = structure.lines, (-1, structure.mode_count)
+    held = np.array([*(lines[k].normal for k in closed), *(lines[k].tangent for k in stuck)]).reshape(size)
+    slides = [share[k] if status[k] == SLIDING else 0.0 for k in closed]
+    normals = [lines[k].normal - part * lines[k].tangent for k, part in zip(closed, slides, strict=True)]
+    return held, np.array([*normals, *(-lines[k].tangent for k in stuck)]).reshape(size), closed, stuck
+
+
+def _check_unbraked(structure: Structure, free: Array) -> None:
+    braked = structure.damping @ free
+    if braked.size and np.abs(braked).max() > ROUND_OFF * max(float(np.abs(structure.damping).max()), 1e-300):
+        raise ValueError(
+            "connections must not brake a rigid motion that nothing else holds, which has no steady state to vibrate "
+            "about: impose a velocity instead"
+        )
+
+
+def _wrong(structure: Structure, found: tuple[_Balance, _Balance]) -> tuple[int, str] | None:
+    """Return the first contact that is not as it should be, and what it does instead; None if all are."""
+    plain, it = found
+    closed = [k for k, one in enumerate(it.status) if one != SEPARATED]
+    scale = ROUND_OFF * max(float(np.abs(plain.normal_force).max()), 1e-300)
+    for k in closed:
+        if plain.normal_force[k] < -scale:
+            return k, LIFTED_OFF
+    sliding = [k for k in closed if it.status[k] == SLIDING]
+    if sliding and (it.determinant != plain.determinant or not slides_on(structure, it.status, it.sense * it.ratio)):
+        return sliding[0], JAMMED
+    for k in closed:
+        if it.normal_force[k] < -scale:
+            return k, LIFTED_OFF
+    for k in sliding:
+        stops = it.slip_acceleration[k] * it.sense[k] <= ROUND_OFF * _acceleration(structure)
+        if structure.prescribed[k] == 0.0 and stops:
+            return k, HELD
+    return None
+
+
+def slides_on(structure: Structure, status: Sequence[str], share: Array) -> bool:
+    """Return whether contact forces answer to every motion: no impulse on a sliding contact would jam it (Painlevé).
+
+    With the compliance W of the contacts at once, ``W_NN - share W_NT`` must have positive principal minors.
+    """
+    held, pushes, closed, _ = held_rows(structure, status, share)
+    whole, size = held @ pushes.T, len(closed)
+    compliance = whole[:size, :size]
+    if len(held) > size:
+        compliance = compliance - whole[:size, size:] @ np.linalg.solve(whole[size:, size:], whole[size:, :size])
+    # Of very many contacts only the smallest and the whole are looked at: minors double in number with each.
+    sizes = range(1, size + 1) if size <= MOST_CONTACTS else (1, size)
+    chosen = [list(some) for count in sizes for some in combinations(range(size), count)]
+    return all(np.linalg.det(compliance[np.ix_(some, some)]) > 0.0 for some in chosen)

@@ -1,0 +1,197 @@
+"""Small vibration about an equilibrium under exact constraints, as a matrix of first order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse
+import scipy.sparse.linalg
+
+from ..bodies.modes import Array
+from ..contact.linearised import Linearised
+from .equilibrium import Equilibrium, depends_on_speed, held_rows, slip_speed
+from .structure import SLIDING, Structure
+
+# Relative imaginary part that rounding gives to a real exponent.
+ROUND_OFF = 1e-9
+# Share of the entries of stiffness and damping from which they are not worth keeping as sparse.
+DENSE = 0.1
+
+
+@dataclass(frozen=True)
+class Vibration:
+    """Small motions q about an equilibrium, with multipliers m of the constraints and states z of the laws of friction.
+
+    ::
+
+        q'' + damping q' + stiffness q + by_state z = pushes^T m,    held q = 0,    z' = from_velocity q' + state z
+
+    Attributes
+    ----------
+    stiffness, damping : ndarray, shape (modes, modes)
+        With what friction and the shift of contact points add.
+    held, pushes : ndarray, shape (constraints, modes)
+        Rows that contacts hold, and how the forces that hold them act.
+    by_state, from_velocity : ndarray, shape (modes, states), (states, modes)
+        How states act, and how motion moves them.
+    state : ndarray, shape (states,)
+        How each moves itself [1/s].
+    free : ndarray, shape (modes, motions)
+        Rigid motions that nothing holds, orthonormal: only their velocity counts, since the contact point is taken
+        where it is.
+    """
+
+    stiffness: Array
+    damping: Array
+    held: Array
+    pushes: Array
+    by_state: Array
+    from_velocity: Array
+    state: Array
+    free: Array
+
+
+def vibration(structure: Structure, equilibrium: Equilibrium, velocity: float | None) -> Vibration:
+    """Return the small motions of a system about an equilibrium.
+
+    To what holds without load, a load adds what the deflected track does to a contact point that shifts along it: the
+    gap changes with its slope, and the contact forces act on other points of it.
+    """
+    stiffness, damping = structure.stiffness.copy(), structure.damping.copy()
+    share = equilibrium.sense * equilibrium.ratio
+    held, pushes, closed, stuck = held_rows(structure, equilibrium.status, share)
+    held, answers = held.copy(), []
+    for row, k in enumerate(closed):
+        line, shape = structure.lines[k], equilibrium.displacement
+        held[row] -= (line.normal_slope @ shape) * line.along
+        normal, tangential = equilibrium.normal_force[k], equilibrium.tangential_force[k]
+        if line.along.any():
+            stiffness += np.outer(normal * line.normal_slope - tangential * line.tangent_slope, line.along)
+        slip = line.tangent - (line.tangent_slope @ shape) * line.along
+        if k in stuck:
+            held[len(closed) + stuck.index(k)] = slip
+        law = structure.system.contacts[k].friction
+        if equilibrium.status[k] == SLIDING and depends_on_speed(law):
+            near = law.linearised_at(slip_speed(structure, k, velocity))
+            damping += normal * near.slope * np.outer(line.tangent, slip)
+            answers.append((near, equilibrium.sense[k], normal, line.tangent, slip))
+    by_state, from_velocity, state = _states(answers, structure)
+    free = structure.free_motions(held)
+    return Vibration(stiffness, damping, held, pushes, by_state, from_velocity, state, free)
+
+
+def _states(
+    answers: list[tuple[Linearised, float, float, Array, Array]], structure: Structure
+) -> tuple[Array, Array, Array]:
+    """Return how the internal states of laws act, how motion moves them, and how they move themselves."""
+    kept = [one for one in answers if one[0].state_by_state]
+    size = structure.mode_count, len(kept)
+    by_state = np.array([sense * normal * near.by_state * tangent for near, sense, normal, tangent, _ in kept])
+    moved = np.array([sense * near.state_by_velocity * slip for near, sense, _, _, slip in kept])
+    own = np.array([near.state_by_state for near, *_ in kept])
+    return by_state.reshape(size[::-1]).T, moved.reshape(size[::-1]), own
+
+
+@dataclass(frozen=True)
+class Exponents:
+    """Exponents s of small motions ``exp(s t)``, one of each conjugate pair.
+
+    Attributes
+    ----------
+    values : ndarray of complex, shape (count,)
+        The exponents [1/s].
+    shapes : ndarray of complex, shape (modes, count)
+        Modal displacements.
+    """
+
+    values: Array
+    shapes: Array
+
+
+def all_exponents(motion: Vibration, shapes: bool = True) -> Exponents:
+    """Return all exponents, by a dense solver; shapes are empty if they are not asked for."""
+    basis, first = _first_order(motion)
+    if not shapes:
+        values = scipy.linalg.eigvals(first, check_finite=False, overwrite_a=True)
+        return Exponents(values[values.imag >= 0.0], np.empty((len(basis), 0)))
+    values, vectors = scipy.linalg.eig(first, check_finite=False, overwrite_a=True)
+    chosen = values.imag >= 0.0
+    values, vectors = values[chosen], vectors[:, chosen]
+    rigid, motions = motion.free.shape[1], basis.shape[1]
+    moved = vectors[: motions - rigid]
+    drift = vectors[motions - rigid : motions]
+    turning = np.where(values == 0.0, 1.0, values)
+    return Exponents(values, motion.free @ (drift / turning) + basis[:, rigid:] @ moved)
+
+
+def _first_order(motion: Vibration) -> tuple[Array, Array]:
+    """Return a basis of the motions that the contacts allow, free rigid ones first, and the matrix of first order.
+
+    It moves displacements along all but the free ones, velocities along all, and states.
+    """
+    free, states = motion.free, len(motion.state)
+    rigid, fixed = free.shape[1], np.vstack([free.T, motion.held])
+    basis = scipy.linalg.qr(fixed.T)[0] if len(fixed) else np.eye(len(free))
+    basis = np.hstack([free, basis[:, len(fixed) :]])
+    motions = basis.shape[1]
+    elastic = motions - rigid
+    # Forces, less what the constraints take of them: projected along the pushes, onto what is allowed.
+    answer = basis.T - (basis.T @ motion.pushes.T) @ np.linalg.solve(motion.held @ motion.pushes.T, motion.held)
+    first = np.zeros((elastic + motions + states,) * 2)
+    velocities, own = slice(elastic, elastic + motions), slice(elastic + motions, None)
+    first[:elastic, elastic + rigid : elastic + motions] = np.eye(elastic)
+    first[velocities, :elastic] = -answer @ motion.stiffness @ basis[:, rigid:]
+    first[velocities, velocities] = -answer @ motion.damping @ basis
+    first[velocities, own] = -answer @ motion.by_state
+    first[own, velocities] = motion.from_velocity @ basis
+    first[own, own] = np.diag(motion.state)
+    return basis, first
+
+
+def nearest_exponents(motion: Vibration, count: int, shift: complex) -> Exponents:
+    """Return the exponents nearest to a shift, by Arnoldi's method on the inverse about it.
+
+    The constraints stay in the equations, bordered, so that nothing sparse is filled.
+    """
+    modes, states = len(motion.stiffness), len(motion.state)
+    # The displacement along a free rigid motion does nothing, see `Vibration`.
+    stiffness = motion.stiffness - (motion.stiffness @ motion.free) @ motion.free.T
+    inner = 1.0 / (motion.state - shift)
+    moving = motion.damping - motion.by_state @ (inner[:, None] * motion.from_velocity)
+    solve = _bordered(stiffness + shift * moving + shift**2 * np.eye(modes), motion)
+
+    def inverse(vector: Array) -> Array:
+        place, speed, own = np.split(vector, [modes, 2 * modes])
+        right = -speed - shift * place - moving @ place - motion.by_state @ (inner * own)
+        moved = solve(right)
+        velocity = place + shift * moved
+        return np.concatenate([moved, velocity, inner * (own - motion.from_velocity @ velocity)])
+
+    size = 2 * modes + states
+    operator = scipy.sparse.linalg.LinearOperator((size, size), matvec=inverse, dtype=complex)
+    start = np.random.default_rng(0).standard_normal(size) + 0.0j
+    found, vectors = scipy.sparse.linalg.eigs(operator, k=count, which="LM", v0=inverse(start))
+    values = shift + 1.0 / found
+    chosen = values.imag >= -ROUND_OFF * np.abs(values)
+    return Exponents(values[chosen], vectors[:modes, chosen])
+
+
+def _bordered(dynamic: Array, motion: Vibration) -> Callable[[Array], Array]:
+    """Return what solves ``dynamic q - pushes^T m = f, held q = 0`` for q."""
+    modes, count = len(dynamic), len(motion.held)
+    corner = np.zeros((count, count))
+    if np.count_nonzero(dynamic) < DENSE * dynamic.size:
+        whole: Any = scipy.sparse.bmat(
+            [[scipy.sparse.csc_matrix(dynamic), -motion.pushes.T], [motion.held, scipy.sparse.csc_matrix(corner)]],
+            format="csc",
+        )
+        solve = scipy.sparse.linalg.splu(whole).solve
+    else:
+        parts = scipy.linalg.lu_factor(np.block([[dynamic, -motion.pushes.T], [motion.held, corner]]))
+        solve = partial(scipy.linalg.lu_solve, parts)
+    return lambda force: solve(np.concatenate([force, np.zeros(count)]))[:modes]

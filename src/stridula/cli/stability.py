@@ -1,0 +1,77 @@
+"""`stridula stability`: what linear theory says of sliding, at one set of parameters."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from rich import box
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from ..analysis.stability import sliding_stability
+from ..scenarios.load import load_scenario
+
+# Of a file or a pipe; a terminal has its own.
+WIDTH = 150
+# Modes shown where none grows.
+FEWEST = 5
+KINDS = {
+    "sliding": "slides steadily",
+    "held": "held by friction",
+    "lifted off": "lifted off",
+    "jammed": "jammed: it neither slides on nor opens",
+}
+
+
+def print_stability(name: str, overrides: dict[str, Any], status: str | None, velocity: float | None) -> None:
+    """Print equilibrium and modes of a scenario: those that grow, or the few nearest to it."""
+    scenario = load_scenario(name, overrides)
+    given = None if status is None else [word.strip() for word in status.split(",")]
+    modes = sliding_stability(scenario.system, status=given, velocity=velocity)
+    console = Console()
+    if not console.is_terminal:
+        console = Console(width=WIDTH)
+    console.print(_table(modes, scenario.title or name))
+    for line in _closing(modes, given is not None):
+        console.print(escape(line), highlight=False)
+
+
+def _table(modes: xr.Dataset, title: str) -> Table:
+    table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
+    bodies = [str(name) for name in modes["body"].values]
+    for head in ("frequency [Hz]", "growth rate [1/s]", "damping ratio", *(f"energy in {body}" for body in bodies)):
+        table.add_column(head, justify="right", overflow="fold")
+    growth = modes["growth_rate"].values
+    grows = int(modes["unstable"].sum())
+    for k in np.argsort(-growth)[: max(grows, FEWEST)]:
+        one = modes.isel(mode=int(k))
+        style = "bold" if bool(one["unstable"]) else None
+        numbers = [f"{float(one[word]):.5g}" for word in ("frequency", "growth_rate", "damping_ratio")]
+        shares = [f"{100.0 * share:.0f} %" for share in one["energy_share"].values]
+        table.add_row(*numbers, *shares, style=style)
+    return table
+
+
+def _closing(modes: xr.Dataset, given: bool) -> list[str]:
+    several = "contact" in modes.dims
+    lines = []
+    for name in [str(word) for word in modes["contact"].values] if several else ["contact"]:
+        one = modes.sel(contact=name) if several else modes
+        forces = [f"{float(one[word]):.4g} N {word.partition('_')[0]}" for word in ("normal_force", "tangential_force")]
+        lines.append(f"{name}: {one['status'].item()}, {', '.join(forces)}{_motion(one)}")
+    grows, kind = int(modes["unstable"].sum()), KINDS[modes.attrs["equilibrium"]]
+    if modes.attrs["equilibrium"] == "jammed" and not modes.sizes["mode"]:
+        return [*lines, f"Equilibrium: {kind}; there is nothing to vibrate about."]
+    about = " about the contacts as given" if given else ""
+    words = f"{grows} mode{'s grow' if grows != 1 else ' grows'}" if grows else "no mode grows"
+    return [*lines, f"Equilibrium: {kind}; {words}, {modes.sizes['mode']} modes in all{about}."]
+
+
+def _motion(one: xr.Dataset) -> str:
+    slip, acceleration = float(one["slip_velocity"]), float(one["slip_acceleration"])
+    if np.isfinite(slip) and slip:
+        return f", slip {slip:.4g} m/s"
+    return f", slip accelerates by {acceleration:.4g} m/s²" if acceleration else ""

@@ -1,0 +1,26 @@
+"""Figures written to files."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from ..disk import write
+
+
+def save(figure: Figure, path: str | Path) -> None:
+    """Write a figure in the format that the name's end asks for, whole or not at all.
+
+    Raises
+    ------
+    ValueError
+        If matplotlib does not know the format.
+    OSError
+        If the file cannot be written.
+    """
+    kind = Path(path).suffix.lower().removeprefix(".")
+    image = io.BytesIO()
+    figure.savefig(image, format=kind)
+    write(path, image.getvalue())

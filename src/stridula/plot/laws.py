@@ -1,0 +1,98 @@
+"""Laws of friction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..bodies.modes import Array
+from ..checks import instance
+from ..contact import LAWS, ExponentialWeakening, FrictionLaw, LinearWeakening, LuGre, RateAndState, Stribeck
+from .colours import LINE, LINES
+
+
+def friction(law: FrictionLaw, velocities: Array | Sequence[float] | None = None) -> Figure:
+    """Draw the coefficient of friction of a law over slip velocity, in steady sliding.
+
+    Where the law sticks, all that it can hold at rest is a vertical line; where bristles or the state of the contact
+    hold, a dotted one or none. Rate and state, which goes over decades of speed, is drawn over its logarithm, forward
+    sliding only.
+
+    Parameters
+    ----------
+    law : Coulomb, StaticKinetic, Stribeck, ExponentialWeakening, LinearWeakening, LuGre or RateAndState
+        The law.
+    velocities : array_like, optional
+        Slip velocities to draw it at [m/s], of both signs or one; a range that shows it all if left out.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Save it with `save`.
+
+    Raises
+    ------
+    ValueError
+        If an argument is of another kind, or there are less than 2 velocities.
+    """
+    instance("law", law, LAWS)
+    over_decades = isinstance(law, RateAndState)
+    chosen = np.unique(_shown_range(law) if velocities is None else _velocities(velocities))
+    if over_decades:
+        chosen = chosen[chosen > 0.0]
+        if chosen.size < 2:
+            raise ValueError(f"velocities must be at least 2 above 0 for rate and state, got {velocities!r}")
+    figure = Figure(figsize=(6.4, 4.2), layout="constrained", dpi=120)
+    axes = figure.subplots()
+    for side in (chosen[chosen < 0.0], chosen[chosen > 0.0]):
+        axes.plot(side, np.sign(side) * law.coefficient_at(side), color=LINE, linewidth=1.5)
+    if not over_decades:
+        _draw_rest(axes, law, chosen)
+        axes.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
+    else:
+        axes.set_xscale("log")
+    axes.set_xlabel("slip velocity [m/s]")
+    axes.set_ylabel("tangential over normal force [1]")
+    axes.grid(alpha=0.3, linewidth=0.5)
+    words = str(law) if str(law)[0].isalpha() else f"{law.law}, {law}"
+    axes.set_title(words[0].upper() + words[1:], fontsize=11)
+    return figure
+
+
+def _velocities(given: Array | Sequence[float]) -> Array:
+    try:
+        values = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        values = np.empty(0)
+    if values.ndim != 1 or values.size < 2 or not np.isfinite(values).all():
+        raise ValueError(f"velocities must be a list of at least 2 finite numbers, got {given!r}")
+    return values
+
+
+def _shown_range(law: FrictionLaw) -> Array:
+    """Return velocities over which a law shows all that it does."""
+    if isinstance(law, RateAndState):
+        return law.velocity * np.geomspace(1e-4, 1e4, 401)
+    if isinstance(law, (Stribeck, ExponentialWeakening, LuGre)):
+        reach = 5.0 * law.velocity
+    elif isinstance(law, LinearWeakening) and law.slope > 0.0 and law.static > law.kinetic:
+        reach = 1.5 * (law.static - law.kinetic) / law.slope
+    else:
+        reach = 1.0
+    # Dense about rest, where most laws fall.
+    forward = reach * np.linspace(0.0, 1.0, 401)[1:] ** 2
+    return np.concatenate([-forward, forward])
+
+
+def _draw_rest(axes: Axes, law: FrictionLaw, velocities: Array) -> None:
+    """Draw what a law can hold at rest, if rest is in sight."""
+    if velocities[0] > 0.0 or velocities[-1] < 0.0:
+        return
+    holds = law.static if isinstance(law, LuGre) else float(law.coefficient_at(np.zeros(1))[0])
+    style, words = (":", "bristles hold") if isinstance(law, LuGre) else ("-", "sticking")
+    ends = [-holds if velocities[0] < 0.0 else 0.0, holds if velocities[-1] > 0.0 else 0.0]
+    axes.plot([0.0, 0.0], ends, color=LINES[1], linewidth=1.5, linestyle=style, label=words)
+    axes.legend(fontsize=8, frameon=False, loc="upper left")

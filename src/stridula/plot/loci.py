@@ -1,0 +1,104 @@
+"""Modes of sliding over a parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .colours import LINE, LINES
+
+UNSTABLE = LINES[1]
+# Words for what is no steady sliding, drawn as bands.
+BANDS = {"held": "#cccccc", "lifted off": "#56b4e9", "jammed": "#cc79a7"}
+
+
+def root_loci(loci: xr.Dataset, critical: Sequence[xr.Dataset] = ()) -> Figure:
+    """Draw frequencies and growth rates of the modes of sliding over a parameter.
+
+    Modes that grow are drawn thick and in another colour; where two frequencies become one, modes lock in. Values
+    without steady sliding have a band in the background.
+
+    Parameters
+    ----------
+    loci : xarray.Dataset
+        What `root_loci` returned.
+    critical : sequence of xarray.Dataset, optional
+        Values of the parameter where stability changes, as `critical_value` returns them.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Save it with `save`.
+    """
+    key = str(loci["equilibrium"].dims[0])
+    figure = Figure(figsize=(8.0, 7.0), layout="constrained", dpi=120)
+    above, below = figure.subplots(2, 1, sharex=True)
+    for axes, name in ((above, "frequency"), (below, "growth_rate")):
+        _draw_modes(axes, loci, key, name)
+        _draw_bands(axes, loci, key)
+        for one in critical:
+            axes.axvline(float(one["value"]), color="0.3", linewidth=0.8, linestyle="--")
+        axes.grid(alpha=0.3, linewidth=0.5)
+        axes.set_ylabel(f"{name.replace('_', ' ')} [{loci[name].attrs['units']}]")
+        axes.margins(x=0.0)
+    above.set_ylim(bottom=0.0)
+    _scale_growth(below, loci)
+    for one in critical:
+        value, frequency = float(one["value"]), float(one["frequency"])
+        above.annotate(
+            f"{value:.4g}\n{frequency:.0f} Hz",
+            (value, 0.98),
+            (3, 0),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            va="top",
+            fontsize=8,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
+        )
+    below.set_xlabel(_label(key, loci[key]))
+    present = set(loci["equilibrium"].values)
+    _legend(above, [kind for kind in BANDS if kind in present])
+    return figure
+
+
+def _draw_modes(axes: Axes, loci: xr.Dataset, key: str, name: str) -> None:
+    values, grid = loci[name].values, loci[key].values
+    grows = loci["unstable"].values
+    axes.plot(grid, values, color=LINE, linewidth=0.8)
+    # A mode that grows at one value only still has a mark.
+    axes.plot(grid, np.where(grows, values, np.nan), color=UNSTABLE, linewidth=2.2, marker=".", markersize=3)
+
+
+def _draw_bands(axes: Axes, loci: xr.Dataset, key: str) -> None:
+    grid, kinds = loci[key].values, loci["equilibrium"].values
+    edges = np.concatenate([[grid[0]], 0.5 * (grid[1:] + grid[:-1]), [grid[-1]]])
+    for number, kind in enumerate(kinds):
+        if kind in BANDS:
+            axes.axvspan(edges[number], edges[number + 1], color=BANDS[kind], alpha=0.35, linewidth=0, zorder=0)
+
+
+def _scale_growth(axes: Axes, loci: xr.Dataset) -> None:
+    """Let decades of growth be seen, on both sides of zero: it may rise without bound where sliding jams."""
+    rates = np.abs(loci["growth_rate"].values[loci["unstable"].values])
+    if rates.size:
+        typical, largest = float(np.median(rates)), float(rates.max())
+        axes.set_yscale("symlog", linthresh=10.0 ** np.floor(np.log10(0.1 * typical)))
+        axes.set_ylim(-2.0 * largest, 2.0 * largest)
+    axes.axhline(0.0, color="0.3", linewidth=0.8)
+
+
+def _legend(axes: Axes, kinds: Sequence[str]) -> None:
+    axes.plot([], [], color=LINE, linewidth=0.8, label="decays")
+    axes.plot([], [], color=UNSTABLE, linewidth=2.2, label="grows")
+    for kind in kinds:
+        axes.fill_between([], [], color=BANDS[kind], alpha=0.35, linewidth=0, label=kind)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2 + len(kinds), fontsize=8, frameon=False)
+
+
+def _label(key: str, values: xr.DataArray) -> str:
+    units = str(values.attrs.get("units", ""))
+    return f"{key} [{units}]" if units else key

@@ -1,0 +1,244 @@
+"""Root loci: how the modes of sliding move with one parameter, and where the first of them begins to grow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.optimize import linear_sum_assignment
+
+from ..analysis.stability import sliding_stability
+from ..bodies.modes import Array
+from ..checks import finite, instance, positive
+from ..scenarios import load_scenario
+from ..system import System
+
+SystemOf = Callable[[float], System]
+Source = str | Path | xr.Dataset | SystemOf
+
+
+def root_loci(
+    source: Source,
+    key: str,
+    values: Sequence[float] | Array,
+    *,
+    units: str = "",
+    overrides: Mapping[str, Any] | None = None,
+    highest: float | None = None,
+    **options: Any,
+) -> xr.Dataset:
+    """Return frequencies and growth rates of the modes of sliding over a parameter.
+
+    Modes are followed from value to value: each goes on as the one whose exponent is nearest to where its last two
+    lead. Two that lock in share a frequency from there on.
+
+    Parameters
+    ----------
+    source : str, Path, xarray.Dataset or callable
+        A scenario, as for `load_scenario`, or a function that makes a system of a value.
+    key : str
+        The parameter: its key in the scenario, such as ``friction``, ``angle``, ``contact.at`` or ``damping``; of a
+        function only its name.
+    values : sequence of float
+        Values of the parameter, rising, at least 2, in `units`.
+    units : str, optional
+        Unit of the values as scenarios write it, such as ``deg``; SI if left out.
+    overrides : mapping, optional
+        Other values to set in the scenario by key.
+    highest : float, optional
+        Leave out modes above this frequency [Hz].
+    **options
+        Arguments of `sliding_stability` such as `status` and `velocity`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the parameter and ``mode``: ``frequency`` [Hz], ``growth_rate`` [1/s] and whether ``unstable``, NaN and
+        False where a mode is not there; over the parameter its ``equilibrium``.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or a value gives no system.
+    """
+    modes_of = _modes_of(source, key, units, overrides, options)
+    grid = _rising(values)
+    if highest is not None:
+        positive("highest", highest)
+    found = [modes_of(value) for value in grid]
+    exponents = [_exponents(one, highest) for one in found]
+    followed = _followed(exponents)
+    slack = np.array([one.attrs["round_off"] for one in found])
+    both = (key, "mode")
+    return xr.Dataset(
+        {
+            "frequency": (both, followed.imag / (2.0 * np.pi), _words("Hz", "frequency of vibration")),
+            "growth_rate": (both, followed.real, _words("1/s", "rate at which the amplitude grows")),
+            "unstable": (both, followed.real > slack[:, None], _words("1", "whether the mode grows")),
+            "equilibrium": (key, [one.attrs["equilibrium"] for one in found]),
+        },
+        {key: (key, grid, {"units": units}), "mode": np.arange(followed.shape[1])},
+    )
+
+
+def critical_value(
+    source: Source,
+    key: str,
+    low: float,
+    high: float,
+    *,
+    tolerance: float = 1e-6,
+    units: str = "",
+    overrides: Mapping[str, Any] | None = None,
+    **options: Any,
+) -> xr.Dataset:
+    """Return the value of a parameter at which sliding becomes unstable, by bisection.
+
+    Parameters
+    ----------
+    source : str, Path, xarray.Dataset or callable
+        A scenario, as for `load_scenario`, or a function that makes a system of a value.
+    key : str
+        The parameter, as for `root_loci`.
+    low, high : float
+        Values between which stability changes, in `units`; stable at one end and not at the other.
+    tolerance : float, optional
+        Width to which the value is closed in on, relative to the larger of `low` and `high` in size [1].
+    units : str, optional
+        Unit of the values as scenarios write it, such as ``deg``; SI if left out.
+    overrides : mapping, optional
+        Other values to set in the scenario by key.
+    **options
+        Arguments of `sliding_stability` such as `status` and `velocity`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``value``, the middle of ``stable`` and ``unstable``, the values closest to it on both sides; ``frequency`` [Hz]
+        and ``growth_rate`` [1/s] of the mode that grows fastest at ``unstable``.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or both ends are stable or both unstable.
+    """
+    modes_of = _modes_of(source, key, units, overrides, options)
+    if finite("high", high) <= finite("low", low):
+        raise ValueError(f"high must be above low ({low!r}), got {high!r}")
+    positive("tolerance", tolerance)
+    at = {value: modes_of(value) for value in (float(low), float(high))}
+    grows = {value: bool(one.unstable.any()) for value, one in at.items()}
+    if grows[low] == grows[high]:
+        raise ValueError(
+            f"low and high must be stable and unstable in {key}, got {_verdict(at[low])} at {low!r} and "
+            f"{_verdict(at[high])} at {high!r}"
+        )
+    width = tolerance * max(abs(low), abs(high))
+    while high - low > width:
+        middle = 0.5 * (low + high)
+        if middle in (low, high):
+            break
+        at[middle] = modes_of(middle)
+        grows[middle] = bool(at[middle].unstable.any())
+        low, high = (middle, high) if grows[middle] == grows[low] else (low, middle)
+    stable, unstable = (low, high) if grows[high] else (high, low)
+    modes = at[unstable]
+    fastest = modes.isel(mode=int(modes.growth_rate.values.argmax()))
+    return xr.Dataset(
+        {
+            "value": (
+                (),
+                0.5 * (low + high),
+                {"units": units, "long_name": f"{key} at which sliding becomes unstable"},
+            ),
+            "stable": ((), stable, {"units": units, "long_name": "nearest value that is stable"}),
+            "unstable": ((), unstable, {"units": units, "long_name": "nearest value that is not"}),
+            "frequency": ((), float(fastest.frequency), _words("Hz", "frequency of the mode that grows fastest")),
+            "growth_rate": ((), float(fastest.growth_rate), _words("1/s", "its rate of growth")),
+        },
+        attrs={"parameter": key, "tolerance": tolerance},
+    )
+
+
+def critical_values(loci: xr.Dataset, find: Callable[[float, float], xr.Dataset]) -> list[xr.Dataset]:
+    """Return where stability changes along root loci, each closed in on by `find` between two of their values.
+
+    Parameters
+    ----------
+    loci : xarray.Dataset
+        What `root_loci` returned.
+    find : callable
+        Takes two values, returns what `critical_value` does.
+    """
+    key = parameter_of(loci)
+    grows = loci["unstable"].values.any(axis=1)
+    grid = loci[key].values
+    return [find(float(grid[k]), float(grid[k + 1])) for k in np.flatnonzero(np.diff(grows))]
+
+
+def parameter_of(loci: xr.Dataset) -> str:
+    """Return the key of the parameter of root loci."""
+    return str(loci["equilibrium"].dims[0])
+
+
+def _modes_of(
+    source: Source, key: str, units: str, overrides: Mapping[str, Any] | None, options: Mapping[str, Any]
+) -> Callable[[float], xr.Dataset]:
+    """Return what gives the modes at a value."""
+    instance("key", key, str)
+    instance("units", units, str)
+    given = dict(overrides or {})
+
+    def system_of(value: float) -> System:
+        if callable(source):
+            return source(value)
+        return load_scenario(source, given | {key: f"{value!r} {units}" if units else value}).system
+
+    def modes_of(value: float) -> xr.Dataset:
+        return sliding_stability(system_of(float(value)), **options)
+
+    return modes_of
+
+
+def _verdict(modes: xr.Dataset) -> str:
+    kind = str(modes.attrs["equilibrium"])
+    return "unstable" if bool(modes.unstable.any()) else "stable" if kind == "sliding" else kind
+
+
+def _rising(values: Sequence[float] | Array) -> Array:
+    try:
+        grid = np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        grid = np.empty(0)
+    if grid.ndim != 1 or grid.size < 2 or not np.isfinite(grid).all() or (np.diff(grid) <= 0.0).any():
+        raise ValueError(f"values must be at least 2 finite numbers that rise, got {values!r}")
+    return grid
+
+
+def _exponents(modes: xr.Dataset, highest: float | None) -> Array:
+    exponents = modes.growth_rate.values + 2.0j * np.pi * modes.frequency.values
+    return exponents if highest is None else exponents[modes.frequency.values <= highest]
+
+
+def _followed(steps: Sequence[Array]) -> Array:
+    """Return exponents by value and mode, each mode followed; NaN where it is not there."""
+    rows = [np.asarray(steps[0], dtype=complex)]
+    for step in steps[1:]:
+        last = rows[-1]
+        before = rows[-2][: last.size] if len(rows) > 1 else last
+        lead = np.where(np.isfinite(before.real), 2.0 * last - before, last)
+        row = np.full(last.size, complex(np.nan, np.nan))
+        there = np.flatnonzero(np.isfinite(lead.real))
+        taken, chosen = linear_sum_assignment(np.abs(lead[there, None] - step[None, :]))
+        row[there[taken]] = step[chosen]
+        new = np.delete(step, chosen)
+        rows = [np.pad(old, (0, new.size), constant_values=complex(np.nan, np.nan)) for old in rows]
+        rows.append(np.concatenate([row, new]))
+    return np.array(rows)
+
+
+def _words(units: str, meaning: str) -> dict[str, str]:
+    return {"units": units, "long_name": meaning}

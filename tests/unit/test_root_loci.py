@@ -1,0 +1,121 @@
+"""Root loci and critical values: closed forms of two coupled modes, following, bad arguments, the figure."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+import pytest
+
+import stridula as st
+from stridula import plot
+from stridula.studies.root_loci import critical_values
+from stridula.verification.instabilities import hoffmann, sinou, sinou_limit
+
+
+def hoffmann_at(friction: float) -> st.System:
+    return hoffmann().system(friction)
+
+
+def test_frequencies_follow_the_closed_form_and_lock_in():
+    grid = np.linspace(0.0, 1.0, 41)
+    loci = st.root_loci(hoffmann_at, "friction", grid)
+    # w² = 2 +- sqrt(1 - 4 mu / 3).
+    root = np.sqrt(1.0 - 4.0 * grid[grid < 0.75] / 3.0)
+    low, high = np.sort(2.0 * np.pi * loci["frequency"].values[grid < 0.75], axis=1).T
+    np.testing.assert_allclose(low, np.sqrt(2.0 - root), rtol=1e-9)
+    np.testing.assert_allclose(high, np.sqrt(2.0 + root), rtol=1e-9)
+    after = loci.isel(friction=grid > 0.751)
+    np.testing.assert_allclose(after["frequency"][:, 0], after["frequency"][:, 1], rtol=1e-9)
+    growth = np.sqrt(2.0 + 1j * np.sqrt(4.0 * grid[grid > 0.751] / 3.0 - 1.0)).imag
+    np.testing.assert_allclose(after["growth_rate"].max("mode"), growth, rtol=1e-9)
+    assert after["unstable"].sum("mode").values.tolist() == [1] * after.sizes["friction"]
+
+
+def test_a_mode_keeps_its_number_across_a_crossing():
+    # Two modes that do not couple cross without touching: each goes straight on.
+    def crossing(value: float) -> st.System:
+        stiffness = np.diag([1.0, (0.5 + value) ** 2, 4.0])
+        body = st.ReducedBody(np.eye(3), stiffness, points={"foot": (None, 2)}, translation=np.zeros((2, 3)))
+        contact = st.PointContact(body.at("foot"), st.RigidTrack(velocity=-1.0))
+        return st.System(contact, [st.Force(body.at("foot"), y=-1.0)])
+
+    grid = np.linspace(0.0, 1.0, 21)
+    loci = st.root_loci(crossing, "value", grid)
+    frequency = 2.0 * np.pi * loci["frequency"].values
+    steady = np.argmin(np.ptp(frequency, axis=0))
+    np.testing.assert_allclose(frequency[:, steady], 1.0)
+    np.testing.assert_allclose(frequency[:, 1 - steady], 0.5 + grid)
+
+
+def test_a_scenario_is_varied_by_key_and_unit():
+    loci = st.root_loci("weak-pressure", "angle", [-50.0, -45.0], units="deg", highest=4e3)
+    assert loci["angle"].attrs["units"] == "deg"
+    modes = st.sliding_stability(st.load_scenario("weak-pressure", {"angle": "-50 deg"}).system)
+    expected = modes["frequency"].values[modes["frequency"].values <= 4e3]
+    found = loci["frequency"].sel(angle=-50.0).dropna("mode").values
+    np.testing.assert_allclose(np.sort(found), np.sort(expected), rtol=1e-9, atol=1e-9)
+    assert found.max() <= 4e3
+
+
+def test_critical_value_is_closed_in_on():
+    found = st.critical_value(hoffmann_at, "friction", 0.5, 1.0, tolerance=1e-10)
+    assert float(found["value"]) == pytest.approx(0.75, abs=1e-10)
+    assert float(found["stable"]) < float(found["unstable"]) <= float(found["stable"]) + 1e-10
+    assert 2.0 * np.pi * float(found["frequency"]) == pytest.approx(sqrt(2.0), rel=1e-4)
+
+
+@pytest.mark.parametrize("damping", [(0.0, 0.0), (0.02, 0.02), (0.02, 0.06)])
+def test_critical_value_with_damping(damping):
+    found = st.critical_value(lambda mu: sinou(damping).system(mu), "friction", 0.1, 0.5, tolerance=1e-8)
+    assert float(found["value"]) == pytest.approx(sinou_limit(damping), abs=1e-7)
+
+
+def test_a_mode_may_become_stable_again():
+    # More damping on both modes calms a pair that would flutter.
+    found = st.critical_value(lambda e: sinou((e, e)).system(0.3), "damping", 0.001, 0.2, tolerance=1e-6)
+    assert float(found["unstable"]) < float(found["stable"])
+    assert sinou_limit((float(found["value"]),) * 2) == pytest.approx(0.3, rel=1e-5)
+
+
+def test_every_change_of_stability_is_found_along_loci():
+    loci = st.root_loci(hoffmann_at, "friction", np.linspace(0.5, 1.0, 6))
+    found = critical_values(loci, lambda low, high: st.critical_value(hoffmann_at, "friction", low, high))
+    assert [float(one["value"]) for one in found] == [pytest.approx(0.75, abs=1e-6)]
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: st.root_loci(hoffmann_at, "friction", [1.0, 0.5]), "values must be at least 2 finite numbers"),
+        (lambda: st.root_loci(hoffmann_at, "friction", [1.0]), "values must be at least 2 finite numbers"),
+        (lambda: st.root_loci(hoffmann_at, "friction", [0.0, np.nan]), "values must be at least 2 finite numbers"),
+        (lambda: st.root_loci(hoffmann_at, "friction", "much"), "values must be at least 2 finite numbers"),
+        (lambda: st.root_loci("squeal", "frition", [0.1, 0.2]), "did you mean 'friction'"),
+        (lambda: st.root_loci("squeal", "angle", [0.1, 0.2], units="kg"), "slider.angle must be a number in rad or"),
+        (lambda: st.root_loci(hoffmann_at, "friction", [0.1, 0.2], highest=0.0), "highest must be above 0"),
+        (lambda: st.critical_value(hoffmann_at, "friction", 0.1, 0.2), "got stable at 0.1 and stable at 0.2"),
+        (lambda: st.critical_value(hoffmann_at, "friction", 0.8, 0.9), "got unstable at 0.8 and unstable at 0.9"),
+        (lambda: st.critical_value("squeal", "friction", 0.5, 1.5), "got stable at 0.5 and held at 1.5"),
+        (lambda: st.critical_value(hoffmann_at, "friction", 1.0, 0.5), "high must be above low"),
+        (lambda: st.critical_value(hoffmann_at, "friction", 0.5, 1.0, tolerance=0.0), "tolerance must be above 0"),
+    ],
+)
+def test_bad_arguments(call, message):
+    with pytest.raises(ValueError) as error:
+        call()
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_figure_shows_modes_bands_and_critical_values():
+    loci = st.root_loci("weak-pressure", "friction", np.linspace(0.6, 2.0, 8), highest=2e3)
+    critical = [st.critical_value("weak-pressure", "friction", 0.6, 0.8)]
+    figure = plot.root_loci(loci, critical)
+    above, below = figure.axes
+    assert below.get_xlabel() == "friction"
+    assert above.get_ylabel() == "frequency [Hz]"
+    assert [text.get_text() for text in above.get_legend().get_texts()] == ["decays", "grows", "jammed"]
+    assert any("0.63" in text.get_text() for text in above.texts)
+    # The loci themselves, thin and thick, then one line for each critical value.
+    assert len(above.lines) >= 2 * loci.sizes["mode"] + 1
