@@ -16,8 +16,8 @@ import pytest
 import scipy.io
 
 import stridula as st
-from stridula import plot
 from stridula.cli import main, running, sweeping
+from stridula.plot.colours import REGIME_COLOURS
 from stridula.studies.measures import MEASURES, Column, Measure
 
 SHORT = ("--duration", "2 ms")
@@ -504,13 +504,11 @@ def test_a_full_disk_in_a_sweep_is_one_line_and_fails(stridula, monkeypatch, tmp
 
 
 def test_a_map_is_drawn_where_the_measures_have_regimes(stridula, monkeypatch, tmp_path):
-    regime = Measure("regime", (Column("regime", "", "regime", is_text=True),), lambda run: {"regime": "squeal"})
+    regime = Measure(
+        "regime", (Column("regime", "", "regime", is_text=True),), lambda run: {"regime": next(iter(REGIME_COLOURS))}
+    )
     monkeypatch.setitem(MEASURES, "regime", regime)
-    monkeypatch.setattr(plot, "regime_map", lambda found: plot.overview(short_record()), raising=False)
+    assert stridula(*SWEEP, *VARY, "--vary", "angle=1", "--measure", "regime", "--plot", "map.png")[0] == 2
     grid = ("--vary", "friction=0.2:2.0:2", "--vary", "angle=20:80 deg:2")
-    assert stridula(*SWEEP, *grid, "--measure", "regime", "--plot", "map.png")[0] == 0
+    assert stridula(*SWEEP, *grid, "--measure", "regime", "--measure", "stability", "--plot", "map.png")[0] == 0
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
-
-
-def short_record():
-    return st.load_scenario("squeal", {"duration": "1 ms"}).simulate()

@@ -144,6 +144,17 @@ def test_measures_of_the_system_need_no_run(monkeypatch):
     assert found["size"].values.tolist() == ["light", "", "light"]
 
 
+def test_stability_is_that_of_linear_theory_at_each_point():
+    found = st.sweep("squeal", st.Grid({"friction": [0.3, 1.5]}), "stability")
+    for friction in (0.3, 1.5):
+        modes = st.sliding_stability(st.load_scenario("squeal", {"friction": friction}).system)
+        there = found.sel(friction=friction)
+        assert there["equilibrium"].item() == modes.attrs["equilibrium"]
+        if modes.sizes["mode"]:
+            assert float(there["growth_rate"]) == pytest.approx(float(modes["growth_rate"].max()), rel=1e-6)
+            assert int(there["unstable_modes"]) == int(modes["unstable"].sum())
+
+
 def test_a_measure_brings_those_that_belong_to_it(monkeypatch):
     monkeypatch.setitem(table.MEASURES, "mass", MASS)
     both = table.Measure("both", (table.Column("y", "1", "y"),), _probed, also=("mass",))

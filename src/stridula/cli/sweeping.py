@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from importlib import import_module
 from typing import Any
 
 import xarray as xr
@@ -83,15 +82,16 @@ def sweep_scenario(
 
 
 def _check_plot(points: Points, measures: Sequence[str]) -> None:
-    if not isinstance(points, Grid) or len(points.values) != 2:
-        raise ValueError("--plot must go with a grid of two keys, given by --vary twice")
+    if not isinstance(points, Grid) or len(points.values) != 2 or min(map(len, points.values.values())) < 2:
+        raise ValueError("--plot must go with a grid of two keys of at least 2 values each, given by --vary twice")
     if "regime" not in measures:
         raise ValueError(f"--plot must go with --measure regime, which it shows, got {', '.join(measures)}")
 
 
 def _draw(found: xr.Dataset, path: str) -> None:
-    plot: Any = import_module("..plot", __package__)
-    plot.save(plot.regime_map(found), path)
+    from ..plot import regime_map, save
+
+    save(regime_map(found), path)
 
 
 def _closing(found: xr.Dataset, out: str) -> str:

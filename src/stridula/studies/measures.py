@@ -13,6 +13,7 @@ import xarray as xr
 
 from ..analysis import advance, dominant_frequency, status_share
 from ..analysis.signals import samples
+from ..analysis.stability import stability_of
 from ..checks import suggestion
 from ..system import System
 
@@ -121,6 +122,16 @@ MEASURES = {
         ),
         Measure("mean_force", (Column("mean_force", "N", "mean normal force"),), _mean_force),
         Measure("travel", (Column("travel", "m", "net way of the contact point along the track"),), _travel),
+        Measure(
+            "stability",
+            (
+                Column("growth_rate", "1/s", "largest growth rate of linear theory"),
+                Column("flutter_frequency", "Hz", "frequency of the mode that grows fastest"),
+                Column("unstable_modes", "1", "number of modes that grow"),
+                Column("equilibrium", "", "what linear theory says comes of the contact", is_text=True),
+            ),
+            of_system=stability_of,
+        ),
     )
 }
 
