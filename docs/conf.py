@@ -89,7 +89,7 @@ MODULES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("stridula.analysis", "What a record means", ()),
     ("stridula.plot", "Figures", ("overview", "timeline", "friction", "save")),
     ("stridula.scenarios", "More on scenarios", ()),
-    ("stridula.studies", "More on ensembles", ()),
+    ("stridula.studies", "More on ensembles and sweeps", ()),
     ("stridula.papers.laulagnet_2011", "Laulagnet 2011", ()),
 )
 HOMES = {

@@ -55,7 +55,7 @@ _HOME = {
     "studies.agreement": ("agreement",),
     "studies.root_loci": ("critical_value", "root_loci"),
     "analysis": ("regime",),
-    "studies": ("ensemble",),
+    "studies": ("Grid", "LatinHypercube", "ensemble", "sweep"),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
 __all__ = ["__version__", *_MODULE]

@@ -122,8 +122,8 @@ def test_the_list_of_scenarios_needs_nothing_heavy():
 
 
 def test_a_run_and_a_study_need_no_slow_parts():
-    code = "import stridula.cli.running, stridula.studies"
-    assert not loaded_after(code) & {"matplotlib", *SLOW_PARTS}
+    code = "import stridula.cli.running, stridula.cli.sweeping, stridula.cli.points, stridula.studies.ensembles"
+    assert not loaded_after(code) & {"matplotlib", "dask", *SLOW_PARTS}
 
 
 def test_light_import_harness_sees_a_heavy_one():

@@ -102,11 +102,11 @@ def test_example(path, tmp_path, monkeypatch, capsys):
 
 
 def test_what_the_start_page_shows_of_other_systems_runs(tmp_path, monkeypatch):
-    """A mass on a belt, a body from a file against a wall, an ensemble: the code of the page, as it stands."""
+    """A mass on a belt, a body from a file against a wall, an ensemble, a sweep: the code of the page, as it stands."""
     page = (ROOT / "docs" / "start.rst").read_text(encoding="utf-8")
     section = page.partition("Other bodies, other tracks\n")[2].partition("\nRead a record\n")[0]
     blocks = [textwrap.dedent(b) for b in re.findall(r"code-block:: python\n\n((?: {3}.*\n|\n)+)", section)]
-    assert len(blocks) == 4
+    assert len(blocks) == 5
     monkeypatch.chdir(tmp_path)
     stiffness = np.kron([[1e6, -1e6], [-1e6, 1.1e6]], np.eye(2))
     st.ReducedBody(0.1 * np.eye(4), stiffness, {"tip": (0, 1), "back": (2, 3)}).save("pad.npz")
@@ -118,6 +118,7 @@ def test_what_the_start_page_shows_of_other_systems_runs(tmp_path, monkeypatch):
     reach = 1e5 * 1e-4
     assert 0.3 * 200.0 - reach < float(run.normal_force.sel(contact="stop").sel(time=slice(0.02, None)).mean())
     assert 0.0 < names["found"].sliding_mean <= 1.0
+    assert names["swept"].sizes == {"friction": 3, "angle": 3}
     assert len(names["shares"]) == 20
     assert names["shares"][0] > names["shares"][-1]
 

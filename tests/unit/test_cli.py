@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import gc
 import json
 import os
+import re
 import subprocess
 import sys
 import tomllib
@@ -14,7 +16,9 @@ import pytest
 import scipy.io
 
 import stridula as st
-from stridula.cli import main, running
+from stridula.cli import main, running, sweeping
+from stridula.plot.colours import REGIME_COLOURS
+from stridula.studies.measures import MEASURES, Column, Measure
 
 SHORT = ("--duration", "2 ms")
 
@@ -38,7 +42,9 @@ def test_version_and_help(stridula):
     assert stridula("--version") == (0, f"stridula {st.__version__}\n", "")
     code, out, err = stridula("--help")
     assert (code, err) == (0, "")
-    assert all(verb in out for verb in ("list", "show", "schema", "run", "export", "compare", "paper", "verify"))
+    assert all(
+        verb in out for verb in ("list", "show", "schema", "run", "sweep", "export", "compare", "paper", "verify")
+    )
     assert stridula()[:1] == (0,)
 
 
@@ -353,3 +359,158 @@ def test_a_closed_pipe_is_quiet(shell):
     done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=True)
     assert done.stdout.count("\n") == 1
     assert done.stderr == ""
+
+
+SWEEP = ("sweep", "squeal", *SHORT, "--measure", "mean_force", "--out", "map.nc")
+
+
+def test_sweep_writes_a_map_and_says_how_many_points_are_done(stridula, tmp_path):
+    grid = ("--vary", "friction=0.2:2.0:3", "--vary", "angle=20deg:80 deg:2")
+    code, out, err = stridula(*SWEEP, *grid, "--measure", "shares", "--set", "transverse=3")
+    assert (code, out, err) == (0, "6 points: 6 done; written to map.nc\n", "")
+    found = st.load("map.nc")
+    assert dict(found.sizes) == {"friction": 3, "angle": 2}
+    assert found["angle"].values.tolist() == [20.0, 80.0]
+    assert {"mean_force", "sliding"} <= set(found)
+    before = (tmp_path / "map.nc").read_bytes()
+    assert stridula(*SWEEP, *grid, "--measure", "shares", "--set", "transverse=3")[:2] == (code, out)
+    assert (tmp_path / "map.nc").read_bytes() == before
+    assert [path.name for path in tmp_path.iterdir()] == ["map.nc"]
+
+
+def test_points_of_a_sweep_that_fail_are_counted(stridula):
+    code, out, err = stridula(*SWEEP, "--vary", "angle=80:95 deg:4")
+    assert (code, err) == (0, "")
+    assert out == "4 points: 2 done, 2 failed (messages in 'message' of map.nc)\n"
+    assert st.load("map.nc")["angle"].values.tolist() == [80.0, 85.0, 90.0, 95.0]
+
+
+def test_sweeps_of_samples_lists_and_tables(stridula, tmp_path):
+    ranges = ("--vary", "friction=0.2:2", "--vary", "angle=10:80 deg")
+    assert stridula(*SWEEP, *ranges, "--sample", "5", "--seed", "2")[0] == 0
+    assert st.load("map.nc").sizes == {"point": 5}
+    (tmp_path / "map.nc").unlink()
+    assert stridula(*SWEEP, "--vary", "root_support=guided, clamped", "--vary", "elements=4:8:3")[0] == 0
+    found = st.load("map.nc")
+    assert found["root_support"].values.tolist() == ["guided", "clamped"]
+    assert found["elements"].values.tolist() == [4, 6, 8]
+    (tmp_path / "map.nc").unlink()
+    (tmp_path / "points.csv").write_text("friction,angle\n0.3,10 deg\n\n0.4,20 deg\n")
+    assert stridula(*SWEEP, "--points", "points.csv")[0] == 0
+    found = st.load("map.nc")
+    assert (found["friction"].values.tolist(), found["angle"].values.tolist()) == ([0.3, 0.4], [10.0, 20.0])
+
+
+VARY = ("--vary", "friction=0.2:2:3")
+BAD_SWEEPS = [
+    (("--vary", "frction=1:2:3"), "did you mean 'friction'?"),
+    (("--vary", "length=1:2:3"), "key must mean one place"),
+    ((*VARY, *VARY), "--vary must name each key once, got 'friction' twice"),
+    ((*VARY, "--vary", "coefficient=1:2:3"), "which both mean contact.friction.coefficient"),
+    ((*VARY, "--set", "coefficient=1"), "key must be set or varied, got both 'coefficient' and 'friction'"),
+    (("--vary", "friction=1:2:0"), "--vary must have a COUNT of at least 1"),
+    (("--vary", "friction=2:1:3"), "--vary must have START below STOP"),
+    (("--vary", "friction=1:1:3"), "--vary must have START below STOP"),
+    (("--vary", "friction=1:2:3.5"), "--vary must have a whole number for COUNT"),
+    (("--vary", "friction=1:inf:3"), "--vary must have finite numbers"),
+    (("--vary", "friction=nan:2:3"), "--vary must have finite numbers"),
+    (("--vary", "friction=a:b:3"), "--vary must have numbers for START and STOP"),
+    (("--vary", "friction=1:2"), "--vary must be KEY=START:STOP:COUNT, got"),
+    (("--vary", "friction"), "--vary must be KEY=START:STOP:COUNT or KEY=A,B,C"),
+    (("--vary", "root_support=guided,,free"), "--vary must have a value between commas"),
+    (("--vary", "root_support=guidd"), "did you mean 'guided'?"),
+    (("--vary", "angle=1 N:2 N:3"), "slider.angle must be a number in rad or deg, got '1.0 N'"),
+    (("--vary", "angle=1 deg:2:3"), "--vary must have one unit for both ends"),
+    (("--vary", "elements=1:2:3"), "slider.elements must be a whole number, got 1.5"),
+    (("--vary", "friction=0:1:10001"), "more than 10000 points must be confirmed with --yes, got 10001 points"),
+    (("--vary", "friction=0:1:1000000000", "--vary", "angle=0:1:1000"), "got 1000000000000 points"),
+    ((*VARY, "--measure", "frequncy"), "did you mean 'frequency'?"),
+    ((*VARY, "--sample", "3"), "--vary must be KEY=START:STOP with --sample"),
+    (("--vary", "friction=1,2", "--sample", "3"), "got a list for 'friction'"),
+    (("--vary", "friction=1:2", "--sample", "0"), "count must be at least 1"),
+    ((*VARY, "--seed", "3"), "--seed must go with --sample"),
+    ((), "points must be given by --vary or by --points, got neither"),
+    ((*VARY, "--points", "good.csv"), "points must be given by --vary or by --points, got both"),
+    (("--points", "none.csv"), "cannot read 'none.csv'"),
+    (("--points", "ragged.csv"), "--points must have a value for each of friction, angle, got ['0.3'] in line 3"),
+    (("--points", "header.csv"), "--points must hold a row of keys and at least one of values"),
+    (("--points", "twice.csv"), "--points must name each key once"),
+    ((*VARY, "--plot", "map.xyz"), "--plot must end in one of"),
+    ((*VARY, "--plot", "map.png"), "--plot must go with a grid of two keys"),
+    ((*VARY, "--vary", "angle=0:1:2", "--plot", "map.png"), "--plot must go with --measure regime"),
+    ((*VARY, "--workers", "0"), "workers must be at least 1"),
+    ((*VARY, "--out", "folder"), "it is a directory"),
+    ((*VARY, "--out", "none/map.nc"), "there is no folder 'none'"),
+    ((*VARY, "--out", "good.csv"), "out must be a new file or that of this sweep, got 'good.csv', another file"),
+    ((*VARY, "--out", "other.nc"), "got 'other.nc', of another scenario and other points or options"),
+    ((*VARY, "--scheduler", "nonsense://x"), "scheduler must answer, got 'nonsense://x'"),
+]
+
+
+@pytest.fixture(scope="module")
+def other_sweep(tmp_path_factory):
+    path = tmp_path_factory.mktemp("other") / "other.nc"
+    st.sweep("squeal", [{"friction": 0.3}], "mean_force", duration="1 ms", out=path)
+    return path.read_bytes()
+
+
+@pytest.mark.parametrize(("arguments", "message"), BAD_SWEEPS, ids=[message for _, message in BAD_SWEEPS])
+def test_a_bad_sweep_is_one_line_and_writes_nothing(stridula, tmp_path, monkeypatch, other_sweep, arguments, message):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "other.nc").write_bytes(other_sweep)
+    tables = {"good": "friction\n0.3\n", "ragged": "friction,angle\n0.3,1\n0.3\n", "header": "friction\n"}
+    for name, text in {**tables, "twice": "friction,friction\n1,2\n"}.items():
+        (tmp_path / f"{name}.csv").write_text(text)
+    monkeypatch.setattr("stridula.studies.task.simulate_many", lambda *args, **kwargs: pytest.fail("it ran"))
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    code, out, err = stridula(*SWEEP, *arguments)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert message in err
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
+    assert not (tmp_path / "map.nc.parts").exists()
+
+
+@pytest.mark.parametrize("option", ["--out", "--measure"])
+def test_a_sweep_needs_a_file_and_a_measure(stridula, option):
+    given = {"--out": "map.nc", "--measure": "travel"}
+    rest = [word for pair in given.items() if pair[0] != option for word in pair]
+    code, out, err = stridula("sweep", "squeal", *VARY, *rest)
+    assert (code, out, err) == (2, "", f"stridula: Missing option '{option}'.\n")
+
+
+def test_ctrl_c_in_a_sweep_says_what_is_safe_and_the_same_command_goes_on(stridula, monkeypatch, tmp_path):
+    many = (*SWEEP, "--vary", "friction=0.2:2:100")
+    with monkeypatch.context() as patch:
+        patch.setattr(sweeping.Progress, "update", interrupt)
+        code, out, err = stridula(*many)
+    assert (code, out) == (130, "")
+    found = re.fullmatch(
+        r"stridula: interrupted; (\d+) of 100 points are safe in map.nc.parts; the same command goes on from there\n",
+        err,
+    )
+    assert found
+    assert found[1] in ("36", "64")
+    assert [path.name for path in tmp_path.iterdir()] == ["map.nc.parts"]
+    assert stridula(*many)[:2] == (0, "100 points: 100 done; written to map.nc\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["map.nc"]
+
+
+def test_a_full_disk_in_a_sweep_is_one_line_and_fails(stridula, monkeypatch, tmp_path):
+    def full(*args):
+        raise OSError(errno.ENOSPC, "cannot write 'map.nc': no space left on device")
+
+    monkeypatch.setattr("stridula.studies.parts.save", full)
+    code, out, err = stridula(*SWEEP, *VARY)
+    assert (code, out, err) == (1, "", "stridula: cannot write 'map.nc': no space left on device\n")
+    assert len(list((tmp_path / "map.nc.parts").iterdir())) == 2
+
+
+def test_a_map_is_drawn_where_the_measures_have_regimes(stridula, monkeypatch, tmp_path):
+    regime = Measure(
+        "regime", (Column("regime", "", "regime", is_text=True),), lambda run: {"regime": next(iter(REGIME_COLOURS))}
+    )
+    monkeypatch.setitem(MEASURES, "regime", regime)
+    assert stridula(*SWEEP, *VARY, "--vary", "angle=1", "--measure", "regime", "--plot", "map.png")[0] == 2
+    grid = ("--vary", "friction=0.2:2.0:2", "--vary", "angle=20:80 deg:2")
+    assert stridula(*SWEEP, *grid, "--measure", "regime", "--measure", "stability", "--plot", "map.png")[0] == 0
+    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")

@@ -60,7 +60,7 @@ def test_runs_side_by_side_are_those_alone():
 def test_groups_are_of_one_kind_and_full_where_they_can():
     asked = Asked(0.1, None, STEP, 1e4, None, None)
     systems = [*squeals(10), CASES["judder"](), *squeals(3)]
-    groups = many._groups([asked.arrays(system) for system in systems])
+    groups = many._groups({number: asked.arrays(system) for number, system in enumerate(systems)})
     assert groups == [[0, 1, 2, 3, 4, 5, 6, 7], [8, 9, 11, 12, 13], [10]]
 
 
@@ -135,9 +135,57 @@ def test_a_failure_ends_all():
         st.simulate_many(squeals(9), 0.1, fails, **WORDS)
 
 
+def test_errors_may_take_the_place_of_results():
+    """What is no system, overlaps at the start or cannot be reduced; the others are as without them."""
+    good = squeals(6)
+    overlap = overlapping()
+    seen = []
+
+    def third_fails(run):
+        seen.append(run)
+        if len(seen) == 3:
+            raise KeyError("the third")
+        return float(run.normal_force.mean())
+
+    words = {**WORDS, "workers": 1, "errors": "return"}
+    found = st.simulate_many([good[0], 1, *good[1:3], overlap, *good[3:]], 100 * STEP, third_fails, **words)
+    kinds = [type(one).__name__ for one in found]
+    assert kinds == ["float", "ValueError", "float", "KeyError", "ValueError", "float", "float", "float"]
+    assert "system must be a System" in str(found[1])
+    assert "overlap" in str(found[4])
+    alone = st.simulate_many(good, 100 * STEP, lambda run: float(run.normal_force.mean()), **WORDS)
+    kept = [one for one in found if isinstance(one, float)]
+    assert kept == [one for number, one in enumerate(alone) if number != 2]
+    for broken in (1, overlap):
+        with pytest.raises(ValueError, match="system must be a System" if broken == 1 else "overlap"):
+            st.simulate_many([good[0], broken], 100 * STEP, **WORDS)
+
+
+def overlapping() -> st.System:
+    mass = st.PointMass(1.0)
+    contact = st.PointContact(mass.centre, st.RigidTrack())
+    return st.System(contact, [st.InitialState(mass, displacement=(0.0, -1e-3))])
+
+
+def test_memory_that_runs_out_ends_all():
+    def fails(run):
+        raise MemoryError
+
+    with pytest.raises(MemoryError):
+        st.simulate_many(squeals(2), 100 * STEP, fails, errors="return", **WORDS)
+
+
+def test_records_do_without_their_scenario_where_they_may():
+    (with_it,) = st.simulate_many(squeals(1), 100 * STEP, **WORDS)
+    (without,) = st.simulate_many(squeals(1), 100 * STEP, provenance=False, **WORDS)
+    assert set(with_it.attrs) - set(without.attrs) == {"scenario"}
+    xr.testing.assert_equal(with_it, without)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
+        ({"errors": "ignore"}, "errors must be one of raise, return"),
         ({"systems": "squeal"}, "systems must be a list of systems"),
         ({"systems": [1]}, "system must be a System"),
         ({"reduce": 3}, "reduce must be a function of a record"),

@@ -21,6 +21,8 @@ from .modes import Array, BodyPoint, Modes
 from .sections import Circle, Material, Rectangle, Section
 
 LARGEST_ELEMENTS = 500
+# Beams whose modes are kept: a sweep comes back to the same ones. Of those of many elements fewer, for their memory.
+FEW_ELEMENTS, MANY_BEAMS, FEW_BEAMS = 60, 128, 16
 
 
 @dataclass(frozen=True)
@@ -178,8 +180,11 @@ class _Reduced:
     fixed: Array
 
 
-@lru_cache(maxsize=16)
 def _reduced(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
+    return (_small if beam.elements <= FEW_ELEMENTS else _large)(beam, held_x)
+
+
+def _reduce(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
     section, material = beam.section, beam.material
     le = beam.length / beam.elements
     stiffness = assemble(
@@ -211,6 +216,9 @@ def _reduced(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
     directions[0, 0::3] = directions[1, 1::3] = 1.0
     modes = Modes(angular, np.full(angular.size, float(beam.damping)), directions @ mass @ shapes)
     return _Reduced(modes, shapes, mass, fixed)
+
+
+_small, _large = lru_cache(maxsize=MANY_BEAMS)(_reduce), lru_cache(maxsize=FEW_BEAMS)(_reduce)
 
 
 def _fixed(beam: FiniteElementBeam, held_x: bool) -> Array:

@@ -81,10 +81,51 @@ def run(
     with _importing():
         from .running import run_scenario
 
-    overrides = dict(_pair(text) for text in set_ or [])
+    overrides = _pairs(set_ or [])
     if duration is not None:
         overrides["simulation.duration"] = duration
     run_scenario(name, overrides, out, plot)
+
+
+@app.command()
+def sweep(
+    name: NameOrFile,
+    measure: Annotated[list[str], typer.Option(metavar="NAME", help="What to measure; again and again for more.")],
+    out: Annotated[str, typer.Option(metavar="FILE", help="Write what came of the points, as NetCDF.")],
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=START:STOP:COUNT", help="Vary a value, ends included; or KEY=A,B,C."),
+    ] = None,
+    sample: Annotated[
+        int | None, typer.Option(metavar="N", help="Spread N points over the ranges KEY=START:STOP, a Latin hypercube.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(metavar="S", help="Seed of --sample, 0 if left out.")] = None,
+    points: Annotated[
+        str | None,
+        typer.Option(metavar="FILE.csv", help="Take the points from a table: keys, then a point in each row."),
+    ] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point.")
+    ] = None,
+    duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
+    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the map of the regimes over two keys.")] = None,
+    workers: Annotated[
+        int | None, typer.Option(metavar="N", help="Parts at a time, one on each processor if left out.")
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Compute on other machines: a dask scheduler, tcp://host:port."),
+    ] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="Go ahead with more than 10 000 points.")] = False,
+) -> None:
+    """Run a scenario at many points of its parameters and keep what is measured; goes on where it was stopped."""
+    with _importing():
+        from .points import points_of
+        from .sweeping import sweep_scenario
+
+    chosen = points_of(vary or [], sample, seed, points, yes)
+    overrides = _pairs(set_ or [])
+    print(sweep_scenario(name, chosen, measure, overrides, duration, out, plot, workers, scheduler))
 
 
 @app.command()
@@ -105,7 +146,7 @@ def stability(
     """Say what linear theory says of sliding: equilibrium, modes and which of them grow."""
     from .stability import print_stability
 
-    print_stability(name, dict(_pair(text) for text in set_ or []), status, velocity)
+    print_stability(name, _pairs(set_ or []), status, velocity)
 
 
 @app.command()
@@ -174,6 +215,10 @@ def verify(
     if not all(row["holds"] for row in rows):
         raise Stopped(closing_line(rows), FAILED)
     print(f"{closing_line(rows)}; written to {out}")
+
+
+def _pairs(texts: list[str]) -> dict[str, str]:
+    return dict(_pair(text) for text in texts)
 
 
 def _pair(text: str) -> tuple[str, str]:

@@ -33,7 +33,7 @@ def run_scenario(name: str, overrides: dict[str, Any], out: str | None, plot: st
     Stopped
         On Ctrl-C, or if the run failed, once what was recorded is written.
     """
-    _check_outputs(out, plot)
+    check_outputs(out, plot)
     scenario = load_scenario(name, overrides)
     try:
         with _progress(scenario.title or name) as watcher:
@@ -49,7 +49,14 @@ def run_scenario(name: str, overrides: dict[str, Any], out: str | None, plot: st
     _finish(record, scenario.title or name, out, plot)
 
 
-def _check_outputs(out: str | None, plot: str | None) -> None:
+def check_outputs(out: str | None, plot: str | None) -> None:
+    """Raise ValueError or OSError if a record and a figure cannot be written there; write nothing.
+
+    Parameters
+    ----------
+    out, plot : str or None
+        The files, None for one that is not asked for.
+    """
     if out is not None and plot is not None and Path(out).resolve() == Path(plot).resolve():
         raise ValueError(f"--plot must be another file than --out, got {plot!r} for both")
     if plot is not None:

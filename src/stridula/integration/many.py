@@ -5,15 +5,17 @@ from __future__ import annotations
 import os
 import threading
 import time
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import xarray as xr
 
 from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
-from ..checks import count
+from ..checks import choice, count
 from ..records import Probe
 from ..system import System
 from .contact_solve import GaussSeidel
@@ -49,6 +51,8 @@ def simulate_many(
     workers: int | None = None,
     watchers: Sequence[Watcher] = (),
     title: str = "",
+    errors: str = "raise",
+    provenance: bool = True,
 ) -> list[Any]:
     """March many systems in time, several at once on each processor.
 
@@ -85,6 +89,11 @@ def simulate_many(
         Called with the `Progress` of all runs, from threads: simulated times are sums over the runs.
     title : str, optional
         Title of the records.
+    errors : {"raise", "return"}, optional
+        Whether a system that cannot be simulated, or a record on which `reduce` fails, ends all runs, or leaves its
+        exception in its place while the others go on.
+    provenance : bool, optional
+        Whether each record says in ``attrs["scenario"]`` what it is of; those reduced at once can do without.
 
     Returns
     -------
@@ -95,7 +104,7 @@ def simulate_many(
     Raises
     ------
     ValueError
-        If an argument is out of its range, or a system cannot be simulated with it.
+        If an argument is out of its range, or a system cannot be simulated with it and `errors` says to raise.
     RuntimeError
         If a GPU is asked for and cannot be used; the message says what is missing.
 
@@ -113,31 +122,55 @@ def simulate_many(
         raise ValueError(f"watchers must be a list of callables, got {watchers!r}")
     if not isinstance(device, str) or device not in DEVICES:
         raise ValueError(f"device must be one of {', '.join(DEVICES)}, got {device!r}")
+    choice("errors", errors, ("raise", "return"))
     if device == "cuda":
         require_cuda()
     asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve)
-    arrays = [_numbered(number, asked.arrays, system) for number, system in enumerate(systems)]
-    steps = [_numbered(number, asked.timing, one).step for number, one in enumerate(arrays)]
+    results = _Results(errors == "return")
+    arrays: dict[int, Arrays] = {}
+    steps = []
+    for number, system in enumerate(systems):
+        with results.failing(number, f"systems[{number}]: "):
+            one = asked.arrays(system)
+            steps.append(asked.timing(one).step)
+            arrays[number] = one
     if step is None:
         asked.common_step = min(steps, default=None)
-    together = _Together(asked, arrays, reduce, watchers, DEVICES[device], title)
+    record = partial(Run.record, provenance=provenance)
+    together = _Together(asked, arrays, record, reduce, watchers, DEVICES[device], title, results)
     together.march_all(_groups(arrays, device), workers or os.cpu_count() or 1)
-    return [together.results[number] for number in range(len(systems))]
+    return [results.found[number] for number in range(len(systems))]
 
 
-def _numbered(number: int, function: Callable[[Any], Any], thing: Any) -> Any:
-    """Return what a function makes of a system, whose number an error names."""
-    try:
-        return function(thing)
-    except ValueError as error:
-        raise ValueError(f"systems[{number}]: {error}") from None
+class _Results:
+    """What came of each system; exceptions among them where they are not to end all runs."""
+
+    def __init__(self, keeps_exceptions: bool) -> None:
+        self.keeps_exceptions = keeps_exceptions
+        self.found: dict[int, Any] = {}
+
+    @contextmanager
+    def failing(self, number: int, prefix: str = "") -> Iterator[None]:
+        """Keep an exception as the result of a system, or raise it, the words of a ValueError after a prefix.
+
+        Memory that runs out says nothing about the system.
+        """
+        try:
+            yield
+        except Exception as error:
+            if self.keeps_exceptions and not isinstance(error, MemoryError):
+                self.found[number] = error
+            elif prefix and isinstance(error, ValueError):
+                raise ValueError(f"{prefix}{error}") from None
+            else:
+                raise
 
 
-def _groups(arrays: Sequence[Arrays], device: str = "cpu") -> list[list[int]]:
+def _groups(arrays: Mapping[int, Arrays], device: str = "cpu") -> list[list[int]]:
     """Return the numbers of the systems that march together, the largest groups first."""
     largest, fewest, most_modes = (LANES, FEWEST_RUNS, MOST_MODES) if device == "cpu" else (MOST_ON_A_CARD, 1, None)
     kinds: dict[Hashable, list[int]] = {}
-    for number, one in enumerate(arrays):
+    for number, one in arrays.items():
         kinds.setdefault(_kind(one, most_modes) or number, []).append(number)
     groups = []
     for numbers in kinds.values():
@@ -168,15 +201,17 @@ class _Together:
     def __init__(
         self,
         asked: Asked,
-        arrays: Sequence[Arrays],
+        arrays: Mapping[int, Arrays],
+        record: Callable[[Run], xr.Dataset],
         reduce: Callable[[xr.Dataset], Any] | None,
         watchers: Sequence[Watcher],
         side_by_side: type[SimpleMarch],
         title: str,
+        results: _Results,
     ) -> None:
         self.side_by_side, self.title, self.began = side_by_side, title, time.perf_counter()
         self.asked, self.arrays, self.reduce, self.watchers = asked, arrays, reduce, watchers
-        self.results: dict[int, Any] = {}
+        self.record, self.results = record, results
         self.stop, self.lock, self.simulated = threading.Event(), threading.Lock(), 0.0
 
     def march_all(self, groups: Sequence[Sequence[int]], workers: int) -> None:
@@ -196,14 +231,21 @@ class _Together:
 
     def march(self, group: Sequence[int]) -> None:
         """March a group and keep its results."""
-        runs = [self.asked.run(self.arrays[number], title=self.title) for number in group]
+        started: dict[int, Run] = {}
+        for number in group:
+            with self.results.failing(number):
+                started[number] = self.asked.run(self.arrays[number], title=self.title)
+        runs = list(started.values())
+        if not runs:
+            return
         if march_together(runs, self._march_of(runs), [self._watch(runs)]):
             raise KeyboardInterrupt
-        for number, run in zip(group, runs, strict=True):
-            record = run.record()
+        for number, run in started.items():
+            record = self.record(run)
             if run.has_diverged:
                 record.attrs["message"] = str(Diverged(record, run.why_diverged()))
-            self.results[number] = record if self.reduce is None else self.reduce(record)
+            with self.results.failing(number):
+                self.results.found[number] = record if self.reduce is None else self.reduce(record)
 
     def _march_of(self, runs: Sequence[Run]) -> March:
         timing, first = runs[0].timing, runs[0]

@@ -173,8 +173,8 @@ class Run:
         """Return where the contacts were when the run diverged, in words."""
         return contact_words(self.system.contact_names, self.state.carried)
 
-    def record(self, interrupted: bool = False) -> xr.Dataset:
-        """Return the record."""
+    def record(self, interrupted: bool = False, provenance: bool = True) -> xr.Dataset:
+        """Return the record, with the scenario that it is of in its attributes unless `provenance` is false."""
         timing, done = self.timing, self.done
         ended = "interrupted" if interrupted and done < timing.samples else ENDED[self.ended]
         record, energies = self.contact_record[:, :, :done], self.energy_record[:, :done]
@@ -189,19 +189,11 @@ class Run:
         )
         first_sample = self.first_step // timing.ratio
         last_step = self.first_step + done * timing.ratio
-        simulation: dict[str, Any] = {
-            "duration": self.first_step * timing.step + timing.samples * timing.interval,
-            "scheme": self.scheme.name,
-            "step": timing.step,
-            "sample_rate": float(f"{1.0 / timing.interval:.12g}"),
-        }
-        if self.solve != GaussSeidel():
-            simulation["contact_solve"] = asdict(self.solve)
         attributes: dict[str, Any] = {
             "title": self.title,
             "source": f"stridula {__version__}",
             "stridula_version": __version__,
-            "scenario": scenario_toml(self.system, self.probes, simulation),
+            **({"scenario": self._scenario()} if provenance else {}),
             "scheme": self.scheme.name,
             "step": timing.step,
             "steps_per_sample": timing.ratio,
@@ -225,3 +217,16 @@ class Run:
             np.empty((0, len(self.probes))) if self.tail is None else self.tail,
             attributes,
         )
+
+    def _scenario(self) -> str:
+        """Return the scenario that runs this run again, as TOML."""
+        timing = self.timing
+        simulation: dict[str, Any] = {
+            "duration": self.first_step * timing.step + timing.samples * timing.interval,
+            "scheme": self.scheme.name,
+            "step": timing.step,
+            "sample_rate": float(f"{1.0 / timing.interval:.12g}"),
+        }
+        if self.solve != GaussSeidel():
+            simulation["contact_solve"] = asdict(self.solve)
+        return scenario_toml(self.system, self.probes, simulation)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -36,7 +37,9 @@ def save(run: xr.Dataset, path: str | Path) -> None:
     numbers = [name for name, values in plain.variables.items() if values.dtype.kind in "fi" and values.size]
     encoding = {name: {"zlib": True, "shuffle": True, "complevel": 1} for name in numbers if plain[name].ndim}
     # Built in memory: on a full disk the HDF5 library brings the process down instead of raising.
-    write(path, plain.to_netcdf(engine="h5netcdf", encoding=encoding))
+    with _locks_of_this_process():
+        content = plain.to_netcdf(engine="h5netcdf", encoding=encoding)
+    write(path, content)
 
 
 def load(path: str | Path) -> xr.Dataset:
@@ -81,6 +84,17 @@ def scenario_of(path: str | Path) -> tuple[str, str]:
 def is_record(path: str | Path) -> bool:
     """Return whether a file is of the kind that records are kept in."""
     return read(path, len(MAGIC)) == MAGIC
+
+
+@contextmanager
+def _locks_of_this_process() -> Iterator[None]:
+    """Keep xarray from asking the scheduler of a dask client for a lock on what is in the memory of this process."""
+    dask = sys.modules.get("dask")
+    if dask is None:
+        yield
+        return
+    with dask.config.set(scheduler="threads"):
+        yield
 
 
 @contextmanager

@@ -88,10 +88,7 @@ def _general(system: System) -> dict[str, Any]:
         return {"kind": "beam", "body": system.body_name(contact.track)}
 
     tables: dict[str, Any] = {
-        "bodies": {
-            system.body_name(body): {"kind": BODY_KINDS[type(body).__name__], **_general_body(body, system)}
-            for body in system.bodies
-        },
+        "bodies": {system.body_name(body): _general_body(body, system) for body in system.bodies},
         "contacts": [
             {**_contact(contact), "tip": place(contact.tip), "track": track(contact)} for contact in system.contacts
         ],
@@ -166,9 +163,14 @@ def _body(body: Any) -> dict[str, Any]:
     return {**given, "material": _plain(body.material), "section": section}
 
 
+def body_table(body: Any) -> dict[str, Any]:
+    """Return the table of a body in a scenario of bodies and contacts."""
+    return {"kind": BODY_KINDS[type(body).__name__], **_body(body)}
+
+
 def _general_body(body: Any, system: System) -> dict[str, Any]:
     """Return the table of a body, without the name where the table's own name says it."""
-    given = _body(body)
+    given = body_table(body)
     if body.name != _default_name(body, system):
         given.pop("name", None)
     return given

@@ -324,3 +324,6 @@ ReducedDamping = Annotated[Any, Numbers((0, 1, 2), file=True, rayleigh=True)]
 Vector = Annotated[Any, Numbers((1,))]
 PointTable = Annotated[Any, Points()]
 Translation = Annotated[Any, Motion()]
+
+# The unit of a number is told in the JSON schema by the spellings that its text may have.
+UNIT_OF_PATTERN = {Quantity(unit).json_schema()["anyOf"][1]["pattern"]: unit for unit in UNITS}

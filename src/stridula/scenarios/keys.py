@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from typing import Any
 
@@ -26,18 +26,35 @@ def overridden(tables: dict[str, Any], overrides: Mapping[str, Any]) -> tuple[di
         can be.
 
     """
+    changed, _, problems = located(tables, overrides)
+    return changed, problems
+
+
+def located(tables: dict[str, Any], overrides: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Path], list[str]]:
+    """Return the tables with values set by key, the path that each key means, and what is wrong with the others."""
     changed = copy.deepcopy(tables)
+    places: dict[str, Path] = {}
     problems: list[str] = []
     for key, value in overrides.items():
         if key == "base":
             problems.append(f"base must be written in the file, it cannot be set by key, got {value!r}")
             continue
-        value = _value(value) if isinstance(value, str) else value
+        value = plain_value(value)
         try:
-            _set(changed, find(key, changed, is_table=isinstance(value, dict)), value)
+            places[key] = find(key, changed, is_table=isinstance(value, dict))
         except ScenarioError as error:
             problems += error.problems
-    return changed, problems
+            continue
+        _set(changed, places[key], value)
+    return changed, places, problems
+
+
+def with_values(tables: dict[str, Any], values: Iterable[tuple[Path, Any]]) -> dict[str, Any]:
+    """Return the tables with values set at paths that `located` found."""
+    changed = copy.deepcopy(tables)
+    for path, value in values:
+        _set(changed, path, copy.deepcopy(value))
+    return changed
 
 
 def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
@@ -97,8 +114,11 @@ def _make_shared(tables: dict[str, Any], path: Path) -> None:
             table.pop(own[-1], None)
 
 
-def _value(text: str) -> Any:
-    """Return a text as the TOML value it stands for, or as itself."""
+def plain_value(value: Any) -> Any:
+    """Return a text as the TOML value it stands for; what stands for none, or is no text, as itself."""
+    if not isinstance(value, str):
+        return value
+    text = value
     try:
         return tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
     except (ValueError, RecursionError):

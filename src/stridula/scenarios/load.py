@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -13,12 +13,13 @@ from pydantic import ValidationError
 
 from ..integration import SCHEMES, CentralDifference, ExactModal, GaussSeidel, simulate
 from ..records import Probe
+from ..records.provenance import body_table
 from ..system import System
 from .build import NOT_FINITE, Builder, out_of_range
 from .errors import ScenarioError, as_written, explain, wrong_form
 from .inheritance import shared_out
 from .keys import overridden
-from .read import read_tables
+from .read import names_files, read_tables
 from .schema import ScenarioTable
 
 
@@ -104,15 +105,25 @@ def load_scenario(name_or_path: str | Path | xr.Dataset, overrides: Mapping[str,
         If the file cannot be read.
     """
     written, problems = overridden(read_tables(name_or_path), overrides or {})
-    tables = shared_out(written)
-    problems += wrong_form(written)
-    try:
-        checked = ScenarioTable.model_validate(tables)
-    except ValidationError as error:
-        raise ScenarioError(problems + explain(error, tables, written)) from None
-    if problems:
-        raise ScenarioError(problems)
-    builder = Builder({"drives": []} | checked.model_dump(exclude_unset=True), partial(as_written, written=written))
+    return scenario_of_tables(written, problems)
+
+
+def scenario_of_tables(written: dict[str, Any], problems: Sequence[str] = ()) -> Scenario:
+    """Check the tables of a scenario and return what they make.
+
+    Parameters
+    ----------
+    written : dict
+        The tables as in a file, those of its base merged in.
+    problems : sequence of str, optional
+        What is known to be wrong with them.
+
+    Raises
+    ------
+    ScenarioError
+        With every problem found.
+    """
+    checked, builder = _checked(written, problems)
     system = builder.system()
     simulation = checked.simulation
     return Scenario(
@@ -125,4 +136,43 @@ def load_scenario(name_or_path: str | Path | xr.Dataset, overrides: Mapping[str,
         sample_rate=simulation.sample_rate,
         probes=builder.probes(system),
         contact_solve=builder.contact_solve(),
+    )
+
+
+def with_matrices(written: dict[str, Any], usable: dict[str, Any]) -> dict[str, Any]:
+    """Return the tables of a scenario with the matrices of reduced bodies in place of the files that hold them.
+
+    Parameters
+    ----------
+    written : dict
+        The tables, which may lack something yet.
+    usable : dict
+        The same with what they lack.
+
+    Raises
+    ------
+    ScenarioError
+        With every problem found.
+    """
+    bodies: dict[str, Any] = written.get("bodies") or {}
+    files = {name for name, body in bodies.items() if names_files(body)}
+    if not files:
+        return written
+    _, builder = _checked(usable)
+    builder.system()
+    filled = {name: body_table(builder.bodies[name]) if name in files else body for name, body in bodies.items()}
+    return written | {"bodies": filled}
+
+
+def _checked(written: dict[str, Any], problems: Sequence[str] = ()) -> tuple[ScenarioTable, Builder]:
+    tables = shared_out(written)
+    found = [*problems, *wrong_form(written)]
+    try:
+        checked = ScenarioTable.model_validate(tables)
+    except ValidationError as error:
+        raise ScenarioError(found + explain(error, tables, written)) from None
+    if found:
+        raise ScenarioError(found)
+    return checked, Builder(
+        {"drives": []} | checked.model_dump(exclude_unset=True), partial(as_written, written=written)
     )

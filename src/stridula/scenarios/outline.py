@@ -39,6 +39,22 @@ def is_number(node: Node) -> bool:
     return any(variant.get("type") in ("number", "integer") for variant in _variants(node))
 
 
+def patterns(node: Node | None) -> set[str]:
+    """Return the patterns of the texts that a key takes."""
+    return {variant["pattern"] for variant in _variants(node) if "pattern" in variant}
+
+
+def is_choice(node: Node | None) -> bool:
+    """Return whether a key takes words of a list and nothing else."""
+    variants = _variants(node)
+    return bool(variants) and all("enum" in variant or "const" in variant for variant in variants)
+
+
+def is_whole(node: Node | None) -> bool:
+    """Return whether a key takes whole numbers and nothing else."""
+    return {variant.get("type") for variant in _variants(node)} == {"integer"}
+
+
 def words(node: Node | None) -> list[str]:
     """Return the words that a key allows, none if it is not a choice."""
     chosen = [variant.get("enum", [variant["const"]] if "const" in variant else []) for variant in _variants(node)]

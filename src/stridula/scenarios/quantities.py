@@ -63,6 +63,14 @@ def quantity(value: Any, unit: str) -> float:
     return math.radians(float(number)) if factor == DEGREES else float(Decimal(number) * Decimal(factor))
 
 
+def parts(value: Any) -> tuple[float, str] | None:
+    """Return the number and the unit of a number or a text such as ``"20 mm"``, None if it is neither."""
+    if isinstance(value, Real) and not isinstance(value, bool):
+        return float(value), ""
+    match = _NUMBER.fullmatch(value) if isinstance(value, str) else None
+    return (float(match[1]), match[2]) if match else None
+
+
 def is_quantity(value: Any, unit: str) -> bool:
     """Return whether a value is a number in some unit of the dimension of `unit`."""
     try:

@@ -85,12 +85,20 @@ def _with_files(tables: dict[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def _with_own_files(body: Any, folder: Path) -> Any:
+    return body | {key: str(folder / text) for key, text in _files_of(body).items()} if names_files(body) else body
+
+
+def names_files(body: Any) -> bool:
+    """Return whether the table of a body names files with its matrices."""
+    return bool(_files_of(body))
+
+
+def _files_of(body: Any) -> dict[str, str]:
     if not isinstance(body, dict) or body.get("kind", "reduced") != "reduced":
-        return body
+        return {}
     texts = {key: body[key] for key in FILES if isinstance(body.get(key), str)}
     # A damping of "1 %" is no file.
-    named = {key: text for key, text in texts.items() if not is_packed(text) and not is_quantity(text, "1")}
-    return body | {key: str(folder / text) for key, text in named.items()}
+    return {key: text for key, text in texts.items() if not is_packed(text) and not is_quantity(text, "1")}
 
 
 def _parsed(text: str, name: str) -> dict[str, Any]:

@@ -1,5 +1,24 @@
-"""Many runs of one system: what its starts leave to chance."""
+"""What many runs say: ensembles of one system from starts left to chance, sweeps of a scenario over its parameters."""
 
-from .ensembles import ensemble, mean_and_interval, share_of
+from __future__ import annotations
 
-__all__ = ["ensemble", "mean_and_interval", "share_of"]
+from importlib import import_module
+from typing import Any
+
+_HOME = {
+    "Grid": "points",
+    "LatinHypercube": "points",
+    "SweepProgress": "sweeps",
+    "ensemble": "ensembles",
+    "mean_and_interval": "ensembles",
+    "share_of": "ensembles",
+    "sweep": "sweeps",
+}
+__all__ = [*_HOME]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a name from its home on first use: an ensemble needs no scenarios."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'stridula.studies' has no attribute {name!r}")
+    return getattr(import_module(f".{_HOME[name]}", __name__), name)

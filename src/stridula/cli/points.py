@@ -1,0 +1,168 @@
+"""Points of a sweep as the command line and tables give them."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..disk import read
+from ..scenarios.quantities import parts
+from ..studies.points import Grid, LatinHypercube
+
+Points = Grid | LatinHypercube | list[dict[str, str]]
+# More points than these are asked about.
+MANY = 10_000
+_WHOLE = re.compile(r"[+-]?\d+")
+
+
+@dataclass(frozen=True)
+class Range:
+    """Numbers from one to another.
+
+    Attributes
+    ----------
+    low, high : float
+        The ends, in `unit`.
+    unit : str
+        Unit as written, empty if there is none.
+    count : int or None
+        How many, None if not said.
+    """
+
+    low: float
+    high: float
+    unit: str
+    count: int | None
+
+    def ends(self) -> tuple[float, float] | tuple[str, str]:
+        """Return both ends, as texts where there is a unit."""
+        return (f"{self.low!r} {self.unit}", f"{self.high!r} {self.unit}") if self.unit else (self.low, self.high)
+
+    def values(self) -> list[float] | list[str]:
+        """Return the numbers, ends included, as texts where there is a unit."""
+        numbers: list[float] = np.linspace(self.low, self.high, self.count or 1).tolist()
+        return [f"{number!r} {self.unit}" for number in numbers] if self.unit else numbers
+
+
+def points_of(vary: list[str], sample: int | None, seed: int | None, table: str | None, yes: bool) -> Points:
+    """Return the points that options ask for.
+
+    Parameters
+    ----------
+    vary : list of str
+        ``KEY=START:STOP:COUNT``, ``KEY=START:STOP`` or ``KEY=A,B,C``.
+    sample, seed : int or None
+        Points of a Latin hypercube, and its seed.
+    table : str or None
+        CSV file with a point in each row.
+    yes : bool
+        Whether there may be more than 10 000 points.
+
+    Raises
+    ------
+    ValueError
+        If an option is wrong, or does not go with the others.
+    OSError
+        If the table cannot be read.
+    """
+    if (table is None) == (not vary):
+        raise ValueError(f"points must be given by --vary or by --points, got {'neither' if table is None else 'both'}")
+    if seed is not None and sample is None:
+        raise ValueError(f"--seed must go with --sample, got {seed} alone")
+    if table is not None:
+        if sample is not None:
+            raise ValueError("--sample must go with --vary, got --points")
+        rows = _rows(table)
+        _check_count(len(rows), yes)
+        return rows
+    asked: dict[str, Range | list[str]] = {}
+    for text in vary:
+        key, equals, values = (part.strip() for part in text.partition("="))
+        if not equals or not key or not values:
+            raise ValueError(f"--vary must be KEY=START:STOP:COUNT or KEY=A,B,C, got {text!r}")
+        if key in asked:
+            raise ValueError(f"--vary must name each key once, got {key!r} twice")
+        asked[key] = _range(text, values, sample is not None) if ":" in values else _list(text, values)
+    return _hypercube(asked, sample, seed, yes) if sample is not None else _grid(asked, yes)
+
+
+def _hypercube(asked: dict[str, Range | list[str]], sample: int, seed: int | None, yes: bool) -> LatinHypercube:
+    _check_count(sample, yes)
+    for key, given in asked.items():
+        if not isinstance(given, Range):
+            raise ValueError(f"--vary must be KEY=START:STOP with --sample, got a list for {key!r}")
+    ranges = {key: given.ends() for key, given in asked.items() if isinstance(given, Range)}
+    return LatinHypercube(ranges, sample, seed or 0)
+
+
+def _grid(asked: dict[str, Range | list[str]], yes: bool) -> Grid:
+    _check_count(
+        math.prod((given.count or 1) if isinstance(given, Range) else len(given) for given in asked.values()), yes
+    )
+    return Grid({key: given.values() if isinstance(given, Range) else given for key, given in asked.items()})
+
+
+def _check_count(count: int, yes: bool) -> None:
+    if count > MANY and not yes:
+        raise ValueError(f"a sweep of more than {MANY} points must be confirmed with --yes, got {count} points")
+
+
+def _list(text: str, values: str) -> list[str]:
+    found = [value.strip() for value in values.split(",")]
+    if not all(found):
+        raise ValueError(f"--vary must have a value between commas, got {text!r}")
+    return found
+
+
+def _range(text: str, values: str, is_sampled: bool) -> Range:
+    wanted = "KEY=START:STOP" if is_sampled else "KEY=START:STOP:COUNT"
+    pieces = values.split(":")
+    if len(pieces) != (2 if is_sampled else 3):
+        raise ValueError(f"--vary must be {wanted}{' with --sample' if is_sampled else ''}, got {text!r}")
+    (low, unit_of_low), (high, unit) = (_number(text, piece) for piece in pieces[:2])
+    if unit_of_low not in ("", unit):
+        raise ValueError(f"--vary must have one unit for both ends, got {text!r}")
+    count = None if is_sampled else _count(text, pieces[2].strip())
+    if low >= high and count != 1:
+        raise ValueError(f"--vary must have START below STOP, got {text!r}")
+    return Range(low, high, unit, count)
+
+
+def _number(text: str, piece: str) -> tuple[float, str]:
+    known = parts(piece)
+    if known is None:
+        raise ValueError(f"--vary must have numbers for START and STOP, got {text!r}")
+    if not math.isfinite(known[0]):
+        raise ValueError(f"--vary must have finite numbers, got {text!r}")
+    return known
+
+
+def _count(text: str, piece: str) -> int:
+    if not _WHOLE.fullmatch(piece):
+        raise ValueError(f"--vary must have a whole number for COUNT, got {text!r}")
+    if int(piece) < 1:
+        raise ValueError(f"--vary must have a COUNT of at least 1, got {text!r}")
+    return int(piece)
+
+
+def _rows(path: str) -> list[dict[str, str]]:
+    """Return the rows of a table, by its header."""
+    try:
+        text = read(path).decode("utf-8-sig")
+        lines = [(number, row) for number, row in enumerate(csv.reader(io.StringIO(text)), start=1) if any(row)]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise ValueError(f"--points must be a CSV file in UTF-8, got {path!r}: {error}") from None
+    if len(lines) < 2:
+        raise ValueError(f"--points must hold a row of keys and at least one of values, got {len(lines)} in {path!r}")
+    header = [key.strip() for key in lines[0][1]]
+    if not all(header) or len(set(header)) < len(header):
+        raise ValueError(f"--points must name each key once in its first row, got {', '.join(header)} in {path!r}")
+    for number, row in lines[1:]:
+        if len(row) != len(header) or not all(value.strip() for value in row):
+            raise ValueError(f"--points must have a value for each of {', '.join(header)}, got {row} in line {number}")
+    return [dict(zip(header, (value.strip() for value in row), strict=True)) for _, row in lines[1:]]

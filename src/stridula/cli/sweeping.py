@@ -1,0 +1,138 @@
+"""`stridula sweep`: check what was asked for, compute under a progress bar, and say how many points are done."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import xarray as xr
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from ..scenarios.read import read_tables
+from ..studies.machines import client_of
+from ..studies.measures import asked_for
+from ..studies.points import Grid
+from ..studies.sweeps import SweepProgress, sweep
+from ..studies.swept import failed_points
+from .exits import FAILED, INTERRUPTED, Stopped
+from .points import Points
+from .running import check_outputs
+
+
+def sweep_scenario(
+    name: str,
+    points: Points,
+    measures: Sequence[str],
+    overrides: dict[str, Any],
+    duration: str | None,
+    out: str,
+    plot: str | None,
+    workers: int | None,
+    scheduler: str | None,
+) -> str:
+    """Sweep a scenario, write what came of it, and return the closing line.
+
+    Raises
+    ------
+    ValueError
+        If anything that was asked for is not usable; nothing is written then.
+    OSError
+        If an output cannot be written; finished parts are kept.
+    Stopped
+        On Ctrl-C, or if other machines fail; finished parts are kept.
+    """
+    check_outputs(out, plot)
+    asked = asked_for(list(measures))
+    if plot is not None:
+        _check_plot(points, [measure.name for measure in asked.measures])
+    title = str(read_tables(name).get("title", name))
+    reached = SweepProgress(0, 0, 0.0)
+
+    def follow(progress: SweepProgress) -> None:
+        nonlocal reached
+        reached = progress
+
+    try:
+        with _client(scheduler) as client, _bar(title) as watch:
+            found = sweep(
+                name,
+                points,
+                list(measures),
+                overrides=overrides,
+                duration=duration,
+                out=out,
+                workers=workers,
+                client=client,
+                watchers=[follow, watch],
+            )
+    except KeyboardInterrupt:
+        if not reached.done:
+            raise Stopped("interrupted before any point was safe; the same command starts again", INTERRUPTED) from None
+        words = f"interrupted; {reached.done} of {reached.points} points are safe in {out}.parts"
+        raise Stopped(f"{words}; the same command goes on from there", INTERRUPTED) from None
+    except RuntimeError as error:
+        # What other machines raise; points that fail are no errors.
+        raise Stopped(f"{error} in {out}.parts", FAILED) from None
+    if plot is not None:
+        _draw(found, plot)
+    return _closing(found, out)
+
+
+def _check_plot(points: Points, measures: Sequence[str]) -> None:
+    if not isinstance(points, Grid) or len(points.values) != 2 or min(map(len, points.values.values())) < 2:
+        raise ValueError("--plot must go with a grid of two keys of at least 2 values each, given by --vary twice")
+    if "regime" not in measures:
+        raise ValueError(f"--plot must go with --measure regime, which it shows, got {', '.join(measures)}")
+
+
+def _draw(found: xr.Dataset, path: str) -> None:
+    from ..plot import regime_map, save
+
+    save(regime_map(found), path)
+
+
+def _closing(found: xr.Dataset, out: str) -> str:
+    points, failed = found["message"].size, failed_points(found)
+    if not failed:
+        return f"{points} points: {points} done; written to {out}"
+    return f"{points} points: {points - failed} done, {failed} failed (messages in 'message' of {out})"
+
+
+@contextmanager
+def _client(address: str | None) -> Iterator[Any]:
+    if address is None:
+        yield None
+        return
+    # What it has to say of lost machines comes as one line of ours.
+    logging.disable(logging.CRITICAL)
+    try:
+        with client_of(address) as client:
+            yield client
+    finally:
+        logging.disable(logging.NOTSET)
+
+
+@contextmanager
+def _bar(title: str) -> Iterator[Any]:
+    """Show a bar on standard error with points done and time left."""
+    console = Console(stderr=True)
+    bar = Progress(
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TextColumn("{task.fields[words]}", markup=False),
+        TimeRemainingColumn(),
+        console=console,
+        transient=True,
+        disable=not console.is_terminal,
+    )
+    with bar:
+        task = bar.add_task(title, total=None, words="preparing (the first run compiles)")
+
+        def watch(progress: SweepProgress) -> None:
+            words = f"{progress.done} of {progress.points} points"
+            bar.update(task, completed=progress.done, total=progress.points, words=words)
+
+        yield watch

@@ -1,0 +1,170 @@
+"""Keys of a scenario that go through several values: where they are, and what they take."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from numbers import Real
+from typing import Any
+
+from ..checks import suggestion
+from . import outline
+from .errors import ScenarioError, as_written, shown
+from .fields import UNIT_OF_PATTERN
+from .keys import located, plain_value
+from .outline import Node, Path
+from .quantities import parts, quantity
+
+# Files of a body, whose matrices are read once.
+READ_ONCE = ("file", "mass", "stiffness")
+_UNIT = re.compile(r"\s*\[[^]]*\]$")
+
+
+@dataclass(frozen=True)
+class Varied:
+    """A key that goes through several values.
+
+    Attributes
+    ----------
+    key : str
+        As it was asked for.
+    path : tuple
+        Where it is in the tables.
+    full : str
+        Its full key.
+    unit : str or None
+        SI unit of its numbers, None if it takes anything else.
+    node : dict
+        What the schema says of it.
+    """
+
+    key: str
+    path: Path
+    full: str
+    unit: str | None
+    node: Node
+
+    @property
+    def long_name(self) -> str:
+        """What it is, in words."""
+        return _UNIT.sub("", str(self.node.get("description", self.full)))
+
+    def read(self, value: Any) -> Any:
+        """Return a value as the scenario takes it; whether it is in its range shows when the scenario is built.
+
+        Parameters
+        ----------
+        value : object
+            A number, a text such as ``"10 deg"``, a word, or whatever else the key takes.
+
+        Raises
+        ------
+        ScenarioError
+            If it is of another kind than the key takes.
+        """
+        value = plain_value(value)
+        words = outline.words(self.node)
+        is_number = isinstance(value, Real) and not isinstance(value, bool)
+        if is_number and not math.isfinite(value):
+            raise ScenarioError([f"{self.full} must be finite, got {shown(value)}"])
+        if self.unit is not None:
+            try:
+                quantity(value, self.unit)
+            except ValueError as error:
+                raise ScenarioError([f"{self.full} {error}, got {shown(value)}"]) from None
+        elif outline.is_whole(self.node):
+            if not is_number or value != int(value):
+                raise ScenarioError([f"{self.full} must be a whole number, got {shown(value)}"])
+            return int(value)
+        elif outline.is_choice(self.node) and value not in words:
+            near = suggestion(value, words)
+            raise ScenarioError([f"{self.full} must be one of {', '.join(words)}, got {shown(value)}{near}"])
+        return value
+
+    def coordinate(self, values: Sequence[Any]) -> tuple[list[Any], dict[str, str]]:
+        """Return values as numbers with their unit, or as words, and the attributes that say so.
+
+        Parameters
+        ----------
+        values : sequence
+            What `read` returned. Texts of one unit keep it; of several units all become SI.
+
+        Returns
+        -------
+        values : list of float, int or str
+            Plain numbers or words.
+        attributes : dict
+            ``long_name``, ``key``, and the ``units`` of numbers.
+        """
+        words = {"long_name": self.long_name, "key": self.full}
+        if self.unit is not None:
+            known = [found for found in map(parts, values) if found]
+            (spelling, *others) = dict.fromkeys(unit for _, unit in known)
+            if others:
+                return [quantity(value, self.unit) for value in values], words | {"units": self.unit}
+            return [number for number, _ in known], words | {"units": spelling or self.unit}
+        if all(isinstance(value, Real) and not isinstance(value, bool) for value in values):
+            return list(values), words
+        return [value if isinstance(value, str) else json.dumps(value, default=str) for value in values], words
+
+
+def varied_keys(tables: dict[str, Any], keys: Sequence[str], sets: Sequence[Sequence[Any]]) -> list[Varied]:
+    """Return the keys that are varied, in their order.
+
+    Parameters
+    ----------
+    tables : dict
+        The tables of a scenario.
+    keys : sequence of str
+        The keys, full or any unique ending.
+    sets : sequence of sequence
+        Their values, set by set.
+
+    Raises
+    ------
+    ScenarioError
+        If a key is not known, means several places or a place that another one means, or names a file.
+    """
+    changed, places = _places(tables, keys, sets)
+    found: list[Varied] = []
+    for key in keys:
+        path = places[key]
+        full = as_written(path, changed)
+        twin = next((one.key for one in found if one.path == path), None)
+        if twin is not None:
+            raise ScenarioError([f"key must be varied once, got {twin!r} and {key!r}, which both mean {full}"])
+        is_reduced = path[0] == "bodies" and outline.look_up(changed, (*path[:2], "kind")) == "reduced"
+        if is_reduced and path[-1] in READ_ONCE:
+            raise ScenarioError([f"key must not be {full}: matrices are read once for all points, got {key!r}"])
+        node = _node(path, changed)
+        units = {UNIT_OF_PATTERN[pattern] for pattern in outline.patterns(node) if pattern in UNIT_OF_PATTERN}
+        found.append(Varied(key, path, full, units.pop() if len(units) == 1 else None, node))
+    return found
+
+
+def _node(path: Path, tables: dict[str, Any]) -> Node:
+    """Return what the schema says of a key; of one that tells kinds of tables apart, of all kinds."""
+    if path[-1] in outline.TAGS:
+        return outline.properties(outline.node_at(path[:-1], tables))[str(path[-1])]
+    return outline.node_at(path, tables) or {}
+
+
+def _places(
+    tables: dict[str, Any], keys: Sequence[str], sets: Sequence[Sequence[Any]]
+) -> tuple[dict[str, Any], Mapping[str, Path]]:
+    """Return tables in which the keys are known, and where they are.
+
+    A key may be known only under one of several values of another, as the parameters of a law of friction are.
+    """
+    kinds = [number for number, key in enumerate(keys) if key.rpartition(".")[2] in outline.TAGS]
+    tried = {tuple(str(values[number]) for number in kinds): values for values in reversed(sets)}
+    first: list[str] = []
+    for values in reversed(tried.values()):
+        changed, places, problems = located(tables, dict(zip(keys, values, strict=True)))
+        if not problems:
+            return changed, places
+        first = first or problems
+    raise ScenarioError(first)

@@ -1,0 +1,77 @@
+"""Parts of a sweep on other machines, by dask.distributed."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import suppress
+from typing import Any
+
+from ..version import __version__
+from .measures import message_of
+from .task import Outcome, Task, use_one_thread
+
+Points = Sequence[Sequence[Any]]
+# A machine that is gone leaves the client waiting no longer than this [s].
+PATIENCE = 30.0
+
+
+def client_of(address: str) -> Any:
+    """Return a client of the scheduler at an address such as ``tcp://host:8786``.
+
+    Raises
+    ------
+    ValueError
+        If dask.distributed is not installed, or no scheduler answers.
+    """
+    try:
+        from distributed import Client
+    except ImportError:
+        raise ValueError("scheduler needs dask.distributed: install stridula[distributed], or leave it out") from None
+    try:
+        # Not for all that dask does in this process: one that cannot connect would stay in the way.
+        return Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise ValueError(f"scheduler must answer, got {address!r}: {message_of(error)}") from None
+
+
+def on_machines(client: Any, task: Task, parts: Mapping[int, Points]) -> Generator[tuple[int, list[Outcome]]]:
+    """Go through the parts as they are done, with what came of their points.
+
+    Parameters
+    ----------
+    client : distributed.Client
+        Where they are computed.
+    task : Task
+        What is done at each point.
+    parts : mapping
+        Points of each part.
+
+    Raises
+    ------
+    RuntimeError
+        If a part cannot be computed: a machine is lost again and again, or lacks something.
+    """
+    from distributed import as_completed
+
+    futures = {client.submit(_outcomes, task, points, __version__, pure=False): n for n, points in parts.items()}
+    try:
+        with client.as_current():
+            finished = as_completed(futures)
+        for future in finished:
+            try:
+                outcomes = future.result()
+            except Exception as error:
+                message = f"part {futures[future]} failed on other machines: {message_of(error)}"
+                raise RuntimeError(f"{message}; finished parts are kept") from None
+            yield futures[future], outcomes
+    finally:
+        with suppress(Exception):
+            client.cancel([future for future in futures if not future.done()])
+
+
+def _outcomes(task: Task, points: Points, version: str) -> list[Outcome]:
+    """Return what came of a part, on another machine."""
+    if version != __version__:
+        raise RuntimeError(f"stridula must be {version} there, too, got {__version__}")
+    use_one_thread()
+    return task.outcomes(points)

@@ -1,0 +1,281 @@
+"""What a sweep can measure, by name: of the record of a point, of its system, or of both."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from numbers import Real
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..analysis import advance, dominant_frequency, status_share
+from ..analysis.signals import samples
+from ..analysis.stability import stability_of
+from ..checks import suggestion
+from ..system import System
+
+Value = float | str
+Values = Mapping[str, Value]
+# Variables that every sweep has.
+OWN = ("ended", "message", "point")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A number or a word that a measure gives at each point.
+
+    Attributes
+    ----------
+    name : str
+        What the variable is called.
+    units : str
+        Its unit, empty for words.
+    long_name : str
+        What it is, in words.
+    is_text : bool
+        Whether it is a word.
+    """
+
+    name: str
+    units: str
+    long_name: str
+    is_text: bool = False
+
+
+@dataclass(frozen=True)
+class Measure:
+    """What is measured at each point.
+
+    Attributes
+    ----------
+    name : str
+        What it is asked for by.
+    columns : tuple of Column
+        What it gives.
+    of_record : callable or None
+        Function of a record that returns the values of the columns by name.
+    of_system : callable or None
+        Function of a system that returns the values of the columns by name; it needs no run.
+    also : tuple of str
+        Other measures that belong to it.
+    """
+
+    name: str
+    columns: tuple[Column, ...]
+    of_record: Callable[[xr.Dataset], Values] | None = None
+    of_system: Callable[[System], Values] | None = None
+    also: tuple[str, ...] = ()
+
+
+def _shares(run: xr.Dataset) -> Values:
+    return {status: status_share(run, status) for status in ("separated", "sticking", "sliding")}
+
+
+def _frequency(run: xr.Dataset) -> Values:
+    return {"frequency": dominant_frequency(run["normal_force"])}
+
+
+def _level(run: xr.Dataset) -> Values:
+    force, _ = samples(run["normal_force"])
+    mean = float(force.mean())
+    return {"level": float(force.std()) / mean if mean else float("nan")}
+
+
+def _peak_force(run: xr.Dataset) -> Values:
+    return {"peak_force": float(samples(run["normal_force"])[0].max())}
+
+
+def _mean_force(run: xr.Dataset) -> Values:
+    return {"mean_force": float(samples(run["normal_force"])[0].mean())}
+
+
+def _travel(run: xr.Dataset) -> Values:
+    return {"travel": advance(run)}
+
+
+# To add one: a line here, and its words in the table of docs/command-line.rst.
+MEASURES = {
+    measure.name: measure
+    for measure in (
+        Measure(
+            "shares",
+            (
+                Column("separated", "1", "share of the time in which the contact is separated"),
+                Column("sticking", "1", "share of the time in which the contact sticks"),
+                Column("sliding", "1", "share of the time in which the contact slides"),
+            ),
+            _shares,
+        ),
+        Measure("frequency", (Column("frequency", "Hz", "dominant frequency of the normal force"),), _frequency),
+        Measure(
+            "level",
+            (Column("level", "1", "standard deviation of the normal force over its mean"),),
+            _level,
+        ),
+        Measure(
+            "peak_force",
+            (Column("peak_force", "N", "largest normal force, of means over the sample interval"),),
+            _peak_force,
+        ),
+        Measure("mean_force", (Column("mean_force", "N", "mean normal force"),), _mean_force),
+        Measure("travel", (Column("travel", "m", "net way of the contact point along the track"),), _travel),
+        Measure(
+            "stability",
+            (
+                Column("growth_rate", "1/s", "largest growth rate of linear theory"),
+                Column("flutter_frequency", "Hz", "frequency of the mode that grows fastest"),
+                Column("unstable_modes", "1", "number of modes that grow"),
+                Column("equilibrium", "", "what linear theory says comes of the contact", is_text=True),
+            ),
+            of_system=stability_of,
+        ),
+    )
+}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Measures that were asked for.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Measures of the table.
+    functions : dict
+        Functions of a record by name.
+    """
+
+    names: tuple[str, ...]
+    functions: dict[str, Callable[[xr.Dataset], Value]]
+
+    @property
+    def measures(self) -> tuple[Measure, ...]:
+        """The measures of the table, those that belong to others among them, each once."""
+        found: dict[str, Measure] = {}
+        waiting = list(self.names)
+        while waiting:
+            name = waiting.pop(0)
+            if name not in found:
+                found[name] = MEASURES[name]
+                waiting += MEASURES[name].also
+        return tuple(found.values())
+
+    @property
+    def needs_record(self) -> bool:
+        """Whether anything is measured of a record."""
+        return bool(self.functions) or any(measure.of_record for measure in self.measures)
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """What they give; of functions only the names are known."""
+        known = [column for measure in self.measures for column in measure.columns]
+        return (*known, *(Column(name, "", name) for name in self.functions))
+
+    def of_record(self, run: xr.Dataset) -> dict[str, Value]:
+        """Return all that is measured of a record.
+
+        Raises
+        ------
+        ValueError
+            If a measure fails, or returns neither numbers nor texts; the message names it.
+        """
+        found: dict[str, Value] = {}
+        for measure in self.measures:
+            if measure.of_record is not None:
+                with _naming(measure.name):
+                    found |= {name: value_of(value) for name, value in measure.of_record(run).items()}
+        for name, function in self.functions.items():
+            with _naming(name):
+                found[name] = value_of(function(run))
+        return found
+
+    def of_system(self, system: System) -> dict[str, Value]:
+        """Return all that is measured of a system."""
+        found: dict[str, Value] = {}
+        for measure in self.measures:
+            if measure.of_system is not None:
+                with _naming(measure.name):
+                    found |= {name: value_of(value) for name, value in measure.of_system(system).items()}
+        return found
+
+
+def asked_for(measures: Any) -> Asked:
+    """Return the measures that were asked for.
+
+    Parameters
+    ----------
+    measures : str, mapping or sequence of them
+        Names of the table `MEASURES`, functions of a record by names of one's own.
+
+    Raises
+    ------
+    ValueError
+        If one is not known, or two have the same name.
+    """
+    entries = [measures] if isinstance(measures, (str, Mapping)) else measures
+    if not isinstance(entries, Sequence) or not entries:
+        raise ValueError(f"measures must be names of measures or functions by name, got {measures!r}")
+    names: list[str] = []
+    functions: dict[str, Callable[[xr.Dataset], Value]] = {}
+    for entry in entries:
+        if isinstance(entry, Mapping):
+            functions |= {_own_name(name, function): function for name, function in entry.items()}
+        elif not isinstance(entry, str) or entry not in MEASURES:
+            known = ", ".join(MEASURES)
+            raise ValueError(f"measure must be one of {known}, got {entry!r}{suggestion(entry, list(MEASURES))}")
+        elif entry not in names:
+            names.append(entry)
+    asked = Asked(tuple(names), functions)
+    given = [column.name for column in asked.columns]
+    clash = next((name for name in given if given.count(name) > 1 or name in OWN), None)
+    if clash is not None:
+        raise ValueError(f"measures must have names other than {', '.join(OWN)} and those of others, got {clash!r}")
+    return asked
+
+
+def _own_name(name: Any, function: Any) -> str:
+    if not isinstance(name, str) or not name or "/" in name or not callable(function):
+        raise ValueError(f"measures must be functions of a record by name, got {name!r}: {function!r}")
+    return name
+
+
+@contextmanager
+def _naming(name: str) -> Iterator[None]:
+    """Turn what a measure raises into a ValueError that names it. Memory that runs out is not its own."""
+    try:
+        yield
+    except MemoryError:
+        raise
+    except Exception as error:
+        raise ValueError(f"measure {name!r}: {message_of(error)}") from error
+
+
+def message_of(error: BaseException) -> str:
+    """Return an exception in one line, with its kind where the words may not say what they are about."""
+    words = " ".join(str(error).split())
+    return words if words and isinstance(error, (ValueError, RuntimeError)) else f"{type(error).__name__}: {words}"
+
+
+def value_of(value: Any) -> Value:
+    """Return a value of a measure as Python's own.
+
+    Parameters
+    ----------
+    value : object
+        A number, a text, or an array with one of them.
+
+    Raises
+    ------
+    ValueError
+        If it is neither a number nor a text.
+    """
+    single = isinstance(value, (np.ndarray, np.generic, xr.DataArray)) and value.size == 1
+    plain = value.item() if single else value
+    if isinstance(plain, str):
+        return plain
+    if not isinstance(plain, Real):
+        raise ValueError(f"must return a number or a text, got a {type(value).__name__}")
+    return float(plain)

@@ -1,0 +1,159 @@
+"""Parts of a sweep on disk: each whole or not there, so that a sweep goes on where it was."""
+
+from __future__ import annotations
+
+import json
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from ..disk import check_writable, one_line, write
+from ..records.files import is_record, load, save
+from .task import Outcome
+
+# What is kept beside the parts: what they are parts of.
+SWEEP = "sweep.json"
+
+
+class Parts:
+    """The file of a sweep, and the folder beside it with the parts that are done.
+
+    Two processes on one sweep write the same parts: the later one replaces a file by an equal one.
+
+    Parameters
+    ----------
+    out : str or Path
+        The file; the folder has its name and ``.parts``.
+    identity : dict of str
+        What makes the sweep: its scenario, what was asked of it, the version.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    ValueError
+        If the file or the folder is there and is not of this sweep; nothing is touched.
+    """
+
+    def __init__(self, out: str | Path, identity: dict[str, str]) -> None:
+        self.out, self.folder, self.identity = Path(out), Path(f"{out}.parts"), identity
+        check_writable(out)
+        self.finished = self._finished()
+        self._check_folder()
+
+    def _finished(self) -> xr.Dataset | None:
+        """Return the sweep if its file is complete, None if there is none."""
+        if not self.out.exists():
+            return None
+        if not self.out.is_file() or not is_record(self.out):
+            raise ValueError(f"out must be a new file or that of this sweep, got {str(self.out)!r}, another file")
+        found = load(self.out)
+        if {name: found.attrs.get(name) for name in self.identity} != self.identity:
+            raise ValueError(
+                f"out must be a new file or that of this sweep, got {str(self.out)!r}{self._why(found.attrs)}"
+            )
+        return found
+
+    def _check_folder(self) -> None:
+        """Raise ValueError if the folder is there and is not of this sweep."""
+        if not self.folder.exists():
+            return
+        if not self.folder.is_dir():
+            raise ValueError(f"{str(self.folder)!r} must be left for the parts of the sweep, got a file")
+        known = self._identity_on_disk()
+        if known is None and all(path.name.startswith(".stridula-") for path in self.folder.iterdir()):
+            # Stopped before it knew of which sweep.
+            return
+        if known != self.identity:
+            raise ValueError(f"{str(self.folder)!r} must hold parts of this sweep, got others{self._why(known or {})}")
+
+    def _identity_on_disk(self) -> dict[str, str] | None:
+        try:
+            found = json.loads((self.folder / SWEEP).read_bytes())
+        except (OSError, ValueError):
+            return None
+        return found if isinstance(found, dict) else None
+
+    def _why(self, other: dict[str, Any]) -> str:
+        """Return in words in what another sweep differs."""
+        words = {
+            "scenario": "another scenario",
+            "sweep": "other points or options",
+            "stridula_version": "another version",
+        }
+        if "sweep" not in other:
+            return ", another file"
+        differing = [word for name, word in words.items() if name in other and other[name] != self.identity[name]]
+        return f", of {' and '.join(differing)}" if differing else ""
+
+    def done(self, sizes: dict[int, int]) -> dict[int, list[Outcome]]:
+        """Return the parts that are done.
+
+        Parameters
+        ----------
+        sizes : dict
+            Number of points of each part.
+        """
+        found = {number: self._read(number) for number in sizes}
+        return {number: part for number, part in found.items() if part is not None and len(part) == sizes[number]}
+
+    def keep(self, number: int, outcomes: list[Outcome]) -> None:
+        """Write a part.
+
+        Raises
+        ------
+        OSError
+            If it cannot be written.
+        """
+        self._open()
+        write(self._path(number), _json(outcomes))
+
+    def finish(self, found: xr.Dataset) -> None:
+        """Write the whole sweep and remove the parts.
+
+        Raises
+        ------
+        OSError
+            If it cannot be written; the parts stay.
+        """
+        save(found, self.out)
+        self.clear()
+
+    def clear(self) -> None:
+        """Remove the parts and their folder, unless there is something else in it."""
+        if not self.folder.is_dir():
+            return
+        for path in self.folder.glob("[0-9]*.json"):
+            path.unlink(missing_ok=True)
+        for path in self.folder.glob(".stridula-*"):
+            path.unlink(missing_ok=True)
+        # Last, so that a folder with parts always says of which sweep they are.
+        (self.folder / SWEEP).unlink(missing_ok=True)
+        with suppress(OSError):
+            self.folder.rmdir()
+
+    def _open(self) -> None:
+        with one_line(f"cannot write {str(self.folder)!r}"):
+            self.folder.mkdir(exist_ok=True)
+        if not (self.folder / SWEEP).exists():
+            write(self.folder / SWEEP, _json(self.identity))
+
+    def _path(self, number: int) -> Path:
+        return self.folder / f"{number:06d}.json"
+
+    def _read(self, number: int) -> list[Outcome] | None:
+        """Return a part, None if it is not there or damaged."""
+        try:
+            part = json.loads(self._path(number).read_bytes())
+        except (OSError, ValueError):
+            return None
+        is_whole = isinstance(part, list) and all(
+            isinstance(outcome, dict) and outcome.keys() == {"ended", "message", "values"} for outcome in part
+        )
+        return part if is_whole else None
+
+
+def _json(content: Any) -> bytes:
+    return json.dumps(content, ensure_ascii=False).encode()

@@ -1,0 +1,290 @@
+"""Sweeps: a scenario at many points of its parameters, what is measured at each in one Dataset, safe on disk."""
+
+from __future__ import annotations
+
+import json
+import os
+import threading
+import time
+from collections.abc import Callable, Generator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import closing
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from ..checks import count
+from ..records.provenance import toml
+from ..scenarios.errors import ScenarioError
+from ..scenarios.keys import located, with_values
+from ..scenarios.load import scenario_of_tables, with_matrices
+from ..scenarios.read import read_tables
+from ..scenarios.varied import Varied, varied_keys
+from ..version import __version__
+from .machines import on_machines
+from .measures import asked_for
+from .parts import Parts
+from .points import Grid, LatinHypercube, Layout, laid_out, plain_python
+from .swept import check_names, swept
+from .task import Outcome, Task, one_thread_each
+
+# Points that are computed in one go, whoever computes them: they share a time step, and runs march side by side.
+POINTS_OF_A_PART = 64
+# Samples per second recorded where neither the scenario nor the sweep says less: enough for what is measured by name.
+SAMPLE_RATE = 20e3
+
+
+@dataclass(frozen=True)
+class SweepProgress:
+    """How far a sweep has come.
+
+    Attributes
+    ----------
+    done : int
+        Points that are done, those of an earlier start among them.
+    points : int
+        Points in all.
+    wall_time : float
+        Time since this start [s].
+    """
+
+    done: int
+    points: int
+    wall_time: float
+
+
+Watcher = Callable[[SweepProgress], None]
+
+
+def sweep(
+    scenario: str | Path | xr.Dataset,
+    points: Grid | LatinHypercube | Sequence[Mapping[str, Any]],
+    measures: Any,
+    *,
+    overrides: Mapping[str, Any] | None = None,
+    duration: float | str | None = None,
+    sample_rate: float | str | None = None,
+    probes: bool | None = None,
+    out: str | Path | None = None,
+    workers: int | None = None,
+    client: Any = None,
+    watchers: Sequence[Watcher] = (),
+) -> xr.Dataset:
+    """Run a scenario at many points of its parameters and return what is measured at each.
+
+    Points are computed in parts of 64, in their order. Within a part runs march side by side, with the shortest of the
+    time steps that they would take alone. A part does not depend on who computes it: any number of workers, other
+    machines of the same kind, or a sweep that was stopped and started again give the same to the last bit. To that
+    end, linear algebra runs in one thread meanwhile.
+
+    A point that cannot be built, started, believed or measured is kept with its message, and the others go on.
+
+    Parameters
+    ----------
+    scenario : str, Path or xarray.Dataset
+        Name of a shipped case, a TOML file or a record.
+    points : Grid, LatinHypercube or sequence of mapping
+        Values by key, as the overrides of `load_scenario`.
+    measures : str, mapping or sequence of them
+        What is measured: names of measures, functions by names of one's own. A function takes a record and returns a
+        number or a text; it runs in threads, and with a `client` on other machines.
+    overrides : mapping, optional
+        Values of other keys, the same at every point.
+    duration : float or str, optional
+        Time to simulate [s]; the scenario's if left out.
+    sample_rate : float or str, optional
+        Samples per second recorded [Hz]; the scenario's if left out, at most 20 kHz.
+    probes : bool, optional
+        Whether the scenario's probes are recorded; if left out, where there are functions among the measures.
+    out : str or Path, optional
+        NetCDF file to write. Parts that are done are kept in a folder beside it, ``<out>.parts``; the same call goes on
+        from there. Two of them at once do no harm.
+    workers : int, optional
+        Parts at a time; as many as there are processors if left out.
+    client : distributed.Client, optional
+        Machines that compute the parts, in place of this one.
+    watchers : sequence of callable, optional
+        Called with a `SweepProgress` after each part.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of a grid, the measures over one dimension for each key; of other points over ``point``, with the keys as
+        coordinates. Texts such as ``"10 deg"`` become numbers with this unit. ``ended`` is how the run ended, or
+        ``not built``, ``not started``, ``not simulated``, ``not measured``; ``message`` what failed, empty where good.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario cannot be used, or a key is not known, means several places or takes values of another kind.
+    ValueError
+        If another argument is not usable, or `out` is another file or that of another sweep, which is not touched.
+        Functions among the measures are told apart by their names only.
+    OSError
+        If the file or a part cannot be written; finished parts are kept.
+    RuntimeError
+        If a part fails on other machines; finished parts are kept.
+    """
+    began = time.perf_counter()
+    if workers is not None:
+        count("workers", workers)
+    if not isinstance(watchers, Sequence):
+        raise ValueError(f"watchers must be a list of callables, got {watchers!r}")
+    if client is not None and not callable(getattr(client, "submit", None)):
+        raise ValueError(f"client must be a client of dask.distributed, got {client!r}")
+    plan = _planned(scenario, points, measures, overrides or {}, duration, sample_rate, probes)
+    store = None if out is None else Parts(out, plan.identity)
+    if store is not None and store.finished is not None:
+        store.clear()
+        return store.finished
+    done = {} if store is None else store.done({number: len(part) for number, part in plan.parts.items()})
+    left = {number: part for number, part in plan.parts.items() if number not in done}
+
+    def report() -> None:
+        reached = sum(map(len, done.values()))
+        for watch in watchers:
+            watch(SweepProgress(reached, len(plan.values), time.perf_counter() - began))
+
+    if done:
+        report()
+    with one_thread_each():
+        computed = _here(plan.task, left, workers) if client is None else on_machines(client, plan.task, left)
+        with closing(computed):
+            for number, outcomes in computed:
+                if store is not None:
+                    store.keep(number, outcomes)
+                done[number] = outcomes
+                report()
+    found = plan.dataset([outcome for number in plan.parts for outcome in done[number]])
+    if store is not None:
+        store.finish(found)
+    return found
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """A sweep before it starts: what is done at each point, the points, and what the result says of them."""
+
+    task: Task
+    layout: Layout
+    keys: list[Varied]
+    values: list[tuple[Any, ...]]
+    attributes: dict[str, str]
+
+    @property
+    def identity(self) -> dict[str, str]:
+        """What tells this sweep from others."""
+        return {name: self.attributes[name] for name in ("scenario", "sweep", "stridula_version")}
+
+    @cached_property
+    def parts(self) -> dict[int, list[tuple[Any, ...]]]:
+        """Values of the points of each part."""
+        starts = range(0, len(self.values), POINTS_OF_A_PART)
+        return {number: self.values[first : first + POINTS_OF_A_PART] for number, first in enumerate(starts)}
+
+    def dataset(self, outcomes: Sequence[Outcome]) -> xr.Dataset:
+        """Return what came of the points."""
+        return swept(self.layout, self.keys, self.values, self.task.asked.columns, outcomes, self.attributes)
+
+
+def _planned(
+    scenario: Any,
+    points: Any,
+    measures: Any,
+    overrides: Mapping[str, Any],
+    duration: Any,
+    sample_rate: Any,
+    probes: bool | None,
+) -> _Plan:
+    """Return a sweep from the arguments of `sweep`, checked."""
+    asked = asked_for(measures)
+    layout = laid_out(points)
+    check_names(layout, asked.columns)
+    fixed = {key: plain_python(value) for key, value in overrides.items()}
+    timing = {"duration": plain_python(duration), "sample_rate": plain_python(sample_rate)}
+    given = {f"simulation.{name}": value for name, value in timing.items() if value is not None}
+    tables, keys, values, has_own_rate = _scenario(scenario, fixed | given, layout)
+    with_probes = bool(asked.functions) if probes is None else bool(probes)
+    highest_rate = float("inf") if has_own_rate else SAMPLE_RATE
+    task = Task(tables, tuple(key.path for key in keys), asked, highest_rate, with_probes)
+    wanted: dict[str, Any] = {"points": layout.asked, "measures": list(asked.names), "functions": list(asked.functions)}
+    wanted |= {"overrides": fixed, **timing, "probes": with_probes}
+    attributes = {
+        "title": str(tables.get("title", "")),
+        "scenario": toml(tables),
+        "stridula_version": __version__,
+        "sweep": json.dumps(wanted, ensure_ascii=False, default=str),
+    }
+    return _Plan(task, layout, keys, values, attributes)
+
+
+def _scenario(
+    scenario: Any, fixed: Mapping[str, Any], layout: Layout
+) -> tuple[dict[str, Any], list[Varied], list[tuple[Any, ...]], bool]:
+    """Return the scenario that all points share, the keys that are varied, and their values at each point.
+
+    And whether the sample rate is set or varied, not left to the scenario.
+    """
+    tables, places, problems = located(read_tables(scenario), fixed)
+    if problems:
+        raise ScenarioError(problems)
+    keys = varied_keys(tables, layout.keys, layout.values)
+    for key in keys:
+        twin = next((name for name, path in places.items() if path == key.path), None)
+        if twin is not None:
+            raise ScenarioError([f"key must be set or varied, got both {twin!r} and {key.key!r}"])
+    columns = [
+        [key.read(value) for value in column]
+        for key, column in zip(keys, zip(*layout.values, strict=True), strict=True)
+    ]
+    values = list(zip(*columns, strict=True))
+    has_own_rate = ("simulation", "sample_rate") in [*places.values(), *(key.path for key in keys)]
+    return _usable(tables, keys, values), keys, values, has_own_rate
+
+
+def _usable(tables: dict[str, Any], keys: Sequence[Varied], values: Sequence[Sequence[Any]]) -> dict[str, Any]:
+    """Return the tables with matrices in place of files, once they make a scenario.
+
+    They must alone or at the first or last point: what the points lack is no fault of theirs.
+    """
+    errors = []
+    for given in (None, values[0], values[-1]):
+        tried = tables if given is None else with_values(tables, [(key.path, given[n]) for n, key in enumerate(keys)])
+        try:
+            scenario_of_tables(tried)
+        except ScenarioError as error:
+            errors.append(error)
+        else:
+            return with_matrices(tables, tried)
+    raise errors[0]
+
+
+class _Stopped(Exception):
+    """A part that was stopped because the sweep was."""
+
+
+def _here(
+    task: Task, parts: Mapping[int, Sequence[Sequence[Any]]], workers: int | None
+) -> Generator[tuple[int, list[Outcome]]]:
+    """Go through the parts as they are done in threads of this process, with what came of their points."""
+    if not parts:
+        return
+    processors = workers or os.cpu_count() or 1
+    threads = min(processors, len(parts))
+    stop = threading.Event()
+
+    def watch() -> None:
+        if stop.is_set():
+            raise _Stopped
+
+    pool = ThreadPoolExecutor(threads)
+    try:
+        futures = {pool.submit(task.outcomes, part, processors // threads, watch): n for n, part in parts.items()}
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+    finally:
+        stop.set()
+        pool.shutdown(wait=False, cancel_futures=True)

@@ -1,0 +1,106 @@
+"""What came of the points of a sweep as one labelled Dataset."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import chain
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..scenarios.varied import Varied
+from .measures import OWN, Column
+from .points import POINT, Layout
+from .task import Outcome
+
+
+def check_names(layout: Layout, columns: Sequence[Column]) -> None:
+    """Raise ValueError if a key has the name of a variable that the sweep has anyway.
+
+    Parameters
+    ----------
+    layout : Layout
+        The points.
+    columns : sequence of Column
+        What is measured.
+    """
+    taken = {*OWN, *(column.name for column in columns)} - ({POINT} if layout.is_grid else set())
+    clash = next((key for key in layout.keys if key in taken), None)
+    if clash is not None:
+        raise ValueError(f"key must not be called as a result of the sweep, got {clash!r}: write its full key")
+
+
+def swept(
+    layout: Layout,
+    keys: Sequence[Varied],
+    values: Sequence[Sequence[Any]],
+    columns: Sequence[Column],
+    outcomes: Sequence[Outcome],
+    attributes: dict[str, str],
+) -> xr.Dataset:
+    """Return what came of the points.
+
+    Parameters
+    ----------
+    layout : Layout
+        How the points fill dimensions.
+    keys : sequence of Varied
+        What was varied.
+    values : sequence of sequence
+        Values of the keys at each point.
+    columns : sequence of Column
+        What was measured.
+    outcomes : sequence of dict
+        What came of each point.
+    attributes : dict
+        Attributes of the whole.
+    """
+    dimensions = tuple(layout.dimensions)
+    shape = tuple(layout.dimensions.values())
+
+    def laid(one_by_one: Any, kind: Any) -> np.ndarray:
+        flat = np.empty(len(outcomes), dtype=kind)
+        flat[:] = list(one_by_one)
+        return flat.reshape(shape)
+
+    data: dict[str, Any] = {}
+    for column in columns:
+        known = [outcome["values"].get(column.name) for outcome in outcomes]
+        words = {"long_name": column.long_name} | ({"units": column.units} if column.units else {})
+        if column.is_text or any(isinstance(value, str) for value in known):
+            data[column.name] = (
+                dimensions,
+                laid(("" if value is None else str(value) for value in known), object),
+                words,
+            )
+        else:
+            numbers = (float("nan") if value is None else value for value in known)
+            data[column.name] = (dimensions, laid(numbers, float), words)
+    for name, meaning in (("ended", "how the run of the point ended"), ("message", "what failed, empty where good")):
+        data[name] = (dimensions, laid((outcome[name] for outcome in outcomes), object), {"long_name": meaning})
+    return xr.Dataset(data, _coordinates(layout, keys, values), attributes)
+
+
+def _coordinates(layout: Layout, keys: Sequence[Varied], values: Sequence[Sequence[Any]]) -> dict[str, Any]:
+    columns = list(zip(*values, strict=True))
+    if not layout.is_grid:
+        points = {POINT: (POINT, np.arange(len(values)), {"long_name": "number of the point"})}
+        return points | {key.key: _coordinate(POINT, key, column) for key, column in zip(keys, columns, strict=True)}
+    found, step = {}, len(values)
+    for key, column in zip(keys, columns, strict=True):
+        size = layout.dimensions[key.key]
+        step //= size
+        found[key.key] = _coordinate(key.key, key, column[: step * size : step])
+    return found
+
+
+def _coordinate(dimension: str, key: Varied, values: Sequence[Any]) -> tuple[str, np.ndarray, dict[str, str]]:
+    plain, words = key.coordinate(values)
+    is_text = any(isinstance(value, str) for value in plain)
+    return dimension, np.array(plain, dtype=object if is_text else None), words
+
+
+def failed_points(found: xr.Dataset) -> int:
+    """Return the number of points of a sweep that failed."""
+    return sum(bool(message) for message in chain(found["message"].values.ravel()))

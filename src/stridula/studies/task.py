@@ -1,0 +1,159 @@
+"""What is done at the points of a sweep: scenario, run, measures. A task goes to other machines as it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import xarray as xr
+from threadpoolctl import threadpool_limits
+
+from ..integration import simulate_many
+from ..scenarios.keys import with_values
+from ..scenarios.load import Scenario, scenario_of_tables
+from ..scenarios.outline import Path
+from .measures import Asked, Value, message_of
+
+NOT_BUILT, NOT_STARTED, NOT_SIMULATED, NOT_MEASURED = "not built", "not started", "not simulated", "not measured"
+# What came of a point: its values by name, how it ended, and the message of what failed, in plain numbers and texts.
+Outcome = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is done at each point of a sweep.
+
+    Attributes
+    ----------
+    tables : dict
+        The scenario, whole.
+    paths : tuple of tuple
+        Where the values of a point go.
+    asked : Asked
+        What is measured.
+    highest_rate : float
+        Samples per second recorded at most [Hz].
+    probes : bool
+        Whether the scenario's probes are recorded.
+    """
+
+    tables: dict[str, Any]
+    paths: tuple[Path, ...]
+    asked: Asked
+    highest_rate: float
+    probes: bool
+
+    def scenario(self, values: Sequence[Any]) -> Scenario:
+        """Return the scenario of a point.
+
+        Raises
+        ------
+        ScenarioError
+            If it cannot be built.
+        """
+        return scenario_of_tables(with_values(self.tables, zip(self.paths, values, strict=True)))
+
+    def outcomes(
+        self, points: Sequence[Sequence[Any]], workers: int = 1, watch: Callable[[], None] = lambda: None
+    ) -> list[Outcome]:
+        """Return what came of some points; the same points give the same to the last bit.
+
+        Parameters
+        ----------
+        points : sequence of sequence
+            Values of the keys at each point.
+        workers : int, optional
+            Runs or groups of them at a time.
+        watch : callable, optional
+            Called now and then; what it raises ends everything.
+        """
+        outcomes: list[Outcome] = []
+        scenarios: dict[int, Scenario] = {}
+        for number, values in enumerate(points):
+            watch()
+            outcomes.append({"ended": NOT_SIMULATED, "message": "", "values": {}})
+            with _failing(outcomes[-1], NOT_BUILT):
+                scenarios[number] = self.scenario(values)
+        for number, scenario in scenarios.items():
+            watch()
+            with _failing(outcomes[number], NOT_MEASURED):
+                outcomes[number]["values"] |= self.asked.of_system(scenario.system)
+        if self.asked.needs_record:
+            for numbers in _alike(scenarios, self._options):
+                chosen = [scenarios[number] for number in numbers]
+                self._simulate([outcomes[number] for number in numbers], chosen, workers, watch)
+        return outcomes
+
+    def _options(self, scenario: Scenario) -> dict[str, Any]:
+        """Return the arguments of `simulate_many` for a scenario."""
+        return {
+            "duration": scenario.duration,
+            "scheme": scenario.scheme,
+            "step": scenario.step,
+            "sample_rate": min(scenario.sample_rate, self.highest_rate),
+            "probes": scenario.probes if self.probes else (),
+            "contact_solve": scenario.contact_solve,
+        }
+
+    def _simulate(
+        self, outcomes: Sequence[Outcome], scenarios: Sequence[Scenario], workers: int, watch: Callable[[], None]
+    ) -> None:
+        """Run scenarios of the same options and keep what is measured of their records."""
+
+        def measured(record: xr.Dataset) -> Outcome:
+            found: Outcome = {"ended": record.attrs["ended"], "message": record.attrs.get("message", ""), "values": {}}
+            if not found["message"]:
+                with _failing(found, NOT_MEASURED):
+                    found["values"] = self.asked.of_record(record)
+            return found
+
+        results = simulate_many(
+            [scenario.system for scenario in scenarios],
+            reduce=measured,
+            workers=workers,
+            watchers=[lambda progress: watch()],
+            errors="return",
+            # What a sweep measures by name does not look at it, and it takes as long as a measure.
+            provenance=bool(self.asked.functions),
+            **self._options(scenarios[0]),
+        )
+        for outcome, result in zip(outcomes, results, strict=True):
+            if isinstance(result, Exception):
+                result = {"ended": NOT_STARTED, "message": message_of(result), "values": {}}
+            # What failed first, of the system, is what is told.
+            message = outcome["message"] or result["message"]
+            values: dict[str, Value] = outcome["values"] | result["values"]
+            outcome |= {"ended": result["ended"], "message": message, "values": values}
+
+
+def _alike(scenarios: dict[int, Scenario], options: Callable[[Scenario], dict[str, Any]]) -> list[list[int]]:
+    """Return the numbers of the scenarios that go into one call."""
+    groups: dict[Hashable, list[int]] = {}
+    for number, scenario in scenarios.items():
+        groups.setdefault(tuple(options(scenario).values()), []).append(number)
+    return list(groups.values())
+
+
+@contextmanager
+def _failing(outcome: Outcome, ended: str) -> Iterator[None]:
+    """Keep what fails as the outcome of a point. Memory that runs out says nothing about it."""
+    try:
+        yield
+    except MemoryError:
+        raise
+    except Exception as error:
+        outcome["ended"], outcome["message"] = ended, message_of(error)
+
+
+@contextmanager
+def one_thread_each() -> Iterator[None]:
+    """Let linear algebra run in one thread: with several its last bits depend on their number."""
+    with threadpool_limits(1):
+        yield
+
+
+def use_one_thread() -> None:
+    """Let linear algebra run in one thread from now on, as on a machine that is lent."""
+    threadpool_limits(1)
