@@ -52,10 +52,22 @@ _HOME = {
         "simulate_many",
     ),
     "analysis.stability": ("sliding_stability",),
-    "studies.agreement": ("agreement",),
-    "studies.root_loci": ("critical_value", "root_loci"),
     "analysis": ("regime",),
-    "studies": ("Grid", "LatinHypercube", "ensemble", "sweep"),
+    "studies": (
+        "CalibrationProgress",
+        "Grid",
+        "LatinHypercube",
+        "Range",
+        "SweepProgress",
+        "Target",
+        "agreement",
+        "calibrate",
+        "critical_value",
+        "ensemble",
+        "root_loci",
+        "sensitivity",
+        "sweep",
+    ),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
 __all__ = ["__version__", *_MODULE]

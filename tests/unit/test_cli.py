@@ -371,7 +371,7 @@ def test_sweep_writes_a_map_and_says_how_many_points_are_done(stridula, tmp_path
     found = st.load("map.nc")
     assert dict(found.sizes) == {"friction": 3, "angle": 2}
     assert found["angle"].values.tolist() == [20.0, 80.0]
-    assert {"mean_force", "sliding"} <= set(found)
+    assert {"mean_force", "sliding_share"} <= set(found)
     before = (tmp_path / "map.nc").read_bytes()
     assert stridula(*SWEEP, *grid, "--measure", "shares", "--set", "transverse=3")[:2] == (code, out)
     assert (tmp_path / "map.nc").read_bytes() == before
@@ -424,7 +424,7 @@ BAD_SWEEPS = [
     (("--vary", "elements=1:2:3"), "slider.elements must be a whole number, got 1.5"),
     (("--vary", "friction=0:1:10001"), "more than 10000 points must be confirmed with --yes, got 10001 points"),
     (("--vary", "friction=0:1:1000000000", "--vary", "angle=0:1:1000"), "got 1000000000000 points"),
-    ((*VARY, "--measure", "frequncy"), "did you mean 'frequency'?"),
+    ((*VARY, "--measure", "regim"), "did you mean 'regime'?"),
     ((*VARY, "--sample", "3"), "--vary must be KEY=START:STOP with --sample"),
     (("--vary", "friction=1,2", "--sample", "3"), "got a list for 'friction'"),
     (("--vary", "friction=1:2", "--sample", "0"), "count must be at least 1"),

@@ -50,7 +50,8 @@ def test_a_grid_has_a_dimension_for_each_key_in_the_order_given():
     assert float(there["mean_force"]) == pytest.approx(float(alone["normal_force"].mean()), rel=1e-6)
     assert set(found["ended"].values.ravel()) == {"finished"}
     assert set(found["message"].values.ravel()) == {""}
-    assert sum(float(there[name]) for name in ("separated", "sticking", "sliding")) == pytest.approx(1.0)
+    shares = [float(there[f"{status}_share"]) for status in ("separated", "sticking", "sliding")]
+    assert sum(shares) == pytest.approx(1.0)
 
 
 def test_a_list_has_the_dimension_point_and_a_coordinate_for_each_key():
@@ -389,10 +390,10 @@ BAD = [
     ({"points": []}, "points must hold at least one point"),
     ({"points": "friction"}, "points must be a Grid"),
     ({"points": [{"drives.0.transverse": 1, "message": 1}]}, "key must not be called"),
-    ({"measures": "frequncy"}, "did you mean 'frequency'?"),
+    ({"measures": "regim"}, "did you mean 'regime'?"),
     ({"measures": []}, "measures must be names"),
     ({"measures": {"ended": len}}, "measures must have names other than"),
-    ({"measures": ["shares", {"sliding": len}]}, "measures must have names other than"),
+    ({"measures": ["shares", {"sliding_share": len}]}, "measures must have names other than"),
     ({"measures": {"a": 1}}, "functions of a record by name"),
     ({"workers": 0}, "workers must be at least 1"),
     ({"client": 3}, "client must be a client of dask.distributed"),

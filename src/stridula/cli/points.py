@@ -21,7 +21,7 @@ _WHOLE = re.compile(r"[+-]?\d+")
 
 
 @dataclass(frozen=True)
-class Range:
+class Span:
     """Numbers from one to another.
 
     Attributes
@@ -80,7 +80,7 @@ def points_of(vary: list[str], sample: int | None, seed: int | None, table: str 
         rows = _rows(table)
         _check_count(len(rows), yes)
         return rows
-    asked: dict[str, Range | list[str]] = {}
+    asked: dict[str, Span | list[str]] = {}
     for text in vary:
         key, equals, values = (part.strip() for part in text.partition("="))
         if not equals or not key or not values:
@@ -91,20 +91,20 @@ def points_of(vary: list[str], sample: int | None, seed: int | None, table: str 
     return _hypercube(asked, sample, seed, yes) if sample is not None else _grid(asked, yes)
 
 
-def _hypercube(asked: dict[str, Range | list[str]], sample: int, seed: int | None, yes: bool) -> LatinHypercube:
+def _hypercube(asked: dict[str, Span | list[str]], sample: int, seed: int | None, yes: bool) -> LatinHypercube:
     _check_count(sample, yes)
     for key, given in asked.items():
-        if not isinstance(given, Range):
+        if not isinstance(given, Span):
             raise ValueError(f"--vary must be KEY=START:STOP with --sample, got a list for {key!r}")
-    ranges = {key: given.ends() for key, given in asked.items() if isinstance(given, Range)}
+    ranges = {key: given.ends() for key, given in asked.items() if isinstance(given, Span)}
     return LatinHypercube(ranges, sample, seed or 0)
 
 
-def _grid(asked: dict[str, Range | list[str]], yes: bool) -> Grid:
+def _grid(asked: dict[str, Span | list[str]], yes: bool) -> Grid:
     _check_count(
-        math.prod((given.count or 1) if isinstance(given, Range) else len(given) for given in asked.values()), yes
+        math.prod((given.count or 1) if isinstance(given, Span) else len(given) for given in asked.values()), yes
     )
-    return Grid({key: given.values() if isinstance(given, Range) else given for key, given in asked.items()})
+    return Grid({key: given.values() if isinstance(given, Span) else given for key, given in asked.items()})
 
 
 def _check_count(count: int, yes: bool) -> None:
@@ -119,7 +119,7 @@ def _list(text: str, values: str) -> list[str]:
     return found
 
 
-def _range(text: str, values: str, is_sampled: bool) -> Range:
+def _range(text: str, values: str, is_sampled: bool) -> Span:
     wanted = "KEY=START:STOP" if is_sampled else "KEY=START:STOP:COUNT"
     pieces = values.split(":")
     if len(pieces) != (2 if is_sampled else 3):
@@ -130,7 +130,7 @@ def _range(text: str, values: str, is_sampled: bool) -> Range:
     count = None if is_sampled else _count(text, pieces[2].strip())
     if low >= high and count != 1:
         raise ValueError(f"--vary must have START below STOP, got {text!r}")
-    return Range(low, high, unit, count)
+    return Span(low, high, unit, count)
 
 
 def _number(text: str, piece: str) -> tuple[float, str]:

@@ -1,4 +1,4 @@
-"""What many runs say: ensembles of one system from starts left to chance, sweeps of a scenario over its parameters."""
+"""What many runs say: ensembles, sweeps and maps, root loci, calibration, sensitivity."""
 
 from __future__ import annotations
 
@@ -6,11 +6,19 @@ from importlib import import_module
 from typing import Any
 
 _HOME = {
+    "CalibrationProgress": "calibration",
     "Grid": "points",
     "LatinHypercube": "points",
+    "Range": "points",
     "SweepProgress": "sweeps",
+    "Target": "calibration",
+    "agreement": "verdicts",
+    "calibrate": "calibration",
+    "critical_value": "loci",
     "ensemble": "ensembles",
     "mean_and_interval": "ensembles",
+    "root_loci": "loci",
+    "sensitivity": "sobol",
     "share_of": "ensembles",
     "sweep": "sweeps",
 }

@@ -12,9 +12,11 @@ import numpy as np
 import xarray as xr
 
 from ..analysis import advance, dominant_frequency, status_share
+from ..analysis.regimes import MEANINGS, regime_of
 from ..analysis.signals import samples
 from ..analysis.stability import stability_of
 from ..checks import suggestion
+from ..records.variables import STATUS_WORDS
 from ..system import System
 
 Value = float | str
@@ -71,17 +73,11 @@ class Measure:
 
 
 def _shares(run: xr.Dataset) -> Values:
-    return {status: status_share(run, status) for status in ("separated", "sticking", "sliding")}
+    return {f"{status}_share": status_share(run, status) for status in STATUS_WORDS}
 
 
-def _frequency(run: xr.Dataset) -> Values:
-    return {"frequency": dominant_frequency(run["normal_force"])}
-
-
-def _level(run: xr.Dataset) -> Values:
-    force, _ = samples(run["normal_force"])
-    mean = float(force.mean())
-    return {"level": float(force.std()) / mean if mean else float("nan")}
+def _dominant_frequency(run: xr.Dataset) -> Values:
+    return {"dominant_frequency": dominant_frequency(run["normal_force"])}
 
 
 def _peak_force(run: xr.Dataset) -> Values:
@@ -96,6 +92,11 @@ def _travel(run: xr.Dataset) -> Values:
     return {"travel": advance(run)}
 
 
+def _regime_column(name: str) -> Column:
+    units, meaning = MEANINGS[name]
+    return Column(name, "" if name == "regime" else units, meaning, is_text=name == "regime")
+
+
 # To add one: a line here, and its words in the table of docs/command-line.rst.
 MEASURES = {
     measure.name: measure
@@ -103,17 +104,16 @@ MEASURES = {
         Measure(
             "shares",
             (
-                Column("separated", "1", "share of the time in which the contact is separated"),
-                Column("sticking", "1", "share of the time in which the contact sticks"),
-                Column("sliding", "1", "share of the time in which the contact slides"),
+                Column("separated_share", "1", "share of the time in which the contact is separated"),
+                Column("sticking_share", "1", "share of the time in which the contact sticks"),
+                Column("sliding_share", "1", "share of the time in which the contact slides"),
             ),
             _shares,
         ),
-        Measure("frequency", (Column("frequency", "Hz", "dominant frequency of the normal force"),), _frequency),
         Measure(
-            "level",
-            (Column("level", "1", "standard deviation of the normal force over its mean"),),
-            _level,
+            "dominant_frequency",
+            (Column("dominant_frequency", "Hz", "dominant frequency of the normal force"),),
+            _dominant_frequency,
         ),
         Measure(
             "peak_force",
@@ -122,6 +122,7 @@ MEASURES = {
         ),
         Measure("mean_force", (Column("mean_force", "N", "mean normal force"),), _mean_force),
         Measure("travel", (Column("travel", "m", "net way of the contact point along the track"),), _travel),
+        Measure("regime", tuple(map(_regime_column, MEANINGS)), regime_of, also=("stability",)),
         Measure(
             "stability",
             (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import product
 from numbers import Real
 from typing import Any
@@ -15,6 +15,70 @@ from ..checks import count, finite
 from ..scenarios.quantities import parts
 
 POINT = "point"
+
+
+@dataclass(frozen=True)
+class Range:
+    """Numbers from one to another, both of one unit.
+
+    Parameters
+    ----------
+    low, high : float or str
+        Ends, both numbers in SI or both texts of one unit such as ``"10 deg"``.
+    logarithmic : bool, optional
+        Whether ratios count instead of differences; both ends are above 0 then.
+
+    Raises
+    ------
+    ValueError
+        If the ends do not rise, or are not of one unit.
+    """
+
+    low: float | str
+    high: float | str
+    logarithmic: bool = False
+
+    def __post_init__(self) -> None:
+        (low, unit), (high, other) = self._end("low"), self._end("high")
+        if unit != other:
+            raise ValueError(f"high must be in the unit of low, got {self.low!r} and {self.high!r}")
+        if low >= high:
+            raise ValueError(f"high must be above low ({self.low!r}), got {self.high!r}")
+        if self.logarithmic and low <= 0.0:
+            raise ValueError(f"low must be above 0 on a logarithmic range, got {self.low!r}")
+
+    @property
+    def unit(self) -> str:
+        """Unit of the ends as they are written, empty for SI."""
+        return self._end("low")[1]
+
+    def number(self, share: float) -> float:
+        """Return the number at a share of the range, from 0 to 1, in its unit."""
+        low, high = self._end("low")[0], self._end("high")[0]
+        return float(low * (high / low) ** share if self.logarithmic else low + (high - low) * share)
+
+    def value(self, share: float) -> float | str:
+        """Return the value at a share of the range as scenarios take it."""
+        number = self.number(share)
+        return f"{number!r} {self.unit}" if self.unit else number
+
+    def share(self, value: float | str) -> float:
+        """Return where a value lies in the range, 0 at its low end and 1 at its high one."""
+        known = parts(value)
+        if known is None or known[1] != self.unit:
+            raise ValueError(f"start must be in the unit of its range ({self.unit or 'SI'}), got {value!r}")
+        low, high = self._end("low")[0], self._end("high")[0]
+        if self.logarithmic:
+            return math.log(known[0] / low) / math.log(high / low) if known[0] > 0.0 else -math.inf
+        return (known[0] - low) / (high - low)
+
+    def _end(self, name: str) -> tuple[float, str]:
+        given = getattr(self, name)
+        known = parts(given)
+        if known is None:
+            raise ValueError(f"{name} must be a number, with a unit or in SI, got {given!r}")
+        finite(name, known[0])
+        return known
 
 
 @dataclass(frozen=True)
@@ -58,7 +122,7 @@ class LatinHypercube:
     Parameters
     ----------
     ranges : mapping
-        Lowest and highest value by key, both numbers in SI or both texts of one unit such as ``("10 deg", "80 deg")``.
+        A `Range` or its two ends by key.
     count : int
         Number of points.
     seed : int, optional
@@ -70,46 +134,68 @@ class LatinHypercube:
         If a range does not rise, or an argument is out of its range.
     """
 
-    ranges: Mapping[str, tuple[Any, Any]]
+    ranges: Mapping[str, Any]
     count: int
     seed: int = 0
 
     def __post_init__(self) -> None:
         count("count", self.count)
         count("seed", self.seed, low=0)
-        if not isinstance(self.ranges, Mapping) or not self.ranges:
-            raise ValueError(f"ranges must be pairs of values by key, got {self.ranges!r}")
-        for key, given in self.ranges.items():
-            if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)) or len(given) != 2:
-                raise ValueError(f"ranges[{key!r}] must be a pair of values, got {given!r}")
-        object.__setattr__(self, "ranges", {key: tuple(_plain(key, given)) for key, given in self.ranges.items()})
-        for key in self.ranges:
-            self._ends(key)
-
-    def _ends(self, key: str) -> tuple[float, float, str]:
-        """Return the ends of a range and their unit."""
-        known = [parts(value) for value in self.ranges[key]]
-        if None in known:
-            raise ValueError(f"ranges[{key!r}] must be two numbers, got {self.ranges[key]!r}")
-        (low, unit), (high, other) = [found for found in known if found]
-        if unit != other:
-            raise ValueError(f"ranges[{key!r}] must have one unit, got {self.ranges[key]!r}")
-        for end in (low, high):
-            finite(f"ranges[{key!r}]", end)
-        if low >= high:
-            raise ValueError(f"ranges[{key!r}] must rise, got {self.ranges[key]!r}")
-        return low, high, unit
+        object.__setattr__(self, "ranges", ranges_of("ranges", self.ranges))
 
     def values(self) -> dict[str, list[Any]]:
         """Return the values of each key, point by point."""
         random = np.random.default_rng(self.seed)
         found: dict[str, list[Any]] = {}
-        for key in self.ranges:
-            low, high, unit = self._ends(key)
+        for key, one in self.ranges.items():
             shares = (random.permutation(self.count) + random.random(self.count)) / self.count
-            numbers = (low + (high - low) * shares).tolist()
-            found[key] = [f"{number!r} {unit}" for number in numbers] if unit else numbers
+            found[key] = [one.value(share) for share in shares.tolist()]
         return found
+
+
+def ranges_of(name: str, given: Any) -> dict[str, Range]:
+    """Return ranges by key.
+
+    Parameters
+    ----------
+    name : str
+        What the argument is called.
+    given : mapping
+        A `Range` or its two ends by key.
+
+    Raises
+    ------
+    ValueError
+        If it is anything else, or a range does not rise.
+    """
+    if not isinstance(given, Mapping) or not given:
+        raise ValueError(f"{name} must be ranges by key, got {given!r}")
+    return {str(key): range_of(f"{name}[{key!r}]", one) for key, one in given.items()}
+
+
+def range_of(name: str, given: Any) -> Range:
+    """Return a range from itself or its two ends.
+
+    Parameters
+    ----------
+    name : str
+        What the argument is called.
+    given : Range or pair
+        The range, or its ends.
+
+    Raises
+    ------
+    ValueError
+        If it is neither, or does not rise.
+    """
+    if isinstance(given, Range):
+        return given
+    if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)) or len(given) != 2:
+        raise ValueError(f"{name} must be a Range or its two ends, got {given!r}")
+    try:
+        return Range(*(plain_python(end) for end in given))
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
 
 
 @dataclass(frozen=True)
@@ -155,7 +241,7 @@ def laid_out(points: Grid | LatinHypercube | Sequence[Mapping[str, Any]]) -> Lay
         return Layout(tuple(sizes), tuple(product(*points.values.values())), sizes, True, {"grid": dict(points.values)})
     if isinstance(points, LatinHypercube):
         columns = points.values()
-        ranges = {key: list(ends) for key, ends in points.ranges.items()}
+        ranges = {key: asdict(one) for key, one in points.ranges.items()}
         asked = {"latin hypercube": {"ranges": ranges, "count": points.count, "seed": points.seed}}
         return Layout(tuple(columns), tuple(zip(*columns.values(), strict=True)), {POINT: points.count}, False, asked)
     if isinstance(points, (str, Mapping)) or not isinstance(points, Sequence):

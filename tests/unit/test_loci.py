@@ -9,7 +9,7 @@ import pytest
 
 import stridula as st
 from stridula import plot
-from stridula.studies.root_loci import critical_values
+from stridula.studies.loci import critical_values
 from stridula.verification.instabilities import hoffmann, sinou, sinou_limit
 
 

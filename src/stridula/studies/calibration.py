@@ -1,0 +1,305 @@
+"""Calibration: parameters whose run shows given measures, by differential evolution from a seed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.optimize
+import scipy.stats
+import xarray as xr
+
+from ..bodies.modes import Array
+from ..checks import count, instance, non_negative, positive, suggestion
+from .measures import MEASURES, Value
+from .points import Range, ranges_of
+from .sweeps import sweep
+
+Point = dict[str, Any]
+Evaluate = Callable[[Sequence[Point]], Sequence[Mapping[str, Value]]]
+# Miss of a target that a failed run, or a measure that is not a number, counts for.
+WORST = 10.0
+
+
+@dataclass(frozen=True)
+class Target:
+    """What a measure should be.
+
+    Parameters
+    ----------
+    low, high : float, optional
+        Between these it is met; a bound that is left out does not count.
+    scale : float, optional
+        How far outside counts as a miss of 1, in the unit of the measure: half the width if left out, or a tenth of the
+        only bound.
+
+    Raises
+    ------
+    ValueError
+        If there is no bound, they do not rise, or there is no scale.
+    """
+
+    low: float = -math.inf
+    high: float = math.inf
+    scale: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("low", "high"):
+            value = getattr(self, name)
+            if not isinstance(value, (int, float)) or isinstance(value, bool) or math.isnan(value):
+                raise ValueError(f"{name} must be a number, got {value!r}")
+        if self.low > self.high or (math.isinf(self.low) and math.isinf(self.high)):
+            raise ValueError(f"low and high must be a range with an end, got {self.low!r} and {self.high!r}")
+        if self.scale is not None:
+            positive("scale", self.scale)
+        elif self._scale <= 0.0:
+            raise ValueError(f"scale must be given for a target at one value, got {self.low!r} to {self.high!r}")
+
+    @property
+    def _scale(self) -> float:
+        if self.scale is not None:
+            return self.scale
+        if math.isinf(self.low) or math.isinf(self.high):
+            return 0.1 * abs(self.high if math.isinf(self.low) else self.low)
+        return (self.high - self.low) / 2.0
+
+    def miss(self, value: Value) -> float:
+        """Return how far a measure is outside, in units of the scale, at most `WORST`."""
+        if isinstance(value, str) or not math.isfinite(value):
+            return WORST
+        return min(WORST, max(0.0, self.low - value, value - self.high) / self._scale)
+
+
+@dataclass(frozen=True)
+class CalibrationProgress:
+    """How far a calibration has come.
+
+    Attributes
+    ----------
+    generation, generations : int
+        Generations that are done, and in all.
+    miss : float
+        Miss of the best parameters so far.
+    best : dict
+        These parameters.
+    """
+
+    generation: int
+    generations: int
+    miss: float
+    best: Point
+
+
+def calibrate(
+    source: str | Path | xr.Dataset | Evaluate,
+    ranges: Mapping[str, Range | tuple[Any, Any]],
+    targets: Mapping[str, Target | tuple[float, float] | str],
+    *,
+    measures: Mapping[str, Callable[[xr.Dataset], Value]] | None = None,
+    population: int = 32,
+    generations: int = 50,
+    seed: int = 0,
+    start: Mapping[str, Any] | None = None,
+    spread: float = 0.02,
+    watchers: Sequence[Callable[[CalibrationProgress], None]] = (),
+    **options: Any,
+) -> xr.Dataset:
+    """Find parameters whose run shows given measures.
+
+    Differential evolution (Storn & Price 1997; ``scipy.optimize.differential_evolution``) over the ranges; the runs of
+    a generation march side by side. What is least is the sum of the squared misses of the targets; a search ends once
+    all are met. Equal seeds give equal searches.
+
+    Parameters
+    ----------
+    source : str, Path, xarray.Dataset or callable
+        A scenario, or a function that takes a list of points, values by key, and returns for each its measures by name:
+        for targets that take several runs.
+    ranges : mapping
+        Where each parameter is searched: a `Range` or its two ends.
+    targets : mapping
+        What each measure should be, by the name of its variable in a sweep: a `Target`, its two bounds, or a word that
+        it should be.
+    measures : mapping, optional
+        Functions of a record by name, for targets that no measure of a sweep gives.
+    population : int, optional
+        Sets of parameters in a generation, at least 5.
+    generations : int, optional
+        Generations after the first.
+    seed : int, optional
+        Seed of the search.
+    start : mapping, optional
+        Parameters to start from: the first set, about which the others are spread.
+    spread : float, optional
+        Standard deviation of the others about `start`, as a share of the ranges.
+    watchers : sequence of callable, optional
+        Called with a `CalibrationProgress` after each generation.
+    **options
+        Arguments of `sweep` such as `overrides`, `duration`, `sample_rate`, `workers` and `client`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The best set: each parameter and each measure, by name; ``miss``, the root of the sum of squared misses, and
+        ``met``, whether each target is met; over ``generation`` the ``best_miss`` so far and, by ``parameter``, the
+        ``best_parameters``.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+    searched = ranges_of("ranges", ranges)
+    aimed = _targets(targets)
+    count("population", population, low=5)
+    count("generations", generations)
+    count("seed", seed, low=0)
+    non_negative("spread", spread)
+    evaluate = source if callable(source) else _sweeping(source, aimed, measures or {}, options)
+    random = np.random.default_rng(seed)
+    search = _Search(searched, aimed, evaluate, generations, watchers)
+    scipy.optimize.differential_evolution(
+        search.misses,
+        [(0.0, 1.0)] * len(searched),
+        init=_first_population(searched, population, random, start, spread),
+        maxiter=generations,
+        mutation=(0.4, 1.0),
+        recombination=0.9,
+        rng=random,
+        polish=False,
+        tol=0.0,
+        atol=-1.0,
+        vectorized=True,
+        updating="deferred",
+        callback=search.ended,
+    )
+    return search.dataset()
+
+
+def _targets(targets: Any) -> dict[str, Target | str]:
+    if not isinstance(targets, Mapping) or not targets:
+        raise ValueError(f"targets must be targets by the names of measures, got {targets!r}")
+    found: dict[str, Target | str] = {}
+    for name, given in targets.items():
+        if isinstance(given, (Target, str)):
+            found[str(name)] = given
+        elif isinstance(given, (tuple, list)) and len(given) == 2:
+            found[str(name)] = Target(*given)
+        else:
+            raise ValueError(f"targets[{name!r}] must be a Target, its two bounds or a word, got {given!r}")
+    return found
+
+
+def miss_of(target: Target | str, value: Value) -> float:
+    """Return the miss of a target; of a word 0 or 1."""
+    return float(value != target) if isinstance(target, str) else target.miss(value)
+
+
+def _sweeping(
+    scenario: Any,
+    targets: Mapping[str, Target | str],
+    functions: Mapping[str, Callable[[xr.Dataset], Value]],
+    options: Mapping[str, Any],
+) -> Evaluate:
+    """Return what runs a scenario at many points and measures what the targets are of."""
+    instance("measures", functions, Mapping)
+    columns = {column.name: measure.name for measure in MEASURES.values() for column in measure.columns}
+    names = []
+    for name in targets:
+        if name not in columns and name not in functions:
+            known = [*functions, *columns]
+            raise ValueError(f"targets must be of {', '.join(known)}, got {name!r}{suggestion(name, known)}")
+        if name in columns and columns[name] not in names:
+            names.append(columns[name])
+    asked = [*names, *([dict(functions)] if functions else [])]
+
+    def evaluate(points: Sequence[Point]) -> list[dict[str, Value]]:
+        found = sweep(scenario, points, asked, **options)
+        return [{name: found[name].values[k].item() for name in targets} for k in range(len(points))]
+
+    return evaluate
+
+
+def _first_population(
+    ranges: Mapping[str, Range],
+    population: int,
+    random: np.random.Generator,
+    start: Mapping[str, Any] | None,
+    spread: float,
+) -> Array:
+    """Return the first generation as shares of the ranges, shape (population, parameters)."""
+    if start is None:
+        return np.asarray(scipy.stats.qmc.LatinHypercube(len(ranges), rng=random).random(population))
+    if set(start) != set(ranges):
+        raise ValueError(f"start must have the keys of ranges, {', '.join(ranges)}, got {', '.join(map(str, start))}")
+    centre = np.array([one.share(start[key]) for key, one in ranges.items()])
+    outside = [key for key, share in zip(ranges, centre, strict=True) if not -1e-9 <= share <= 1.0 + 1e-9]
+    if outside:
+        raise ValueError(f"start must lie in the ranges, got {outside[0]} = {start[outside[0]]!r}")
+    around = centre + random.normal(size=(population, len(ranges))) * spread
+    around[0] = centre
+    return np.clip(around, 0.0, 1.0)
+
+
+class _Search:
+    """A search on its way: what was best, generation by generation."""
+
+    def __init__(
+        self,
+        ranges: Mapping[str, Range],
+        targets: Mapping[str, Target | str],
+        evaluate: Evaluate,
+        generations: int,
+        watchers: Sequence[Callable[[CalibrationProgress], None]],
+    ) -> None:
+        self.ranges, self.targets, self.evaluate = ranges, targets, evaluate
+        self.generations, self.watchers = generations, watchers
+        self.shares: Array = np.full(len(ranges), np.nan)
+        self.measured: Mapping[str, Value] = {}
+        self.miss = math.inf
+        self.history: list[tuple[float, Array]] = []
+
+    def point(self, shares: Array) -> Point:
+        """Return the parameters at shares of the ranges."""
+        return {key: one.value(float(share)) for (key, one), share in zip(self.ranges.items(), shares, strict=True)}
+
+    def misses(self, columns: Array) -> Array:
+        """Return the sum of squared misses of each set of parameters, shape (parameters, sets) to (sets,)."""
+        sets = np.atleast_2d(columns.T)
+        found = self.evaluate([self.point(shares) for shares in sets])
+        totals = np.array(
+            [sum(miss_of(target, one[name]) ** 2 for name, target in self.targets.items()) for one in found]
+        )
+        best = int(np.argmin(totals))
+        if totals[best] < self.miss:
+            self.miss, self.shares, self.measured = float(totals[best]), sets[best].copy(), found[best]
+        self.history.append((self.miss, self.shares))
+        for watch in self.watchers:
+            point = self.point(self.shares)
+            watch(CalibrationProgress(len(self.history) - 1, self.generations, math.sqrt(self.miss), point))
+        return totals
+
+    def ended(self, intermediate_result: scipy.optimize.OptimizeResult) -> bool:
+        """Return whether all targets are met."""
+        return self.miss == 0.0
+
+    def dataset(self) -> xr.Dataset:
+        """Return what came of the search."""
+        keys = list(self.ranges)
+        numbers = np.array(
+            [[one.number(s) for one, s in zip(self.ranges.values(), shares, strict=True)] for _, shares in self.history]
+        )
+        data: dict[str, Any] = {
+            key: ((), numbers[-1, k], {"units": one.unit}) for k, (key, one) in enumerate(self.ranges.items())
+        }
+        data |= {name: ((), self.measured[name]) for name in self.targets}
+        data["miss"] = ((), math.sqrt(self.miss), {"units": "1", "long_name": "root of the sum of squared misses"})
+        met = [miss_of(target, self.measured[name]) == 0.0 for name, target in self.targets.items()]
+        data["met"] = ("target", met, {"long_name": "whether the target is met"})
+        data["best_miss"] = ("generation", [math.sqrt(miss) for miss, _ in self.history], {"units": "1"})
+        data["best_parameters"] = (("generation", "parameter"), numbers)
+        return xr.Dataset(data, {"target": list(self.targets), "parameter": keys})

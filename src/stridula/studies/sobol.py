@@ -1,0 +1,193 @@
+"""Sensitivity: which uncertain parameter moves the regime, the frequency or the level most, and how likely squeal is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.stats
+import xarray as xr
+
+from ..analysis.regimes import REGIMES
+from ..bodies.modes import Array
+from ..checks import count, within
+from .points import Range, range_of
+from .sweeps import sweep
+
+BOUNDS = ("low", "high")
+# Of fewer samples no interval can be told.
+FEWEST = 8
+
+
+def sensitivity(
+    scenario: str | Path | xr.Dataset,
+    uncertain: Mapping[str, Any],
+    measures: Any = ("regime",),
+    *,
+    samples: int = 256,
+    seed: int = 0,
+    confidence: float = 0.95,
+    resamples: int = 999,
+    **options: Any,
+) -> xr.Dataset:
+    """Return Sobol indices of what is measured, and the probability of each regime, under uncertain parameters.
+
+    The first-order index of a parameter is the share of the variance of an output that it makes alone, the total-order
+    index the share that it has a part in (Saltelli et al. 2010, Comput. Phys. Commun. 181;
+    ``scipy.stats.sobol_indices``). They take ``samples (parameters + 2)`` runs, at points of Sobol's sequence.
+
+    Parameters
+    ----------
+    scenario : str, Path or xarray.Dataset
+        A scenario, as for `sweep`.
+    uncertain : mapping
+        Distribution of each parameter by key: two ends of an even one, a `Range`, or a frozen distribution of
+        ``scipy.stats`` in SI. They are independent of each other.
+    measures : str, mapping or sequence of them, optional
+        What is measured, as for `sweep`.
+    samples : int, optional
+        Samples of each of the two sets, a power of 2.
+    seed : int, optional
+        Seed of the points and of the resampling: equal seeds give equal results.
+    confidence : float, optional
+        Level of the intervals [1], strictly between 0 and 1.
+    resamples : int, optional
+        Bootstrap resamples for the intervals of the indices.
+    **options
+        Arguments of `sweep` such as `overrides`, `duration`, `out`, `workers` and `client`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``first_order`` and ``total_order`` over ``output`` and ``parameter`` with their bootstrap percentile intervals
+        over ``bound``; the outputs are the numbers measured and, with the measure ``regime``, for each regime whether it
+        was seen. ``used``: how many samples an output was found in throughout; the others are left out of it, NaN
+        below 8 of them, or where it never varies. ``probability`` of each ``regime`` with Wilson's interval, and how many
+        ``runs`` there were and how many ``failed``.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or as in `sweep`.
+    """
+    named = _distributions(uncertain)
+    if count("samples", samples) & (samples - 1):
+        raise ValueError(f"samples must be a power of 2, got {samples!r}")
+    count("seed", seed, low=0)
+    count("resamples", resamples)
+    within("confidence", confidence, 0.0, 1.0, ends=False)
+    shares = _shares(len(named), samples, seed)
+    points = [
+        {key: _value(one, float(share)) for (key, one), share in zip(named.items(), row, strict=True)} for row in shares
+    ]
+    found = sweep(scenario, points, measures, **options)
+    outputs = _outputs(found)
+    keys = list(named)
+    data: dict[str, Any] = _indices(outputs, len(keys), samples, seed, confidence, resamples)
+    coordinates: dict[str, Any] = {"output": list(outputs), "parameter": keys, "bound": list(BOUNDS)}
+    data["runs"], data["failed"] = ((), len(points)), ((), int((found["message"].values != "").sum()))
+    if "regime" in found:
+        # The two sets are independent draws, the mixed ones are not.
+        data |= _probabilities(found["regime"].values[: 2 * samples], confidence)
+        coordinates["regime"] = list(REGIMES)
+    return xr.Dataset(data, coordinates, {"confidence": confidence, "samples": samples, "seed": seed})
+
+
+def _distributions(uncertain: Any) -> dict[str, Any]:
+    if not isinstance(uncertain, Mapping) or not uncertain:
+        raise ValueError(f"uncertain must be distributions by key, got {uncertain!r}")
+    found: dict[str, Any] = {}
+    for key, given in uncertain.items():
+        is_distribution = callable(getattr(given, "ppf", None))
+        found[str(key)] = given if is_distribution else range_of(f"uncertain[{key!r}]", given)
+    return found
+
+
+def _value(distribution: Any, share: float) -> Any:
+    return distribution.value(share) if isinstance(distribution, Range) else float(distribution.ppf(share))
+
+
+def _shares(parameters: int, samples: int, seed: int) -> Array:
+    """Return the points as shares of the distributions: set A, set B, then A with each column taken from B in turn."""
+    drawn = scipy.stats.qmc.Sobol(2 * parameters, rng=np.random.default_rng(seed)).random(samples)
+    first, second = drawn[:, :parameters], drawn[:, parameters:]
+    mixed = [first.copy() for _ in range(parameters)]
+    for number, one in enumerate(mixed):
+        one[:, number] = second[:, number]
+    # A share of exactly 0 has no finite quantile under many distributions.
+    return np.clip(np.concatenate([first, second, *mixed]), 1e-12, 1.0 - 1e-12)
+
+
+def _outputs(found: xr.Dataset) -> dict[str, Array]:
+    """Return what was measured as numbers over the points: words only of the regime, one for each."""
+    outputs: dict[str, Array] = {}
+    for name, values in found.data_vars.items():
+        if values.dims == ("point",) and values.dtype.kind in "fiu":
+            outputs[str(name)] = values.values.astype(float)
+    if "regime" in found:
+        seen, good = found["regime"].values, found["message"].values == ""
+        for word in REGIMES:
+            outputs[f"is {word}"] = np.where(good, (seen == word).astype(float), np.nan)
+    return outputs
+
+
+def _indices(
+    outputs: Mapping[str, Array], parameters: int, samples: int, seed: int, confidence: float, resamples: int
+) -> dict[str, Any]:
+    """Return the indices of each output with their intervals, and how many samples it was found in."""
+    size = (len(outputs), parameters)
+    first, total = np.full((2, *size), np.nan)
+    intervals = np.full((2, *size, 2), np.nan)
+    used = np.zeros(len(outputs), dtype=np.int64)
+    for row, values in enumerate(outputs.values()):
+        sets = values.reshape(parameters + 2, samples)
+        sets = sets[:, np.isfinite(sets).all(axis=0)]
+        used[row] = sets.shape[1]
+        if used[row] < FEWEST or np.ptp(sets[:2]) == 0.0:
+            continue
+        first[row], total[row] = _sobol(sets)
+        random = np.random.default_rng(seed)
+        drawn = [_sobol(sets[:, random.integers(0, used[row], used[row])]) for _ in range(resamples)]
+        tails = [50.0 * (1.0 - confidence), 50.0 * (1.0 + confidence)]
+        intervals[:, row] = np.moveaxis(np.nanpercentile(np.array(drawn), tails, axis=0), 0, -1)
+    along = ("output", "parameter")
+    return {
+        "first_order": (along, first, _words("share of the variance that the parameter makes alone")),
+        "first_order_interval": ((*along, "bound"), intervals[0]),
+        "total_order": (along, total, _words("share of the variance that the parameter has a part in")),
+        "total_order_interval": ((*along, "bound"), intervals[1]),
+        "used": ("output", used, _words("samples in which the output was found throughout")),
+    }
+
+
+def _sobol(sets: Array) -> tuple[Array, Array]:
+    """Return first-order and total-order indices of values at the sets A, B and the mixed ones, shape (parameters,)."""
+    # As scipy's sobol_indices has them, which takes powers of 2 only.
+    whole = sets[:2].ravel()
+    mean, variance = whole.mean(), whole.var()
+    if variance == 0.0:
+        return np.full(len(sets) - 2, np.nan), np.full(len(sets) - 2, np.nan)
+    a, b, mixed = sets[0] - mean, sets[1] - mean, sets[2:] - mean
+    return np.mean(b * (mixed - a), axis=1) / variance, 0.5 * np.mean((a - mixed) ** 2, axis=1) / variance
+
+
+def _probabilities(regimes: Array, confidence: float) -> dict[str, Any]:
+    good = regimes[regimes != ""]
+    shares, bounds = [], []
+    for word in REGIMES:
+        seen = int(np.count_nonzero(good == word))
+        shares.append(seen / good.size if good.size else np.nan)
+        interval = (
+            scipy.stats.binomtest(seen, good.size).proportion_ci(confidence, "wilson") if good.size else (np.nan,) * 2
+        )
+        bounds.append([interval[0], interval[1]])
+    return {
+        "probability": ("regime", shares, _words("probability of the regime")),
+        "probability_interval": (("regime", "bound"), bounds),
+    }
+
+
+def _words(meaning: str) -> dict[str, str]:
+    return {"units": "1", "long_name": meaning}
