@@ -7,7 +7,7 @@ import scipy.signal
 import xarray as xr
 
 from stridula import analysis
-from stridula.analysis.phases import _moving_mean
+from stridula.analysis.phases import moving_mean
 from stridula.analysis.spectra import _peaks
 
 RATE = 100e3
@@ -67,11 +67,11 @@ def test_short_sticks_are_no_stops_and_no_stops_give_no_bursts():
 
 
 @pytest.mark.parametrize("width", [1, 3, 51, 1001])
-def test_moving_mean_is_that_of_scipy(width):
+def testmoving_mean_is_that_of_scipy(width):
     """To round-off; importing scipy.ndimage takes longer than all measures of a run."""
     share = np.random.default_rng(1).integers(0, 4, 500) / 3
     expected = scipy.ndimage.uniform_filter1d(share, width, mode="nearest")
-    np.testing.assert_allclose(_moving_mean(share, width), expected, rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose(moving_mean(share, width), expected, rtol=1e-12, atol=1e-14)
 
 
 def test_complete_drops_what_the_record_cuts():

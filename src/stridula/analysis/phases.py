@@ -39,7 +39,7 @@ def phases(run: xr.Dataset, status: str, smoothing: float = SMOOTHING) -> Array:
     share = of_one_contact(run)["status_share"].values[:, STATUS_WORDS.index(status)]
     time, interval = _clock(run)
     width = max(1, 2 * round(smoothing / interval / 2.0) + 1)
-    prevails = _moving_mean(share, width) > 0.5
+    prevails = moving_mean(share, width) > 0.5
     edges = np.flatnonzero(np.diff(np.concatenate([[False], prevails, [False]])))
     return np.asarray(time[0] + interval * (edges.reshape(-1, 2) - 1.0))
 
@@ -115,7 +115,7 @@ def inside(run: xr.Dataset, intervals: Array) -> Array:
     return chosen
 
 
-def _moving_mean(values: Array, width: int) -> Array:
+def moving_mean(values: Array, width: int) -> Array:
     """Return the mean over an odd number of samples about each, the first and the last one repeated beyond the ends."""
     sums = np.cumsum(np.pad(values, (width // 2 + 1, width // 2), mode="edge"))
     return np.asarray(sums[width:] - sums[:-width]) / width

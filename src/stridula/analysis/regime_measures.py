@@ -9,9 +9,20 @@ import numpy as np
 
 from ..bodies.modes import Array
 from ..checks import positive, within
-from .status_changes import MIXED, changes, last_rest, least_landings, regularity, stick_onsets, whole_status
+from .phases import SMOOTHING
+from .status_changes import (
+    MIXED,
+    between_stops,
+    changes,
+    last_rest,
+    least_landings,
+    regularity,
+    stick_onsets,
+    whole_status,
+)
 from .tones import Frames, frames, strongest_tone
 
+STICKING = 1
 # Samples within which the status changes, from which the cycle lies inside the samples: one sampled eight times a
 # period has a quarter of them.
 UNRESOLVED = 0.5
@@ -161,7 +172,7 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     time = (count - first) * interval
 
     mean = float(np.abs(signals.forces[0, first:]).mean()) or 1.0
-    onsets = stick_onsets(signals.share[first:, 1], max(1, round(0.5 / (limits.lowest_tone * interval))))
+    onsets = stick_onsets(signals.share[first:, STICKING], _odd(0.5 / (limits.lowest_tone * interval)))
     landed = _landings(signals, first)
     change_rate = max(changes(status[first:]) / 2.0, landed) / time
     loss, loss_growth = _losses(signals, heard_from)
@@ -174,7 +185,8 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     if loudness < limits.faint and np.mean(status[first:] == MIXED) >= UNRESOLVED:
         tonality, tone, cycle = _likeness(signals.forces[:, first:], mean), change_rate, change_rate
     elif is_loud or (heard.growth > 1.0 and loudness >= BUDDING * limits.faint):
-        tone = strongest_tone(signals.forces[:, heard_from:], interval, limits.frame, limits.lowest_tone)
+        weight = between_stops(signals.share[heard_from:, STICKING], _odd(SMOOTHING / interval))
+        tone = strongest_tone(weight * signals.forces[:, heard_from:], interval, limits.frame, limits.lowest_tone)
     elif settles and loss >= limits.lossy and swing < limits.faint:
         # What the samples do not show goes on at their rate, or a multiple of it.
         tonality, tone = 1.0, 1.0 / interval
@@ -202,6 +214,11 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         stick_phases=int(onsets.size),
         is_short=(count - heard_from) * interval < 1.5 * limits.frame,
     )
+
+
+def _odd(width: float) -> int:
+    """Return the odd number nearest to a number of samples."""
+    return 2 * round(width / 2.0) + 1
 
 
 def _heard(forces: Array, interval: float, limits: Thresholds) -> Frames:

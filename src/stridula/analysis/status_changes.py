@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..bodies.modes import Array
+from .phases import moving_mean
 
 MIXED = -1
 
@@ -77,13 +78,27 @@ def stick_onsets(sticking: Array, width: int) -> Array:
     sticking : ndarray, shape (samples,)
         Share of sticking in each sample.
     width : int
-        Samples of the moving mean.
+        Odd number of samples of the moving mean.
     """
-    if sticking.size <= width:
-        width = 1
-    sums = np.concatenate([[0.0], np.cumsum(sticking)])
-    prevails = sums[width:] - sums[:-width] > 0.5 * width
+    prevails = moving_mean(sticking, width) > 0.5
     return np.flatnonzero(prevails[1:] & ~prevails[:-1]) + 1
+
+
+def between_stops(sticking: Array, width: int) -> Array:
+    """Return a weight that is 1 between stops and falls to 0 at their edges; 1 throughout if sticking always prevails.
+
+    Parameters
+    ----------
+    sticking : ndarray, shape (samples,)
+        Share of sticking in each sample.
+    width : int
+        Odd number of samples of the moving mean that tells a stop, and of the fall.
+    """
+    moves = (moving_mean(sticking, width) < 0.5).astype(float)
+    if not moves.any():
+        return np.ones(sticking.size)
+    inside = np.maximum(2.0 * moving_mean(moves, width) - 1.0, 0.0)
+    return np.asarray(inside * inside * (3.0 - 2.0 * inside))
 
 
 def regularity(places: Array) -> float:
