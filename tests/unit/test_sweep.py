@@ -422,12 +422,12 @@ def test_bad_arguments_are_one_line_and_nothing_is_written(tmp_path, options, me
         (lambda: st.Grid({"friction": 0.3}), "must be a list of values"),
         (lambda: st.Grid({"friction": [0.1, np.inf]}), "friction must be finite, got inf"),
         (lambda: st.Grid({"": [1]}), "key must be a text"),
-        (lambda: st.LatinHypercube({"friction": (2.0, 0.2)}, 3), "must rise"),
-        (lambda: st.LatinHypercube({"angle": ("1 deg", 0.2)}, 3), "must have one unit"),
-        (lambda: st.LatinHypercube({"law": ("coulomb", "lugre")}, 3), "must be two numbers"),
-        (lambda: st.LatinHypercube({"friction": (0.1, 0.2, 3)}, 3), "must be a pair"),
+        (lambda: st.LatinHypercube({"friction": (2.0, 0.2)}, 3), "high must be above low"),
+        (lambda: st.LatinHypercube({"angle": ("1 deg", 0.2)}, 3), "high must be in the unit of low"),
+        (lambda: st.LatinHypercube({"law": ("coulomb", "lugre")}, 3), "low must be a number"),
+        (lambda: st.LatinHypercube({"friction": (0.1, 0.2, 3)}, 3), "must be a Range or its two ends"),
         (lambda: st.LatinHypercube({"friction": (0.1, 0.2)}, 0), "count must be at least 1"),
-        (lambda: st.LatinHypercube({}, 3), "ranges must be pairs"),
+        (lambda: st.LatinHypercube({}, 3), "ranges must be ranges by key"),
     ],
 )
 def test_bad_points_are_named(make, message):

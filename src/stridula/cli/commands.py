@@ -142,11 +142,30 @@ def stability(
     velocity: Annotated[
         float | None, typer.Option(metavar="M/S", help="Slip speed where nothing prescribes it and friction needs it.")
     ] = None,
+    vary: Annotated[
+        str | None,
+        typer.Option(metavar="KEY=START:STOP:COUNT", help="Follow the modes over a parameter, and where they grow."),
+    ] = None,
+    highest: Annotated[
+        float | None, typer.Option(metavar="HZ", help="Leave out modes above this frequency, with --vary.")
+    ] = None,
+    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the modes over the parameter.")] = None,
+    out: Annotated[str | None, typer.Option(metavar="FILE", help="Write them, as NetCDF.")] = None,
 ) -> None:
-    """Say what linear theory says of sliding: equilibrium, modes and which of them grow."""
-    from .stability import print_stability
+    """Say what linear theory says of sliding: equilibrium, modes and which of them grow, also over a parameter."""
+    overrides = _pairs(set_ or [])
+    if vary is None:
+        for option, value in (("--plot", plot), ("--out", out), ("--highest", highest)):
+            if value is not None:
+                raise ValueError(f"{option} must go with --vary, got {value!r} alone")
+        from .stability import print_stability
 
-    print_stability(name, _pairs(set_ or []), status, velocity)
+        print_stability(name, overrides, status, velocity)
+        return
+    from .loci import print_loci
+    from .stability import statuses
+
+    print_loci(name, vary, overrides, highest, out, plot, status=statuses(status), velocity=velocity)
 
 
 @app.command()
@@ -173,6 +192,78 @@ def compare(
     from .comparing import print_comparison
 
     return GOOD if print_comparison(first, second, tolerance) else FAILED
+
+
+@app.command("calibrate")
+def calibrate_(
+    name: NameOrFile,
+    vary: Annotated[
+        list[str], typer.Option(metavar="KEY=LOW:HIGH", help="Where to search; KEY=LOW:HIGH:log in ratios.")
+    ],
+    target: Annotated[
+        list[str], typer.Option(metavar="NAME=LOW:HIGH", help="What a measure should be; an end may be left out.")
+    ],
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point.")
+    ] = None,
+    duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
+    population: Annotated[int, typer.Option(metavar="N", help="Sets of parameters in a generation.")] = 32,
+    generations: Annotated[int, typer.Option(metavar="N", help="Generations at most.")] = 50,
+    seed: Annotated[int, typer.Option(metavar="S", help="Seed of the search.")] = 0,
+    out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the best as a scenario, TOML.")] = None,
+    workers: Annotated[int | None, typer.Option(metavar="N", help="Parts at a time.")] = None,
+) -> int:
+    """Search parameters whose run shows given measures; exit with 1 if a target is not met."""
+    from .points import ranges_of
+    from .searching import calibrate_scenario
+
+    met = calibrate_scenario(
+        name,
+        ranges_of(vary),
+        target,
+        _pairs(set_ or []),
+        out,
+        duration=duration,
+        population=population,
+        generations=generations,
+        seed=seed,
+        workers=workers,
+    )
+    return GOOD if met else FAILED
+
+
+@app.command("sensitivity")
+def sensitivity_(
+    name: NameOrFile,
+    vary: Annotated[list[str], typer.Option(metavar="KEY=LOW:HIGH", help="An uncertain value, even between its ends.")],
+    measure: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="What to measure, the regime if left out.")
+    ] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point.")
+    ] = None,
+    duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
+    samples: Annotated[int, typer.Option(metavar="N", help="A power of 2; takes N (values + 2) runs.")] = 256,
+    seed: Annotated[int, typer.Option(metavar="S", help="Seed of the points.")] = 0,
+    out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the indices, as NetCDF.")] = None,
+    workers: Annotated[int | None, typer.Option(metavar="N", help="Parts at a time.")] = None,
+) -> None:
+    """Say which uncertain parameter moves the outcome most, and how likely each regime is."""
+    from .points import ranges_of
+    from .searching import sensitivity_of_scenario
+
+    line = sensitivity_of_scenario(
+        name,
+        ranges_of(vary),
+        measure or [],
+        _pairs(set_ or []),
+        out,
+        duration=duration,
+        samples=samples,
+        seed=seed,
+        workers=workers,
+    )
+    print(line)
 
 
 @app.command()

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..disk import read
 from ..scenarios.quantities import parts
-from ..studies.points import Grid, LatinHypercube
+from ..studies.points import Grid, LatinHypercube, Range
 
 Points = Grid | LatinHypercube | list[dict[str, str]]
 # More points than these are asked about.
@@ -80,6 +80,17 @@ def points_of(vary: list[str], sample: int | None, seed: int | None, table: str 
         rows = _rows(table)
         _check_count(len(rows), yes)
         return rows
+    if sample is None:
+        return grid_of(vary, yes)
+    return _hypercube(_asked(vary, is_sampled=True), sample, seed, yes)
+
+
+def grid_of(vary: list[str], yes: bool) -> Grid:
+    """Return the grid that ``KEY=START:STOP:COUNT`` and ``KEY=A,B,C`` ask for; more than 10 000 points take `yes`."""
+    return _grid(_asked(vary, is_sampled=False), yes)
+
+
+def _asked(vary: list[str], is_sampled: bool) -> dict[str, Span | list[str]]:
     asked: dict[str, Span | list[str]] = {}
     for text in vary:
         key, equals, values = (part.strip() for part in text.partition("="))
@@ -87,8 +98,33 @@ def points_of(vary: list[str], sample: int | None, seed: int | None, table: str 
             raise ValueError(f"--vary must be KEY=START:STOP:COUNT or KEY=A,B,C, got {text!r}")
         if key in asked:
             raise ValueError(f"--vary must name each key once, got {key!r} twice")
-        asked[key] = _range(text, values, sample is not None) if ":" in values else _list(text, values)
-    return _hypercube(asked, sample, seed, yes) if sample is not None else _grid(asked, yes)
+        asked[key] = _range(text, values, is_sampled) if ":" in values else _list(text, values)
+    return asked
+
+
+def ranges_of(vary: list[str]) -> dict[str, Range]:
+    """Return the ranges that ``KEY=LOW:HIGH`` or ``KEY=LOW:HIGH:log`` ask for.
+
+    Raises
+    ------
+    ValueError
+        If one is anything else, or a key comes twice.
+    """
+    found: dict[str, Range] = {}
+    for text in vary:
+        key, equals, values = (part.strip() for part in text.partition("="))
+        ends, colon, word = values.rpartition(":")
+        logarithmic = word.strip() == "log"
+        if not equals or not key or not colon:
+            raise ValueError(f"--vary must be KEY=LOW:HIGH or KEY=LOW:HIGH:log, got {text!r}")
+        if key in found:
+            raise ValueError(f"--vary must name each key once, got {key!r} twice")
+        try:
+            low, high = _range(text, ends if logarithmic else values, is_sampled=True).ends()
+            found[key] = Range(low, high, logarithmic)
+        except ValueError as error:
+            raise ValueError(str(error) if str(error).startswith("--vary") else f"--vary {key}: {error}") from None
+    return found
 
 
 def _hypercube(asked: dict[str, Span | list[str]], sample: int, seed: int | None, yes: bool) -> LatinHypercube:
@@ -123,7 +159,7 @@ def _range(text: str, values: str, is_sampled: bool) -> Span:
     wanted = "KEY=START:STOP" if is_sampled else "KEY=START:STOP:COUNT"
     pieces = values.split(":")
     if len(pieces) != (2 if is_sampled else 3):
-        raise ValueError(f"--vary must be {wanted}{' with --sample' if is_sampled else ''}, got {text!r}")
+        raise ValueError(f"--vary must be {wanted}, got {text!r}")
     (low, unit_of_low), (high, unit) = (_number(text, piece) for piece in pieces[:2])
     if unit_of_low not in ("", unit):
         raise ValueError(f"--vary must have one unit for both ends, got {text!r}")

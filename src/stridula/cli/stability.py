@@ -29,7 +29,7 @@ KINDS = {
 def print_stability(name: str, overrides: dict[str, Any], status: str | None, velocity: float | None) -> None:
     """Print equilibrium and modes of a scenario: those that grow, or the few nearest to it."""
     scenario = load_scenario(name, overrides)
-    given = None if status is None else [word.strip() for word in status.split(",")]
+    given = statuses(status)
     modes = sliding_stability(scenario.system, status=given, velocity=velocity)
     console = Console()
     if not console.is_terminal:
@@ -37,6 +37,11 @@ def print_stability(name: str, overrides: dict[str, Any], status: str | None, ve
     console.print(_table(modes, scenario.title or name))
     for line in _closing(modes, given is not None):
         console.print(escape(line), highlight=False)
+
+
+def statuses(status: str | None) -> list[str] | None:
+    """Return the statuses that an option gives, in turn with commas."""
+    return None if status is None else [word.strip() for word in status.split(",")]
 
 
 def _table(modes: xr.Dataset, title: str) -> Table:

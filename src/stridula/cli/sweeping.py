@@ -1,4 +1,4 @@
-"""`stridula sweep`: check what was asked for, compute under a progress bar, and say how many points are done."""
+"""`stridula sweep`: check what was asked for, compute under a progress bar, and say what came of the points."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from ..studies.sweeps import SweepProgress, sweep
 from ..studies.swept import failed_points
 from .exits import FAILED, INTERRUPTED, Stopped
 from .points import Points
+from .regimes import print_agreement
 from .running import check_outputs
 
 
@@ -78,6 +79,8 @@ def sweep_scenario(
         raise Stopped(f"{error} in {out}.parts", FAILED) from None
     if plot is not None:
         _draw(found, plot)
+    if "regime" in found:
+        print_agreement(found)
     return _closing(found, out)
 
 

@@ -290,9 +290,7 @@ class _Search:
     def dataset(self) -> xr.Dataset:
         """Return what came of the search."""
         keys = list(self.ranges)
-        numbers = np.array(
-            [[one.number(s) for one, s in zip(self.ranges.values(), shares, strict=True)] for _, shares in self.history]
-        )
+        numbers = np.array([self._numbers(shares) for _, shares in self.history])
         data: dict[str, Any] = {
             key: ((), numbers[-1, k], {"units": one.unit}) for k, (key, one) in enumerate(self.ranges.items())
         }
@@ -303,3 +301,6 @@ class _Search:
         data["best_miss"] = ("generation", [math.sqrt(miss) for miss, _ in self.history], {"units": "1"})
         data["best_parameters"] = (("generation", "parameter"), numbers)
         return xr.Dataset(data, {"target": list(self.targets), "parameter": keys})
+
+    def _numbers(self, shares: Array) -> list[float]:
+        return [one.number(float(share)) for one, share in zip(self.ranges.values(), shares, strict=True)]

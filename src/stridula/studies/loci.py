@@ -118,7 +118,8 @@ def critical_value(
     -------
     xarray.Dataset
         ``value``, the middle of ``stable`` and ``unstable``, the values closest to it on both sides; ``frequency`` [Hz]
-        and ``growth_rate`` [1/s] of the mode that grows fastest at ``unstable``.
+        and ``growth_rate`` [1/s] of the mode that grows fastest at ``unstable``. ``attrs["beyond"]`` is ``stable``, or
+        ``held``, ``lifted off`` or ``jammed`` where there is no sliding on that side.
 
     Raises
     ------
@@ -159,7 +160,7 @@ def critical_value(
             "frequency": ((), float(fastest.frequency), _words("Hz", "frequency of the mode that grows fastest")),
             "growth_rate": ((), float(fastest.growth_rate), _words("1/s", "its rate of growth")),
         },
-        attrs={"parameter": key, "tolerance": tolerance},
+        attrs={"parameter": key, "tolerance": tolerance, "beyond": _verdict(at[stable])},
     )
 
 

@@ -1,4 +1,4 @@
-"""Sensitivity: which uncertain parameter moves the regime, the frequency or the level most, and how likely squeal is."""
+"""Sensitivity: which uncertain parameter moves regime, frequency or level most, and how likely squeal is."""
 
 from __future__ import annotations
 
@@ -62,10 +62,10 @@ def sensitivity(
     -------
     xarray.Dataset
         ``first_order`` and ``total_order`` over ``output`` and ``parameter`` with their bootstrap percentile intervals
-        over ``bound``; the outputs are the numbers measured and, with the measure ``regime``, for each regime whether it
-        was seen. ``used``: how many samples an output was found in throughout; the others are left out of it, NaN
-        below 8 of them, or where it never varies. ``probability`` of each ``regime`` with Wilson's interval, and how many
-        ``runs`` there were and how many ``failed``.
+        over ``bound``; the outputs are the numbers measured and, with the measure ``regime``, for each regime whether
+        it was seen. ``used``: how many samples an output was found in throughout; the others are left out of it. NaN
+        below 8 of them, or where an output never varies. ``probability`` of each ``regime`` with Wilson's interval, and
+        how many ``runs`` there were and how many ``failed``.
 
     Raises
     ------
@@ -179,14 +179,18 @@ def _probabilities(regimes: Array, confidence: float) -> dict[str, Any]:
     for word in REGIMES:
         seen = int(np.count_nonzero(good == word))
         shares.append(seen / good.size if good.size else np.nan)
-        interval = (
-            scipy.stats.binomtest(seen, good.size).proportion_ci(confidence, "wilson") if good.size else (np.nan,) * 2
-        )
-        bounds.append([interval[0], interval[1]])
+        bounds.append(_wilson(seen, good.size, confidence))
     return {
         "probability": ("regime", shares, _words("probability of the regime")),
         "probability_interval": (("regime", "bound"), bounds),
     }
+
+
+def _wilson(seen: int, size: int, confidence: float) -> list[float]:
+    if not size:
+        return [np.nan, np.nan]
+    interval = scipy.stats.binomtest(seen, size).proportion_ci(confidence, "wilson")
+    return [float(interval.low), float(interval.high)]
 
 
 def _words(meaning: str) -> dict[str, str]:

@@ -1,0 +1,39 @@
+"""The table of regimes against what linear theory says."""
+
+from __future__ import annotations
+
+import xarray as xr
+from rich import box
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from ..studies.verdicts import agreement
+
+# Of a file or a pipe; a terminal has its own.
+WIDTH = 150
+
+
+def print_agreement(found: xr.Dataset) -> None:
+    """Print how often each regime was seen under each verdict of linear theory, and how often the two agree."""
+    counts = agreement(found)
+    table = Table(title="runs by linear theory and regime", title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("linear theory")
+    seen = [str(word) for word in counts["regime"].values if int(counts["runs"].sel(regime=word).sum())]
+    for word in seen:
+        table.add_column(word, justify="right")
+    for verdict in counts["verdict"].values:
+        row = counts["runs"].sel(verdict=verdict)
+        if int(row.sum()):
+            table.add_row(escape(str(verdict)), *(str(int(row.sel(regime=word))) for word in seen))
+    console = Console()
+    if not console.is_terminal:
+        console = Console(width=WIDTH)
+    console.print(table)
+    agree, compared, missed, false = (int(counts[word]) for word in ("agree", "compared", "missed", "false_alarms"))
+    if compared:
+        console.print(
+            f"Linear theory agrees with {agree} of {compared} runs, misses {missed} that vibrate, and sees growth in "
+            f"{false} that do not.",
+            highlight=False,
+        )
