@@ -110,14 +110,21 @@ def stability_of(system: System, velocity: float | None = None) -> dict[str, flo
     Returns
     -------
     dict
-        ``growth_rate`` [1/s], ``flutter_frequency`` [Hz] of the mode that grows fastest, NaN if none grows,
-        ``unstable_modes`` and ``equilibrium`` as in `sliding_stability`. NaN where it is jammed.
+        ``growth_rate`` [1/s], NaN where no contact slides: nothing else feeds a vibration; ``flutter_frequency`` [Hz]
+        of the mode that grows fastest, NaN if none grows; ``unstable_modes``, NaN where it is jammed; ``equilibrium``
+        as in `sliding_stability`.
     """
     structure = Structure(system)
     equilibrium = find_equilibrium(structure, velocity)
-    if equilibrium.kind == JAMMED:
-        nothing = float("nan")
-        return {"growth_rate": nothing, "flutter_frequency": nothing, "unstable_modes": nothing, "equilibrium": JAMMED}
+    nothing = float("nan")
+    if equilibrium.kind == JAMMED or SLIDING not in equilibrium.status:
+        growing = nothing if equilibrium.kind == JAMMED else 0.0
+        return {
+            "growth_rate": nothing,
+            "flutter_frequency": nothing,
+            "unstable_modes": growing,
+            "equilibrium": equilibrium.kind,
+        }
     motion = vibration(structure, equilibrium, velocity)
     large = structure.mode_count > LARGEST_DENSE
     found = _nearest(structure, motion, COUNT, 0.0) if large else all_exponents(motion, shapes=False)
