@@ -42,9 +42,9 @@ def sliding_stability(
 
     so that, with ``Z = null(G)`` and ``Y = null(G - s mu T)``, exponents are those of ``(Y'Z, Y'DZ, Y'KZ)``, which is
     not symmetric: two modes can lock in and one of them grow. A sticking contact also holds ``T q = 0``; a separated
-    one nothing. Friction that depends on the slip speed adds the normal force times its slope to D; laws with an internal
-    state add that. A load adds what the deflected track does to a contact point that shifts along it. The place of the
-    contact point, which travels, is taken as it is at the start.
+    one nothing. Friction that depends on the slip speed adds the normal force times its slope to D; laws with an
+    internal state add that. A load adds what the deflected track does to a contact point that shifts along it. The
+    place of the contact point, which travels, is taken as it is at the start.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def _exponents(
 ) -> Exponents:
     motion = vibration(structure, equilibrium, velocity)
     wanted = COUNT if modes is None and structure.mode_count > LARGEST_DENSE else modes
-    if wanted is not None and 4 * wanted < structure.mode_count:
+    if wanted is not None and 4 * wanted < structure.mode_count and structure.stiffness.any():
         return _nearest(structure, motion, wanted, near)
     found = all_exponents(motion)
     if wanted is None:
@@ -219,9 +219,9 @@ def _contacts(structure: Structure, at: Equilibrium, velocity: float | None) -> 
     """Return name, unit, meaning and values of what is known of the contacts."""
     slip = []
     for k, contact in enumerate(structure.system.contacts):
-        known = structure.prescribed[k] != 0.0 or depends_on_speed(contact.friction)
-        slides = at.status[k] == SLIDING
-        slip.append(at.sense[k] * slip_speed(structure, k, velocity) if slides and known else np.nan if slides else 0.0)
+        known = at.prescribed[k] != 0.0 or (at.sense[k] and depends_on_speed(contact.friction))
+        speed = slip_speed(structure, k, at.prescribed, velocity) if known else np.nan if at.sense[k] else 0.0
+        slip.append(at.sense[k] * speed if at.status[k] == SLIDING else 0.0)
     return [
         ("status", "1", "status of the contact", np.array(at.status)),
         ("normal_force", "N", "normal contact force, compressive", at.normal_force),
@@ -236,7 +236,11 @@ def _normalised(shapes: Array) -> Array:
     if not shapes.size:
         return shapes
     largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=0)[None], axis=0)
-    return np.asarray(shapes / (largest / np.abs(largest)) / np.linalg.norm(shapes, axis=0))
+    # A state that forces do not depend on decays without moving anything.
+    largest = np.where(largest == 0.0, 1.0, largest)
+    turned = shapes * (np.abs(largest) / largest)
+    size = np.linalg.norm(turned, axis=0)
+    return np.asarray(turned / np.where(size > 0.0, size, 1.0))
 
 
 def _words(units: str, meaning: str) -> dict[str, str]:
