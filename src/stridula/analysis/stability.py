@@ -19,6 +19,8 @@ from .vibration import Exponents, all_exponents, nearest_exponents, vibration
 # Modes up to which all exponents are found; beyond, the lowest COUNT.
 LARGEST_DENSE = 600
 COUNT = 100
+# Exponents found beyond those that are wanted.
+SPARE = 8
 # Growth, relative to the highest angular frequency, that rounding may make.
 ROUND_OFF = 1e-9
 
@@ -166,7 +168,9 @@ def _nearest(structure: Structure, motion: Any, wanted: int, near: float) -> Exp
     elastic = np.sqrt(np.diag(structure.stiffness))
     lowest = float(elastic[elastic > 0.0].min(initial=np.inf))
     centre = 2.0 * np.pi * near
-    found = nearest_exponents(motion, 2 * wanted, complex(0.1 * min(lowest, max(centre, lowest)), centre))
+    # Both of each pair may be found, and in another order than about the frequency itself.
+    sought = min(2 * wanted + SPARE, 2 * structure.mode_count - 2)
+    found = nearest_exponents(motion, sought, complex(0.1 * lowest, centre))
     order = np.argsort(np.abs(found.values - 1.0j * centre), kind="stable")[:wanted]
     return Exponents(found.values[order], found.shapes[:, order])
 
