@@ -90,8 +90,10 @@ def two_bodies(seed: int, damping: bool = False, count: int = 1, friction: float
     stiffness = np.diag(np.concatenate(squared))
     row = np.concatenate([bodies[0].trace("q")[1], -bodies[1].trace("q")[1]])
     stiffness += 3.0 * np.outer(row, row)
-    losses = [body.shapes.T @ body.damping @ body.shapes if damping else np.zeros((size, size))
-              for body, size in zip(bodies, (7, 5), strict=True)]  # fmt: skip
+    losses = [
+        body.shapes.T @ body.damping @ body.shapes if damping else np.zeros((size, size))
+        for body, size in zip(bodies, (7, 5), strict=True)
+    ]
     wide = [np.hstack([bodies[0].trace("p"), np.zeros((2, 5))]), np.hstack([np.zeros((2, 7)), bodies[1].trace("q")])]
     gaps = np.array([[-np.sin(turns[k]), np.cos(turns[k])] @ wide[k] for k in range(count)])
     slips = np.array([[np.cos(turns[k]), np.sin(turns[k])] @ wide[k] for k in range(count)])
@@ -299,7 +301,7 @@ def on_feet(push: float, belt: float = 0.0, feet: int = 2, friction: float = 0.3
     contacts = [
         st.PointContact(
             body.at(f"foot {k}"), st.RigidTrack(velocity=belt, name=f"floor {k}"), friction=st.Coulomb(friction)
-        )  # fmt: skip # noqa: E501
+        )
         for k in range(feet)
     ]
     return st.System(contacts, drives=[st.Gravity(10.0), st.Force(body.at("centre"), x=push)])
@@ -325,8 +327,10 @@ def test_a_block_rides_on_a_belt():
 def test_one_of_two_lifts_off_and_one_is_held():
     bodies = [rod(30.0, name=name) for name in "ab"]
     track = bar()
-    contacts = [st.PointContact(body.tip, track, at=at, friction=st.Coulomb(0.4))
-                for body, at in zip(bodies, (0.1, 0.3), strict=True)]  # fmt: skip
+    contacts = [
+        st.PointContact(body.tip, track, at=at, friction=st.Coulomb(0.4))
+        for body, at in zip(bodies, (0.1, 0.3), strict=True)
+    ]
 
     def verdict(x, y):
         drives = [st.Force(bodies[0].root, x=1.0, y=-1.0), st.Force(bodies[1].root, x=x, y=y)]
@@ -402,12 +406,12 @@ def unmoved():
             pair(pushed(y=-1.0), track=st.RigidTrack(normal_velocity=0.1, normal_history=st.Harmonic(9.0))),
             {},
             "time must be given for the track of contact 1",
-        ),  # fmt: skip # noqa: E501
+        ),
         (
             pair(dragged(), track=st.RigidTrack(), inclination=-pi / 2),
             {},
             "time must be given: nothing follows what is moved along the normal of contact 1",
-        ),  # fmt: skip # noqa: E501
+        ),
         (no_steady_state, {}, "connections must not brake a rigid motion"),
         (twice, {}, "contacts must not hold the same motion twice"),
         (lambda: on_feet(0.0, feet=3), {}, "contacts must not hold the same motion twice"),
