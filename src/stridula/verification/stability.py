@@ -246,8 +246,8 @@ CASES = (
     Case(
         "sliding-stability",
         "Sliding stability of the paper's pair",
-        "eigenvalues of (Y'MZ, Y'KZ), Z = null(G), Y = null(G - s mu T), and stated figures of the pair of Laulagnet 2011 "
-        "in steel, guided at its root",
+        "eigenvalues of (Y'MZ, Y'KZ), Z = null(G), Y = null(G - s mu T), and stated figures of the pair of "
+        "Laulagnet 2011 in steel, guided at its root",
         stability,
     ),
 )
