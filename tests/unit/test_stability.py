@@ -11,7 +11,9 @@ import scipy.optimize
 
 import stridula as st
 from stridula.analysis import stability
+from stridula.analysis.equilibrium import find_equilibrium
 from stridula.analysis.structure import Structure
+from stridula.analysis.vibration import vibration
 
 STEEL, SQUARE = st.Material(2.1e11, 7800.0), st.Rectangle(0.01, 0.01)
 LURE = st.LuGre(0.6, 0.3, 0.01, 1e5, 10.0, 0.1)
@@ -169,6 +171,13 @@ def loaded(load: float):
         step[k] = 1e-6
         both = [residual(rest + sign * step, rest[:-1]) for sign in (1.0, -1.0)]
         jacobian[:, k] = (both[0] - both[1]) / 2e-6
+    motion = vibration(shape, find_equilibrium(shape, None), None)
+    np.testing.assert_allclose(motion.held[0], jacobian[-1, :-1], rtol=1e-4, atol=1e-4)
+    np.testing.assert_allclose(motion.pushes[0], -jacobian[:-1, -1], rtol=1e-6, atol=1e-6)
+    # A bent or stretched track answers to the tip by what the load adds alone.
+    for rows_of_track in (slice(size, size + 4), slice(size + 4, size + 6)):
+        known = jacobian[rows_of_track, :size]
+        np.testing.assert_allclose(motion.stiffness[rows_of_track, :size], known, atol=1e-3 * np.abs(known).max())
     inertia = np.diag(np.append(np.ones(squared.size), 0.0))
     # Scaled to frequencies of order one: K x = -s² M x.
     high = squared.max()
@@ -340,6 +349,15 @@ def test_one_of_two_lifts_off_and_one_is_held():
     assert verdict(-1.0, -1.0) == ("sliding", ("sliding", "sliding"))
     assert verdict(-0.3, -1.0) == ("held", ("sliding", "sticking"))
     assert verdict(0.0, 1.0) == ("lifted off", ("sliding", "separated"))
+
+
+@pytest.mark.parametrize(("friction", "kind"), [(1.2, "sliding"), (1.8, "jammed")])
+def test_impulses_jam_though_forces_balance(friction, kind):
+    """The root is free along y, so that N = load at any friction; but the end of an element jams from 5/3 on at 45°."""
+    found = st.sliding_stability(pair(dragged(), friction, rod(-45.0, elements=1), st.RigidTrack()))
+    assert found.attrs["equilibrium"] == kind
+    assert float(found.normal_force) == pytest.approx(1.0)
+    assert (found.sizes["mode"] == 0) == (kind == "jammed")
 
 
 def test_a_ground_without_friction_holds_nothing():

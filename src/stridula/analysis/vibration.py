@@ -170,7 +170,6 @@ def nearest_exponents(motion: Vibration, count: int, shift: complex) -> Exponent
 
     def inverse(vector: Array) -> Array:
         place, speed, own = np.split(vector, [modes, 2 * modes])
-        place = still(place)
         right = -speed - shift * place - moving @ place - motion.by_state @ (inner * own)
         moved = solve(right)
         velocity = place + shift * moved
