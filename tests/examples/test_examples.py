@@ -123,6 +123,16 @@ def test_what_the_start_page_shows_of_other_systems_runs(tmp_path, monkeypatch):
     assert names["shares"][0] > names["shares"][-1]
 
 
+def test_what_the_stability_page_prints(capsys):
+    page = (ROOT / "docs" / "stability.rst").read_text(encoding="utf-8")
+    code, printed = (
+        textwrap.dedent(re.search(rf"code-block:: {kind}\n\n((?: {{3}}.*\n|\n)+)", page)[1])
+        for kind in ("python", "text")
+    )
+    exec(code, {})
+    assert capsys.readouterr().out.strip() == printed.strip()
+
+
 def test_the_readme_shows_the_ten_lines():
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^```python\n(.*?)^```$", readme, flags=re.DOTALL | re.MULTILINE)

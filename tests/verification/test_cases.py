@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula.verification import falling, impacts, instabilities, jams, laws, orders, sliders
+from stridula.verification import falling, impacts, instabilities, jams, laws, orders, sliders, stability
 from stridula.verification.case import schemes
 from stridula.verification.cases import CASES
 
@@ -63,6 +63,22 @@ def test_mode_coupling_with_other_dampers_falls_short(monkeypatch):
     monkeypatch.setattr(instabilities.Coupled, "seen", lambda self, *rest: seen(off, *rest))
     short = {row.quantity for row in instabilities._rows(model, *words) if not row.holds}
     assert "friction 0.3: growth" in short
+
+
+def test_sliding_in_the_other_sense_is_another_pair(monkeypatch):
+    formula = stability.Pair.formula
+    monkeypatch.setattr(stability.Pair, "formula", lambda self, friction: formula(self, -friction))
+    short = [row for row in stability._formula_rows() if not row.holds]
+    assert len(short) > 5
+    assert not any(row.quantity.startswith("friction 0:") for row in short)
+
+
+def test_a_rod_of_another_length_grows_otherwise(monkeypatch):
+    monkeypatch.setattr(stability, "FINE", replace(stability.Pair(), slider=0.151))
+    assert {row.quantity for row in stability._printed_rows() if not row.holds} >= {
+        "friction 1.5, near 891 Hz: frequency",
+        "friction 1.5, near 891 Hz: growth",
+    }
 
 
 @pytest.mark.parametrize("scheme", schemes(), ids=lambda scheme: scheme.name)

@@ -7,7 +7,7 @@ from math import atan, pi, radians
 import numpy as np
 import pytest
 
-from stridula.verification import frequencies, impacts, instabilities, jams, laws, sliders
+from stridula.verification import frequencies, impacts, instabilities, jams, laws, sliders, stability
 
 
 def test_sdnd100():
@@ -61,6 +61,16 @@ def test_sinou_flutters_at_88_hertz():
     model = instabilities.sinou()
     met = model.exponents(instabilities.sinou_limit((0.0, 0.0)))
     assert met.imag / (2 * pi) == pytest.approx([88.3883, 88.3883], abs=1e-3)
+
+
+def test_sliding_stability():
+    """By the formula; the mesh of 30 elements moves the last digit of 3486.1 Hz and 4595 1/s."""
+    free = stability.Pair().formula(0.0).imag / (2 * pi)
+    assert free[:6] == pytest.approx([0.0, 109.2, 403.8, 588.2, 1210.7, 2352.8], abs=0.05)
+    growing = stability.growing(stability.Pair().formula(1.5))[:2]
+    assert growing.imag / (2 * pi) == pytest.approx([891.4, 3486.1], abs=0.1)
+    assert growing.real == pytest.approx([1454.0, 4595.0], abs=0.6)
+    assert not stability.growing(stability.Pair().formula(0.5)).size
 
 
 def test_impact():

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..bodies.modes import Array
 from ..contact import Coulomb, FrictionLaw, StaticKinetic
-from .structure import SEPARATED, SLIDING, STICKING, Structure
+from .structure import SEPARATED, SLIDING, STICKING, UNMOVED, Structure
 
 # Relative size below which a force or an acceleration is round-off.
 ROUND_OFF = 1e-9
@@ -38,6 +38,8 @@ class Equilibrium:
         Tangential over normal force of each in sliding, without its sense [1].
     normal_force, tangential_force : ndarray, shape (contacts,)
         Contact forces [N], the tangential ones on the track along its tangent.
+    prescribed : ndarray, shape (contacts,)
+        Slip velocities that drives and tracks prescribe [m/s].
     slip_acceleration : ndarray, shape (contacts,)
         Accelerations of the slip [m/s²] by rigid motions that nothing holds.
     displacement : ndarray, shape (modes,)
@@ -50,6 +52,7 @@ class Equilibrium:
     ratio: Array
     normal_force: Array
     tangential_force: Array
+    prescribed: Array
     slip_acceleration: Array
     displacement: Array
 
@@ -58,7 +61,8 @@ def find_equilibrium(structure: Structure, velocity: float | None, status: Seque
     """Return the equilibrium of a system, or that of given statuses of its contacts.
 
     All contacts slide at first. One that does not press is opened, one that comes to a stop is held, until all are as
-    they should be. Where nothing prescribes the sense of sliding, it is that of the motion without friction.
+    they should be. Where nothing prescribes the sense of sliding, it is that of the motion without friction. A held
+    contact sticks where it would come to rest without friction: what friction had stored before is not known.
 
     Parameters
     ----------
@@ -72,7 +76,7 @@ def find_equilibrium(structure: Structure, velocity: float | None, status: Seque
     Raises
     ------
     ValueError
-        If a slip speed that a law depends on is not known.
+        If a slip speed that a law depends on is not known, or contacts hold the same motion twice.
     """
     tried = [SLIDING] * len(structure.lines) if status is None else list(status)
     while True:
@@ -87,9 +91,9 @@ def find_equilibrium(structure: Structure, velocity: float | None, status: Seque
         tried[contact] = STICKING if kind == HELD else SEPARATED
 
 
-def slip_speed(structure: Structure, contact: int, velocity: float | None) -> float:
+def slip_speed(structure: Structure, contact: int, prescribed: Array, velocity: float | None) -> float:
     """Return the slip speed [m/s] of a contact under a law that depends on it."""
-    speed = abs(float(structure.prescribed[contact])) or velocity
+    speed = abs(float(prescribed[contact])) or velocity
     if not speed:
         name, law = structure.system.contact_names[contact], structure.system.contacts[contact].friction
         raise ValueError(
@@ -113,6 +117,7 @@ class _Balance:
     ratio: Array
     normal_force: Array
     tangential_force: Array
+    prescribed: Array
     slip_acceleration: Array
     displacement: Array
     determinant: float
@@ -127,6 +132,7 @@ def _equilibrium(kind: str, status: Sequence[str], found: tuple[_Balance, _Balan
         it.ratio,
         it.normal_force,
         it.tangential_force,
+        it.prescribed,
         it.slip_acceleration,
         it.displacement,
     )
@@ -135,16 +141,22 @@ def _equilibrium(kind: str, status: Sequence[str], found: tuple[_Balance, _Balan
 def _at(structure: Structure, velocity: float | None, status: Sequence[str]) -> tuple[_Balance, _Balance]:
     """Return the balance of forces without and with friction in sliding."""
     nothing = np.zeros(len(status))
-    plain = _balance(structure, status, np.sign(structure.prescribed), nothing)
+    anchors = nothing
+    if STICKING in status:
+        loose = [SLIDING if one == STICKING else one for one in status]
+        rest = _balance(structure, loose, nothing, nothing, nothing)
+        anchors = np.array([line.tangent @ rest.displacement for line in structure.lines])
+    prescribed = structure.prescribed(status)
+    plain = _balance(structure, status, np.sign(prescribed), nothing, anchors)
     moved = np.where(np.abs(plain.slip_acceleration) > ROUND_OFF * _acceleration(structure), plain.slip_acceleration, 0)
-    sense = np.where(structure.prescribed != 0.0, np.sign(structure.prescribed), np.sign(moved))
+    sense = np.where(prescribed != 0.0, np.sign(prescribed), np.sign(moved))
     ratio = nothing.copy()
     for number, contact in enumerate(structure.system.contacts):
         if status[number] == SLIDING:
             law = contact.friction
-            speed = slip_speed(structure, number, velocity) if depends_on_speed(law) else 1.0
+            speed = slip_speed(structure, number, prescribed, velocity) if depends_on_speed(law) else 1.0
             ratio[number] = float(law.coefficient_at(speed))
-    return plain, _balance(structure, status, sense, ratio)
+    return plain, _balance(structure, status, sense, ratio, anchors)
 
 
 def _acceleration(structure: Structure) -> float:
@@ -153,9 +165,19 @@ def _acceleration(structure: Structure) -> float:
     return float(np.linalg.norm(rows, axis=1).max() * np.linalg.norm(structure.load))
 
 
-def _balance(structure: Structure, status: Sequence[str], sense: Array, ratio: Array) -> _Balance:
-    """Solve for displacement, accelerations of free rigid motions and contact forces, all at once."""
+def _force(structure: Structure) -> float:
+    """Return the largest force that the loads could give a contact [N]."""
+    rows = np.array([line.normal for line in structure.lines])
+    return float(np.linalg.norm(structure.load) / np.linalg.norm(rows, axis=1).min())
+
+
+def _balance(structure: Structure, status: Sequence[str], sense: Array, ratio: Array, anchors: Array) -> _Balance:
+    """Solve for displacement, accelerations of free rigid motions and contact forces, all at once.
+
+    Sticking contacts are held at their anchors, displacements along their tangents.
+    """
     held, pushes, closed, stuck = held_rows(structure, status, sense * ratio)
+    _check_held(structure, held, [*closed, *stuck])
     free, modes, count = structure.free_motions(held), structure.mode_count, len(held)
     _check_unbraked(structure, free)
     motions, size = free.shape[1], modes + free.shape[1] + count
@@ -165,6 +187,7 @@ def _balance(structure: Structure, status: Sequence[str], sense: Array, ratio: A
     matrix[modes + motions :, :modes] = held
     right[:modes] = structure.load
     right[modes + motions : modes + motions + len(closed)] = -structure.gaps[closed]
+    right[modes + motions + len(closed) :] = anchors[stuck]
     scale = np.sqrt(np.maximum(np.abs(np.diag(matrix)), 1.0))
     scaled = matrix / np.outer(scale, scale)
     determinant = float(np.linalg.slogdet(scaled)[0])
@@ -175,7 +198,8 @@ def _balance(structure: Structure, status: Sequence[str], sense: Array, ratio: A
     tangential[closed] = (sense * ratio * normal)[closed]
     tangential[stuck] = forces[len(closed) :]
     slips = np.array([line.tangent @ free @ acceleration for line in structure.lines])
-    return _Balance(status, sense, ratio, normal, tangential, slips, displacement, determinant)
+    prescribed = structure.prescribed(status)
+    return _Balance(status, sense, ratio, normal, tangential, prescribed, slips, displacement, determinant)
 
 
 def held_rows(structure: Structure, status: Sequence[str], share: Array) -> tuple[Array, Array, list[int], list[int]]:
@@ -207,6 +231,21 @@ def held_rows(structure: Structure, status: Sequence[str], share: Array) -> tupl
     return held, np.array([*normals, *(-lines[k].tangent for k in stuck)]).reshape(size), closed, stuck
 
 
+def _check_held(structure: Structure, held: Array, contacts: Sequence[int]) -> None:
+    """Raise unless contacts hold motions that there are, each once."""
+    sizes = np.linalg.norm(held, axis=1)
+    for size, contact in zip(sizes, contacts, strict=True):
+        if size == 0.0:
+            name = structure.system.contact_names[contact]
+            raise ValueError(f"contact must be between points that move, got {name} where neither moves as it is held")
+    if len(held) and _rank_is_short(held):
+        names = ", ".join(dict.fromkeys(structure.system.contact_names[contact] for contact in contacts))
+        raise ValueError(
+            f"contacts must not hold the same motion twice, so that forces are not determined, got {names}; "
+            "elastic bodies or another status settle it"
+        )
+
+
 def _check_unbraked(structure: Structure, free: Array) -> None:
     braked = structure.damping @ free
     if braked.size and np.abs(braked).max() > ROUND_OFF * max(float(np.abs(structure.damping).max()), 1e-300):
@@ -220,7 +259,7 @@ def _wrong(structure: Structure, found: tuple[_Balance, _Balance]) -> tuple[int,
     """Return the first contact that is not as it should be, and what it does instead; None if all are."""
     plain, it = found
     closed = [k for k, one in enumerate(it.status) if one != SEPARATED]
-    scale = ROUND_OFF * max(float(np.abs(plain.normal_force).max()), 1e-300)
+    scale = ROUND_OFF * max(float(np.abs(plain.normal_force).max()), _force(structure))
     for k in closed:
         if plain.normal_force[k] < -scale:
             return k, LIFTED_OFF
@@ -230,11 +269,27 @@ def _wrong(structure: Structure, found: tuple[_Balance, _Balance]) -> tuple[int,
     for k in closed:
         if it.normal_force[k] < -scale:
             return k, LIFTED_OFF
+    least = ROUND_OFF * _acceleration(structure)
     for k in sliding:
-        stops = it.slip_acceleration[k] * it.sense[k] <= ROUND_OFF * _acceleration(structure)
-        if structure.prescribed[k] == 0.0 and stops:
+        gains = it.slip_acceleration[k] * it.sense[k]
+        stops = gains < -least if it.prescribed[k] else gains <= least
+        if stops and it.ratio[k] > 0.0 and not _is_held(structure, it.status, k):
             return k, HELD
     return None
+
+
+def _is_held(structure: Structure, status: Sequence[str], contact: int) -> bool:
+    """Return whether what other contacts hold keeps a contact from slipping, too."""
+    held, *_ = held_rows(structure, status, np.zeros(len(status)))
+    return _rank_is_short(np.vstack([held, structure.lines[contact].tangent]))
+
+
+def _rank_is_short(rows: Array) -> bool:
+    """Return whether rows are not independent."""
+    sizes = np.linalg.norm(rows, axis=1, keepdims=True)
+    if not sizes.all() or len(rows) > rows.shape[1]:
+        return True
+    return bool(np.linalg.svd(rows / sizes, compute_uv=False)[-1] < UNMOVED)
 
 
 def slides_on(structure: Structure, status: Sequence[str], share: Array) -> bool:

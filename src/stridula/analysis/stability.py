@@ -19,6 +19,8 @@ from .vibration import Exponents, all_exponents, nearest_exponents, vibration
 # Modes up to which all exponents are found; beyond, the lowest COUNT.
 LARGEST_DENSE = 600
 COUNT = 100
+# Exponents found beyond those that are wanted.
+SPARE = 8
 # Growth, relative to the highest angular frequency, that rounding may make.
 ROUND_OFF = 1e-9
 
@@ -118,11 +120,10 @@ def stability_of(system: System, velocity: float | None = None) -> dict[str, flo
     equilibrium = find_equilibrium(structure, velocity)
     nothing = float("nan")
     if equilibrium.kind == JAMMED or SLIDING not in equilibrium.status:
-        growing = nothing if equilibrium.kind == JAMMED else 0.0
         return {
             "growth_rate": nothing,
             "flutter_frequency": nothing,
-            "unstable_modes": growing,
+            "unstable_modes": nothing if equilibrium.kind == JAMMED else 0.0,
             "equilibrium": equilibrium.kind,
         }
     motion = vibration(structure, equilibrium, velocity)
@@ -160,7 +161,7 @@ def _exponents(
 ) -> Exponents:
     motion = vibration(structure, equilibrium, velocity)
     wanted = COUNT if modes is None and structure.mode_count > LARGEST_DENSE else modes
-    if wanted is not None and 4 * wanted < structure.mode_count:
+    if wanted is not None and 4 * wanted < structure.mode_count and structure.stiffness.any():
         return _nearest(structure, motion, wanted, near)
     found = all_exponents(motion)
     if wanted is None:
@@ -174,7 +175,9 @@ def _nearest(structure: Structure, motion: Any, wanted: int, near: float) -> Exp
     elastic = np.sqrt(np.diag(structure.stiffness))
     lowest = float(elastic[elastic > 0.0].min(initial=np.inf))
     centre = 2.0 * np.pi * near
-    found = nearest_exponents(motion, 2 * wanted, complex(0.1 * min(lowest, max(centre, lowest)), centre))
+    # Both of each pair may be found, and in another order than about the frequency itself.
+    sought = min(2 * wanted + SPARE, 2 * structure.mode_count - 2)
+    found = nearest_exponents(motion, sought, complex(0.1 * lowest, centre))
     order = np.argsort(np.abs(found.values - 1.0j * centre), kind="stable")[:wanted]
     return Exponents(found.values[order], found.shapes[:, order])
 
@@ -227,9 +230,9 @@ def _contacts(structure: Structure, at: Equilibrium, velocity: float | None) -> 
     """Return name, unit, meaning and values of what is known of the contacts."""
     slip = []
     for k, contact in enumerate(structure.system.contacts):
-        known = structure.prescribed[k] != 0.0 or depends_on_speed(contact.friction)
-        slides = at.status[k] == SLIDING
-        slip.append(at.sense[k] * slip_speed(structure, k, velocity) if slides and known else np.nan if slides else 0.0)
+        known = at.prescribed[k] != 0.0 or (at.sense[k] and depends_on_speed(contact.friction))
+        speed = slip_speed(structure, k, at.prescribed, velocity) if known else np.nan if at.sense[k] else 0.0
+        slip.append(at.sense[k] * speed if at.status[k] == SLIDING else 0.0)
     return [
         ("status", "1", "status of the contact", np.array(at.status)),
         ("normal_force", "N", "normal contact force, compressive", at.normal_force),
@@ -244,7 +247,11 @@ def _normalised(shapes: Array) -> Array:
     if not shapes.size:
         return shapes
     largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=0)[None], axis=0)
-    return np.asarray(shapes / (largest / np.abs(largest)) / np.linalg.norm(shapes, axis=0))
+    # A state that forces do not depend on decays without moving anything.
+    largest = np.where(largest == 0.0, 1.0, largest)
+    turned = shapes * (np.abs(largest) / largest)
+    size = np.linalg.norm(turned, axis=0)
+    return np.asarray(turned / np.where(size > 0.0, size, 1.0))
 
 
 def _words(units: str, meaning: str) -> dict[str, str]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
 
-from ..assembly import Assembly, ContactRows, assemble
+from ..assembly import ContactRows, assemble
 from ..bodies import BodyPoint, ModalBeam
 from ..bodies.modes import Array
 from ..contact import PointContact, RigidTrack
@@ -16,10 +17,11 @@ from ..records.variables import STATUS_WORDS
 from ..system import System
 
 SEPARATED, STICKING, SLIDING = STATUS_WORDS
+CLOSED = (STICKING, SLIDING)
 # Relative size below which a motion does not move a row.
 UNMOVED = 1e-9
-# Relative square of an angular frequency below which a motion strains nothing.
-UNSTRAINED = 1e-14
+# Relative square of an angular frequency below which rigid motions of the bodies strain no connection.
+UNSTRAINED = 1e-13
 
 
 @dataclass(frozen=True)
@@ -67,34 +69,80 @@ class Structure:
         Modal forces of the drives.
     gaps : ndarray, shape (contacts,)
         Gaps of the undeformed system [m].
-    prescribed : ndarray, shape (contacts,)
-        Slip velocities that drives and tracks prescribe [m/s].
+    rates : ndarray, shape (2, contacts)
+        Velocities of the tip against the track that drives and tracks prescribe, along tangent and normal [m/s].
+
+    Raises
+    ------
+    ValueError
+        If no time is given and something never stops varying.
     """
 
     def __init__(self, system: System, time: float | None = None) -> None:
         self.system, self.arrays = system, assemble(system)
-        now = np.array([settled_time(system) if time is None else time])
+        settled = settled_time(system) if time is None else time
+        # Later it is all the same, and no rate meets the kink of a history that settles.
+        now = np.array([2.0 * settled + 1.0 if time is None else settled])
         arrays, size = self.arrays, self.arrays.coupled
         self.lines = [_line(one) for one in arrays.contacts]
         self.stiffness = np.diag(arrays.angular_frequency**2)
         self.damping = np.diag(2.0 * arrays.damping * arrays.angular_frequency)
         self.stiffness[:size, :size], self.damping[:size, :size] = arrays.stiffness, arrays.dissipation
-        self.rigid = _rigid_motions(arrays)
+        self.rigid = _rigid_motions(self)
         factors = np.array([signal(now, 1e-6)[0] for signal in arrays.signals[: len(arrays.loads)]])
         self.load = factors @ arrays.loads
-        self.gaps = arrays.motion(now, 1e-6)[0, :, 2] + [contact.gap for contact in system.contacts]
-        self.prescribed = np.array([_prescribed_slip(contact, system, now) for contact in system.contacts])
+        moved = arrays.motion(np.array([settled]), 1e-6)[0, :, 2]
+        self.gaps = moved + [contact.gap for contact in system.contacts]
+        self.rates = np.array([_prescribed_rates(contact, system, now) for contact in system.contacts]).T
+        if time is None:
+            self._check_steady()
 
     @property
     def mode_count(self) -> int:
         """Number of modes."""
         return self.arrays.mode_count
 
+    def prescribed(self, status: Sequence[str]) -> Array:
+        """Return the slip velocities [m/s] that drives and tracks prescribe; rigid motions follow what contacts hold.
+
+        Parameters
+        ----------
+        status : sequence of str
+            Status of each contact.
+        """
+        tangents, normals = self._rigid_rows()
+        slips, openings = self.rates
+        closed, stuck = (np.array([one in kinds for one in status]) for kinds in (CLOSED, (STICKING,)))
+        wanted = np.concatenate([openings[closed], slips[stuck]])
+        if wanted.any():
+            follow = np.linalg.pinv(np.vstack([normals[closed], tangents[stuck]]), rcond=UNMOVED) @ wanted
+            slips = slips - tangents @ follow
+        return np.where(stuck | (np.abs(slips) <= UNMOVED * np.abs(self.rates).max()), 0.0, slips)
+
+    def _rigid_rows(self) -> tuple[Array, Array]:
+        """Return how rigid motions move the contacts along their tangents and normals, each (contacts, motions)."""
+        rows = [np.array([getattr(line, word) for line in self.lines]) for word in ("tangent", "normal")]
+        felt = [one @ self.rigid for one in rows]
+        sizes = [UNMOVED * np.linalg.norm(one, axis=1, keepdims=True) for one in rows]
+        tangents, normals = (np.where(np.abs(one) < size, 0.0, one) for one, size in zip(felt, sizes, strict=True))
+        return tangents, normals
+
+    def _check_steady(self) -> None:
+        _, openings = self.rates
+        if not openings.any():
+            return
+        _, normals = self._rigid_rows()
+        left = np.abs(openings - normals @ (np.linalg.pinv(normals, rcond=UNMOVED) @ openings))
+        if left.max() > UNMOVED * np.abs(openings).max():
+            name = self.system.contact_names[int(left.argmax())]
+            raise ValueError(f"time must be given: nothing follows what is moved along the normal of {name}, got None")
+
     def free_motions(self, rows: Array) -> Array:
         """Return the rigid motions that some rows do not feel, orthonormal, shape (modes, motions)."""
         if not self.rigid.shape[1] or not len(rows):
             return self.rigid
         felt = rows @ self.rigid / np.linalg.norm(rows, axis=1, keepdims=True)
+        felt[np.abs(felt) < UNMOVED] = 0.0
         return np.asarray(self.rigid @ scipy.linalg.null_space(felt, rcond=UNMOVED))
 
 
@@ -113,6 +161,8 @@ def settled_time(system: System) -> float:
     for name, contact in zip(system.contact_names, system.contacts, strict=True):
         if isinstance(contact.track, RigidTrack) and contact.track.velocity:
             histories.append((f"the track of {name}", contact.track.history))
+        if isinstance(contact.track, RigidTrack) and contact.track.normal_velocity:
+            histories.append((f"the track of {name}", contact.track.normal_history))
     for name, history in histories:
         if history.settled is None:
             raise ValueError(f"time must be given for {name}, which never stops varying, got {history!r}")
@@ -131,22 +181,28 @@ def _line(one: ContactRows) -> ContactLine:
     return ContactLine(one.fixed[0] - trace[1], one.fixed[1] - trace[0], one.fixed[1], slope[1], slope[0])
 
 
-def _rigid_motions(arrays: Assembly) -> Array:
-    modes, size = np.eye(arrays.mode_count), arrays.coupled
-    rigid = [modes[:, size:][:, arrays.angular_frequency[size:] == 0.0]]
-    if size:
-        squared, shapes = np.linalg.eigh(arrays.stiffness)
-        unstrained = squared <= UNSTRAINED * max(float(squared[-1]), 1.0)
-        rigid.insert(0, np.pad(shapes[:, unstrained], ((0, arrays.mode_count - size), (0, 0))))
-    return np.concatenate(rigid, axis=1)
+def _rigid_motions(structure: Structure) -> Array:
+    system, spans = structure.system, structure.arrays.spans
+    rigid = np.zeros(structure.mode_count, dtype=bool)
+    for body in system.bodies:
+        rigid[slice(*spans[system.body_name(body)])] = body.modes(system.is_held(body)).angular_frequency == 0.0
+    motions = np.eye(structure.mode_count)[:, rigid]
+    if not rigid.any():
+        return motions
+    # Among rigid motions of the bodies a soft connection is told from none, whatever their fastest mode.
+    squared, shapes = np.linalg.eigh(structure.stiffness[np.ix_(rigid, rigid)])
+    return np.asarray(motions @ shapes[:, squared <= UNSTRAINED * squared[-1]])
 
 
-def _prescribed_slip(contact: PointContact, system: System, now: Array) -> float:
-    imposed, tangent = system.imposed_velocity, contact.frame[1]
+def _prescribed_rates(contact: PointContact, system: System, now: Array) -> tuple[float, float]:
+    """Return the velocities of the tip against the track that drives and tracks prescribe, along tangent and normal."""
+    imposed, (normal, tangent) = system.imposed_velocity, contact.frame
     root = imposed.velocity * float(imposed.history.factor(now)[0]) if imposed else 0.0
-    slip = tangent[0] * root if system.is_held(contact.tip.body) else 0.0
-    if isinstance(contact.track, BodyPoint) and system.is_held(contact.track.body):
-        slip -= tangent[0] * root
+    held = float(system.is_held(contact.tip.body))
+    if isinstance(contact.track, BodyPoint):
+        held -= float(system.is_held(contact.track.body))
+    slip, opening = held * tangent[0] * root, held * normal[0] * root
     if isinstance(contact.track, RigidTrack):
         slip -= contact.track.velocity * float(contact.track.history.factor(now)[0])
-    return float(slip)
+        opening -= contact.track.normal_velocity * float(contact.track.normal_history.factor(now)[0])
+    return float(slip), float(opening)

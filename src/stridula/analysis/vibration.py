@@ -76,8 +76,8 @@ def vibration(structure: Structure, equilibrium: Equilibrium, velocity: float | 
         if k in stuck:
             held[len(closed) + stuck.index(k)] = slip
         law = structure.system.contacts[k].friction
-        if equilibrium.status[k] == SLIDING and depends_on_speed(law):
-            near = law.linearised_at(slip_speed(structure, k, velocity))
+        if equilibrium.status[k] == SLIDING and equilibrium.sense[k] and depends_on_speed(law):
+            near = law.linearised_at(slip_speed(structure, k, equilibrium.prescribed, velocity))
             damping += normal * near.slope * np.outer(line.tangent, slip)
             answers.append((near, equilibrium.sense[k], normal, line.tangent, slip))
     by_state, from_velocity, state = _states(answers, structure)
@@ -165,20 +165,26 @@ def nearest_exponents(motion: Vibration, count: int, shift: complex) -> Exponent
     moving = motion.damping - motion.by_state @ (inner[:, None] * motion.from_velocity)
     solve = _bordered(stiffness + shift * moving + shift**2 * np.eye(modes), motion)
 
+    def still(place: Array) -> Array:
+        return np.asarray(place - motion.free @ (motion.free.T @ place))
+
     def inverse(vector: Array) -> Array:
         place, speed, own = np.split(vector, [modes, 2 * modes])
         right = -speed - shift * place - moving @ place - motion.by_state @ (inner * own)
         moved = solve(right)
         velocity = place + shift * moved
-        return np.concatenate([moved, velocity, inner * (own - motion.from_velocity @ velocity)])
+        return np.concatenate([still(moved), velocity, inner * (own - motion.from_velocity @ velocity)])
 
     size = 2 * modes + states
     operator = scipy.sparse.linalg.LinearOperator((size, size), matvec=inverse, dtype=complex)
     start = np.random.default_rng(0).standard_normal(size) + 0.0j
     found, vectors = scipy.sparse.linalg.eigs(operator, k=count, which="LM", v0=inverse(start))
     values = shift + 1.0 / found
-    chosen = values.imag >= -ROUND_OFF * np.abs(values)
-    return Exponents(values[chosen], vectors[:modes, chosen])
+    least = ROUND_OFF * np.maximum(np.abs(values), np.abs(shift))
+    values = np.where(np.abs(values.imag) < least, values.real, values)
+    chosen = values.imag >= 0.0
+    values, vectors = values[chosen], vectors[modes : 2 * modes, chosen]
+    return Exponents(values, vectors / np.where(values == 0.0, 1.0, values))
 
 
 def _bordered(dynamic: Array, motion: Vibration) -> Callable[[Array], Array]:

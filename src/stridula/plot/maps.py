@@ -13,8 +13,8 @@ from matplotlib.patches import Patch
 from ..bodies.modes import Array
 from .colours import FAILED_COLOUR, REGIME_COLOURS
 
-# Growth rates at which contours are drawn, as shares of the largest on the map.
-LEVELS = (0.1, 0.3, 0.6)
+# Growth rates at which contours are drawn, as percentiles of those on the map, and the fewest that give any.
+PERCENTILES, FEWEST = (15.0, 45.0, 75.0), 8
 
 
 def regime_map(found: xr.Dataset) -> Figure:
@@ -74,29 +74,33 @@ def _codes(regimes: Array) -> Array:
 
 def _draw_linear(axes: Axes, found: xr.Dataset, x: Array, y: Array) -> list[Line2D]:
     """Draw what linear theory says, and return the handles of the legend."""
+    if "equilibrium" not in found or "unstable_modes" not in found:
+        return []
     handles: list[Line2D] = []
-    if "unstable_modes" in found:
-        grows = np.nan_to_num(found["unstable_modes"].values) > 0
-        if grows.any():
-            # Bounds lie halfway between points: a level of a growth rate would be drawn by how fast it falls beside.
-            axes.contour(x, y, grows.T.astype(float), levels=[0.5], colors="black", linewidths=2.0)
-            handles.append(Line2D([], [], color="black", linewidth=2.0, label="linear theory: a mode grows"))
-            rates = np.where(grows, found["growth_rate"].values, np.nan)
-            levels = _round_levels(float(np.nanmax(rates)))
-            if np.count_nonzero(np.isfinite(rates)) > 3 and len(levels):
-                drawn = axes.contour(x, y, rates.T, levels=levels, colors="black", linewidths=0.7)
-                axes.clabel(drawn, fontsize=7, fmt="%g /s")
-    if "equilibrium" in found:
-        slides = found["equilibrium"].values == "sliding"
-        if slides.any() and not slides.all():
-            axes.contour(x, y, slides.T.astype(float), levels=[0.5], colors="black", linewidths=1.2, linestyles="--")
-            handles.append(Line2D([], [], color="black", linewidth=1.2, linestyle="--", label="steady sliding exists"))
+    slides = found["equilibrium"].values == "sliding"
+    grows = np.where(slides, found["unstable_modes"].values > 0, np.nan)
+    if np.nanmin(grows, initial=1.0) < np.nanmax(grows, initial=0.0):
+        # Bounds lie halfway between points: a level of a growth rate would be drawn by how fast it falls beside.
+        axes.contour(x, y, grows.T, levels=[0.5], colors="black", linewidths=2.0)
+        handles.append(Line2D([], [], color="black", linewidth=2.0, label="linear theory: a mode begins to grow"))
+    rates = np.where(grows == 1.0, found["growth_rate"].values, np.nan)
+    levels = _round_levels(rates[np.isfinite(rates)])
+    if levels:
+        drawn = axes.contour(x, y, rates.T, levels=levels, colors="black", linewidths=0.7)
+        axes.clabel(drawn, fontsize=7, fmt="%g /s")
+        handles.append(Line2D([], [], color="black", linewidth=0.7, label="its growth rate"))
+    if slides.any() and not slides.all():
+        axes.contour(x, y, slides.T.astype(float), levels=[0.5], colors="black", linewidths=1.2, linestyles="--")
+        words = "linear theory: bound of steady sliding"
+        handles.append(Line2D([], [], color="black", linewidth=1.2, linestyle="--", label=words))
     return handles
 
 
-def _round_levels(largest: float) -> list[float]:
-    """Return shares of the largest growth rate, rounded to one digit."""
-    return sorted({float(f"{share * largest:.1g}") for share in LEVELS if share * largest > 0.0})
+def _round_levels(rates: Array) -> list[float]:
+    """Return growth rates that part all evenly, rounded; they may rise without bound where sliding jams."""
+    if rates.size < FEWEST:
+        return []
+    return sorted({float(f"{rate:.1g}") for rate in np.percentile(rates, PERCENTILES)})
 
 
 def _label(found: xr.Dataset, key: str) -> str:

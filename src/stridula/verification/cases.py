@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from . import falling, frequencies, impacts, instabilities, jams, laws, orders, sliders
+from . import falling, frequencies, impacts, instabilities, jams, laws, orders, sliders, stability
 from .case import Case
 
 CASES: tuple[Case, ...] = (
     *sliders.CASES,
     *falling.CASES,
     *instabilities.CASES,
+    *stability.CASES,
     *impacts.CASES,
     *jams.CASES,
     *laws.CASES,
@@ -18,7 +19,6 @@ CASES: tuple[Case, ...] = (
 
 WAITING = (
     "Frequencies of the simply supported plate: wait for a plate",
-    "Sliding stability of the paper's pair and its onsets: wait for eigenvalues of the sliding pair",
     "Radiation of the baffled plate (Wallace 1972), the baffled piston and the baffled monopole: wait for radiation",
     "Loudness of 1 kHz at 40 dB: waits for loudness",
 )
