@@ -146,14 +146,22 @@ def test_measures_of_the_system_need_no_run(monkeypatch):
 
 
 def test_stability_is_that_of_linear_theory_at_each_point():
-    found = st.sweep("squeal", st.Grid({"friction": [0.3, 1.5]}), "stability")
-    for friction in (0.3, 1.5):
-        modes = st.sliding_stability(st.load_scenario("squeal", {"friction": friction}).system)
+    found = st.sweep("weak-pressure", st.Grid({"friction": [0.3, 1.2, 2.0]}), "stability")
+    assert found["equilibrium"].values.tolist() == ["sliding", "sliding", "jammed"]
+    for friction in (0.3, 1.2):
+        modes = st.sliding_stability(st.load_scenario("weak-pressure", {"friction": friction}).system)
         there = found.sel(friction=friction)
-        assert there["equilibrium"].item() == modes.attrs["equilibrium"]
-        if modes.sizes["mode"]:
-            assert float(there["growth_rate"]) == pytest.approx(float(modes["growth_rate"].max()), rel=1e-6)
-            assert int(there["unstable_modes"]) == int(modes["unstable"].sum())
+        assert float(there["growth_rate"]) == pytest.approx(float(modes["growth_rate"].max()), rel=1e-6)
+        assert int(there["unstable_modes"]) == int(modes["unstable"].sum())
+    fastest = modes.isel(mode=int(modes["growth_rate"].values.argmax()))
+    assert float(found.sel(friction=1.2)["flutter_frequency"]) == pytest.approx(float(fastest["frequency"]), rel=1e-6)
+    assert np.isnan(found.sel(friction=2.0)["unstable_modes"])
+
+
+def test_what_friction_holds_has_no_growth():
+    found = st.sweep("squeal", [{"friction": 1.5}], "stability").isel(point=0)
+    assert (found["equilibrium"].item(), int(found["unstable_modes"])) == ("held", 0)
+    assert np.isnan(found["growth_rate"])
 
 
 def test_a_measure_brings_those_that_belong_to_it(monkeypatch):
