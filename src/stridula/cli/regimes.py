@@ -17,8 +17,8 @@ WIDTH = 150
 def print_agreement(found: xr.Dataset) -> None:
     """Print how often each regime was seen under each verdict of linear theory, and how often the two agree."""
     counts = agreement(found)
-    table = Table(title="runs by linear theory and regime", title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("linear theory")
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("runs by linear theory")
     seen = [str(word) for word in counts["regime"].values if int(counts["runs"].sel(regime=word).sum())]
     for word in seen:
         table.add_column(word, justify="right")
