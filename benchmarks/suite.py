@@ -16,6 +16,7 @@ import against_c
 import gpu
 import machine
 import many_runs
+import maps
 import peer_speed
 import real_time
 import scaling
@@ -24,7 +25,7 @@ import startup
 from ratios import as_markdown, as_text
 
 # Memory first: see there.
-SECTIONS = (speed_and_memory, against_c, peer_speed, real_time, many_runs, scaling, startup, gpu)
+SECTIONS = (speed_and_memory, against_c, peer_speed, real_time, many_runs, maps, scaling, startup, gpu)
 BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
 
 
