@@ -118,11 +118,10 @@ def stability_of(system: System, velocity: float | None = None) -> dict[str, flo
     equilibrium = find_equilibrium(structure, velocity)
     nothing = float("nan")
     if equilibrium.kind == JAMMED or SLIDING not in equilibrium.status:
-        growing = nothing if equilibrium.kind == JAMMED else 0.0
         return {
             "growth_rate": nothing,
             "flutter_frequency": nothing,
-            "unstable_modes": growing,
+            "unstable_modes": nothing if equilibrium.kind == JAMMED else 0.0,
             "equilibrium": equilibrium.kind,
         }
     motion = vibration(structure, equilibrium, velocity)

@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ..bodies.modes import Array
+from ..checks import instance
 from .colours import FAILED_COLOUR, REGIME_COLOURS
 
 # Growth rates at which contours are drawn, as shares of the largest on the map.
@@ -22,7 +24,7 @@ def regime_map(found: xr.Dataset) -> Figure:
 
     The first parameter is along x. A thick line bounds where linear theory has a mode that grows, thin ones are
     contours of its growth rate [1/s]; a dashed line bounds where it has a contact that slides steadily. Where colours
-    and lines do not go together, the two disagree.
+    and lines do not go together, the two disagree. Numbers are drawn in rising order, words as they come.
 
     Parameters
     ----------
@@ -39,22 +41,23 @@ def regime_map(found: xr.Dataset) -> Figure:
     ValueError
         If there is no regime over two parameters of at least 2 values each.
     """
+    instance("found", found, xr.Dataset)
     if "regime" not in found or found["regime"].ndim != 2 or min(found["regime"].shape) < 2:
         shape = dict(found["regime"].sizes) if "regime" in found else "none"
         raise ValueError(f"found must have the regime over two parameters of at least 2 values each, got {shape}")
     across, along = (str(name) for name in found["regime"].dims)
+    found = _in_order(_in_order(found, across), along)
     figure = Figure(figsize=(8.0, 6.0), layout="constrained", dpi=120)
     axes = figure.subplots()
     codes = _codes(found["regime"].values)
     colours = [*REGIME_COLOURS.values(), FAILED_COLOUR]
     norm = BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours))
-    x, y = found[across].values, found[along].values
-    axes.pcolormesh(x, y, codes.T, cmap=ListedColormap(colours), norm=norm, shading="nearest", rasterized=True)
+    x, y = _places(found, across), _places(found, along)
+    axes.pcolormesh(_edges(x), _edges(y), codes.T, cmap=ListedColormap(colours), norm=norm, rasterized=True)
     lines = _draw_linear(axes, found, x, y)
-    axes.set_xlabel(_label(found, across))
-    axes.set_ylabel(_label(found, along))
-    title = str(found.attrs.get("title", ""))
-    axes.set_title(title, fontsize=11)
+    _name_axis(axes, found, across, "x")
+    _name_axis(axes, found, along, "y")
+    axes.set_title(str(found.attrs.get("title", "")), fontsize=11)
     patches = [
         Patch(facecolor=colour, edgecolor="0.5", linewidth=0.5, label=f"{word} ({np.count_nonzero(codes == k)})")
         for k, (word, colour) in enumerate([*REGIME_COLOURS.items(), ("failed", FAILED_COLOUR)])
@@ -62,6 +65,30 @@ def regime_map(found: xr.Dataset) -> Figure:
     ]
     figure.legend(handles=[*patches, *lines], loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     return figure
+
+
+def _in_order(found: xr.Dataset, key: str) -> xr.Dataset:
+    """Return a sweep with the numbers of a key rising, each once."""
+    if not _is_number(found, key):
+        return found
+    return found.isel({key: np.unique(found[key].values, return_index=True)[1]})
+
+
+def _is_number(found: xr.Dataset, key: str) -> bool:
+    return found[key].dtype.kind in "fiu"
+
+
+def _places(found: xr.Dataset, key: str) -> Array:
+    """Return where the values of a key lie on their axis: numbers where they are, words one beside another."""
+    return found[key].values.astype(float) if _is_number(found, key) else np.arange(found.sizes[key], dtype=float)
+
+
+def _edges(places: Array) -> Array:
+    """Return the bounds of cells about their places: halfway between them, the outer ones as far on the other side."""
+    if places.size == 1:
+        return np.array([places[0] - 0.5, places[0] + 0.5])
+    middle = 0.5 * (places[1:] + places[:-1])
+    return np.concatenate([[2.0 * places[0] - middle[0]], middle, [2.0 * places[-1] - middle[-1]]])
 
 
 def _codes(regimes: Array) -> Array:
@@ -75,23 +102,45 @@ def _codes(regimes: Array) -> Array:
 def _draw_linear(axes: Axes, found: xr.Dataset, x: Array, y: Array) -> list[Line2D]:
     """Draw what linear theory says, and return the handles of the legend."""
     handles: list[Line2D] = []
-    if "unstable_modes" in found:
-        grows = np.nan_to_num(found["unstable_modes"].values) > 0
-        if grows.any():
-            # Bounds lie halfway between points: a level of a growth rate would be drawn by how fast it falls beside.
-            axes.contour(x, y, grows.T.astype(float), levels=[0.5], colors="black", linewidths=2.0)
-            handles.append(Line2D([], [], color="black", linewidth=2.0, label="linear theory: a mode grows"))
-            rates = np.where(grows, found["growth_rate"].values, np.nan)
-            levels = _round_levels(float(np.nanmax(rates)))
-            if np.count_nonzero(np.isfinite(rates)) > 3 and len(levels):
-                drawn = axes.contour(x, y, rates.T, levels=levels, colors="black", linewidths=0.7)
-                axes.clabel(drawn, fontsize=7, fmt="%g /s")
     if "equilibrium" in found:
         slides = found["equilibrium"].values == "sliding"
         if slides.any() and not slides.all():
-            axes.contour(x, y, slides.T.astype(float), levels=[0.5], colors="black", linewidths=1.2, linestyles="--")
-            handles.append(Line2D([], [], color="black", linewidth=1.2, linestyle="--", label="steady sliding exists"))
+            _draw_bound(axes, slides, x, y, 1.4, "--")
+            words = "linear theory: bound of steady sliding"
+            handles.append(Line2D([], [], color="black", linewidth=1.4, linestyle="--", label=words))
+    if "unstable_modes" in found:
+        grows = np.nan_to_num(found["unstable_modes"].values) > 0
+        if grows.any():
+            _draw_bound(axes, grows, x, y, 2.2, "-")
+            words = "linear theory: bound of growth" if not grows.all() else "linear theory: a mode grows everywhere"
+            handles.append(Line2D([], [], color="black", linewidth=2.2, label=words))
+            _draw_growth(axes, np.where(grows, found["growth_rate"].values, np.nan), x, y)
     return handles
+
+
+def _draw_bound(axes: Axes, inside: Array, x: Array, y: Array, width: float, style: str) -> None:
+    """Draw the sides of cells that part those inside from the others."""
+    across, along = _edges(x), _edges(y)
+    upright = [
+        [(across[i + 1], along[j]), (across[i + 1], along[j + 1])]
+        for i, j in np.argwhere(inside[1:] != inside[:-1]).tolist()
+    ]
+    level = [
+        [(across[i], along[j + 1]), (across[i + 1], along[j + 1])]
+        for i, j in np.argwhere(inside[:, 1:] != inside[:, :-1]).tolist()
+    ]
+    sides = LineCollection([*upright, *level], colors="black", linewidths=width, capstyle="projecting")
+    sides.set_linestyle("-" if style == "-" else (0.0, (2.0, 1.5)))
+    axes.add_collection(sides, autolim=False)
+
+
+def _draw_growth(axes: Axes, rates: Array, x: Array, y: Array) -> None:
+    """Draw contours of the growth rate where there are any to be seen."""
+    least, largest = float(np.nanmin(rates)), float(np.nanmax(rates))
+    levels = [level for level in _round_levels(largest) if least < level < largest]
+    if min(rates.shape) > 1 and levels:
+        drawn = axes.contour(x, y, rates.T, levels=levels, colors="black", linewidths=0.7)
+        axes.clabel(drawn, fontsize=7, fmt="%g /s")
 
 
 def _round_levels(largest: float) -> list[float]:
@@ -99,6 +148,9 @@ def _round_levels(largest: float) -> list[float]:
     return sorted({float(f"{share * largest:.1g}") for share in LEVELS if share * largest > 0.0})
 
 
-def _label(found: xr.Dataset, key: str) -> str:
+def _name_axis(axes: Axes, found: xr.Dataset, key: str, name: str) -> None:
     units = str(found[key].attrs.get("units", ""))
-    return f"{key} [{units}]" if units and units != "1" else key
+    axis = axes.xaxis if name == "x" else axes.yaxis
+    axis.set_label_text(f"{key} [{units}]" if units and units != "1" else key)
+    if not _is_number(found, key):
+        axis.set_ticks(range(found.sizes[key]), labels=[str(value) for value in found[key].values])
