@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -102,36 +103,31 @@ def _codes(regimes: Array) -> Array:
 def _draw_linear(axes: Axes, found: xr.Dataset, x: Array, y: Array) -> list[Line2D]:
     """Draw what linear theory says, and return the handles of the legend."""
     handles: list[Line2D] = []
-    if "equilibrium" in found:
-        slides = found["equilibrium"].values == "sliding"
-        if slides.any() and not slides.all():
-            _draw_bound(axes, slides, x, y, 1.4, "--")
-            words = "linear theory: bound of steady sliding"
-            handles.append(Line2D([], [], color="black", linewidth=1.4, linestyle="--", label=words))
+    grows = np.zeros((x.size, y.size), dtype=bool)
     if "unstable_modes" in found:
         grows = np.nan_to_num(found["unstable_modes"].values) > 0
         if grows.any():
-            _draw_bound(axes, grows, x, y, 2.2, "-")
             words = "linear theory: bound of growth" if not grows.all() else "linear theory: a mode grows everywhere"
-            handles.append(Line2D([], [], color="black", linewidth=2.2, label=words))
+            handles.append(_draw_bound(axes, grows, x, y, "-", words))
             _draw_growth(axes, np.where(grows, found["growth_rate"].values, np.nan), x, y)
+    if "equilibrium" in found:
+        slides = found["equilibrium"].values == "sliding"
+        # What lies under the thick line cannot be seen.
+        if any((np.diff(slides, axis=k) & ~np.diff(grows, axis=k)).any() for k in (0, 1)):
+            handles.append(_draw_bound(axes, slides, x, y, "--", "linear theory: bound of steady sliding"))
     return handles
 
 
-def _draw_bound(axes: Axes, inside: Array, x: Array, y: Array, width: float, style: str) -> None:
-    """Draw the sides of cells that part those inside from the others."""
-    across, along = _edges(x), _edges(y)
-    upright = [
-        [(across[i + 1], along[j]), (across[i + 1], along[j + 1])]
-        for i, j in np.argwhere(inside[1:] != inside[:-1]).tolist()
-    ]
-    level = [
-        [(across[i], along[j + 1]), (across[i + 1], along[j + 1])]
-        for i, j in np.argwhere(inside[:, 1:] != inside[:, :-1]).tolist()
-    ]
-    sides = LineCollection([*upright, *level], colors="black", linewidths=width, capstyle="projecting")
-    sides.set_linestyle("-" if style == "-" else (0.0, (2.0, 1.5)))
-    axes.add_collection(sides, autolim=False)
+def _draw_bound(axes: Axes, inside: Array, x: Array, y: Array, style: str, words: str) -> Line2D:
+    """Draw the sides of cells that part those inside from the others, and return the handle of the legend."""
+    look: dict[str, Any] = {"linewidth": 2.2 if style == "-" else 1.4, "linestyle": style}
+    if not inside.all():
+        # Each cell with its own corners: the level between two of them lies on the side that they share.
+        across, along = (np.repeat(_edges(places), 2)[1:-1] for places in (x, y))
+        cells = np.repeat(np.repeat(inside, 2, axis=0), 2, axis=1).astype(float)
+        widths, styles = look.values()
+        axes.contour(across, along, cells.T, levels=[0.5], colors="black", linewidths=widths, linestyles=styles)
+    return Line2D([], [], color="black", label=words, **look)
 
 
 def _draw_growth(axes: Axes, rates: Array, x: Array, y: Array) -> None:

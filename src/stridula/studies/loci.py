@@ -13,8 +13,12 @@ from scipy.optimize import linear_sum_assignment
 from ..analysis.stability import sliding_stability
 from ..bodies.modes import Array
 from ..checks import finite, instance, positive
+from ..records.provenance import toml
 from ..scenarios import load_scenario
+from ..scenarios.keys import overridden
+from ..scenarios.read import read_tables
 from ..system import System
+from ..version import __version__
 from .task import one_thread_each
 
 # What root loci have beside the parameter.
@@ -89,6 +93,7 @@ def root_loci(
             "equilibrium": (key, [one.attrs["equilibrium"] for one in found]),
         },
         {key: (key, grid, {"units": units}), "mode": np.arange(followed.shape[1])},
+        _origin(source, overrides),
     )
 
 
@@ -200,6 +205,15 @@ def critical_values(loci: xr.Dataset, find: Callable[[float, float], xr.Dataset]
 def parameter_of(loci: xr.Dataset) -> str:
     """Return the key of the parameter of root loci."""
     return str(loci["equilibrium"].dims[0])
+
+
+def _origin(source: Source, overrides: Mapping[str, Any] | None) -> dict[str, str]:
+    """Return what a file says of where it comes from; of a function nothing is known."""
+    if callable(source):
+        return {}
+    tables, _ = overridden(read_tables(source), overrides or {})
+    words = {"title": str(tables.get("title", "")), "scenario": toml(tables)}
+    return words | {"stridula_version": __version__}
 
 
 def _modes_of(

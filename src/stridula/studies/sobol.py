@@ -93,7 +93,8 @@ def sensitivity(
         # The two sets are independent draws, the mixed ones are not.
         data |= _probabilities(found["regime"].values[: 2 * samples], confidence)
         coordinates["regime"] = list(REGIMES)
-    return xr.Dataset(data, coordinates, {"confidence": confidence, "samples": samples, "seed": seed})
+    origin = {name: found.attrs[name] for name in ("title", "scenario", "stridula_version") if name in found.attrs}
+    return xr.Dataset(data, coordinates, origin | {"confidence": confidence, "samples": samples, "seed": seed})
 
 
 def _distributions(uncertain: Any) -> dict[str, Any]:
