@@ -25,7 +25,7 @@ from .sweeps import sweep
 
 Point = dict[str, Any]
 Evaluate = Callable[[Sequence[Point]], Sequence[Mapping[str, Value]]]
-# Miss of a target that a failed run, or a measure that is not a number, counts for.
+# Miss of a target that a failed run, or a measure that is not a number, counts for; others come near it.
 WORST = 10.0
 LARGEST_POPULATION = 10_000
 # What else a calibration says.
@@ -45,8 +45,7 @@ class Target:
         Between these it is met; a bound that is left out does not count.
     scale : float, optional
         How far outside counts as a miss of 1, in the unit of the measure: half the width if left out, or a tenth of the
-        only bound. A miss counts up to 10, from where on a search does not see what is nearer: for narrow bounds give a
-        scale of the order of how far off it may begin.
+        only bound. From 5 on misses are pressed together, to stay below the 10 of a run that fails.
 
     Raises
     ------
@@ -79,10 +78,12 @@ class Target:
         return (self.high - self.low) / 2.0
 
     def miss(self, value: Value) -> float:
-        """Return how far a measure is outside, in units of the scale, at most `WORST`."""
+        """Return how far a measure is outside, in units of the scale, below `WORST` where it is a number."""
         if isinstance(value, str) or not math.isfinite(value):
             return WORST
-        return min(WORST, max(0.0, self.low - value, value - self.high) / self._scale)
+        miss = max(0.0, self.low - value, value - self.high) / self._scale
+        # Goes on smoothly and rises for ever: a search sees what is nearer, however narrow the bounds.
+        return miss if miss <= WORST / 2.0 else WORST - (WORST / 2.0) ** 2 / miss
 
 
 @dataclass(frozen=True)
