@@ -87,7 +87,7 @@ logger = logging.getLogger(__name__)
 # The public names that do not live in the package root: module, title, names unless they are its ``__all__``.
 MODULES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("stridula.analysis", "What a record means", ()),
-    ("stridula.plot", "Figures", ("overview", "timeline", "friction", "save")),
+    ("stridula.plot", "Figures", ("overview", "timeline", "friction", "root_loci", "regime_map", "save")),
     ("stridula.scenarios", "More on scenarios", ()),
     ("stridula.studies", "More on ensembles and sweeps", ()),
     ("stridula.papers.laulagnet_2011", "Laulagnet 2011", ()),

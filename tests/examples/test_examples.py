@@ -133,7 +133,39 @@ def test_what_the_stability_page_prints(capsys):
     assert capsys.readouterr().out.strip() == printed.strip()
 
 
-def test_the_readme_shows_the_ten_lines():
+def test_what_the_page_of_maps_shows_runs(tmp_path, monkeypatch):
+    page = (ROOT / "docs" / "maps.rst").read_text(encoding="utf-8")
+    blocks = [textwrap.dedent(b) for b in re.findall(r"code-block:: python\n\n((?: {3}.*\n|\n)+)", page)]
+    assert len(blocks) == 4
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    for block in blocks:
+        exec(block, names)
+    assert 0.635 < float(names["onset"].value) < 0.636
+    assert int(names["counts"].compared) == 12
+    assert names["best"].met.values.tolist() == [True, True]
+    # The way of 50 ms falls by 3.7 mm a unit of friction, from 3.3 mm at 0.3.
+    assert 0.35 < float(names["best"].friction) < 0.45
+    assert float(names["shares"].probability.sum()) == pytest.approx(1.0)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["map.png", "root-loci.png"]
+
+
+def test_what_the_readme_shows_runs(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    for block in shown_in_the_readme():
+        exec(block, names)
+    # The load, by the slope of the track that it bends, adds a slow one.
+    grows = unstable_frequencies(names["system"], sense=1.0).size + 1
+    assert f"\n{grows} modes grow\n" in capsys.readouterr().out
+    assert len(names["forces"]) == 4
+
+
+def shown_in_the_readme() -> list[str]:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    blocks = re.findall(r"^```python\n(.*?)^```$", readme, flags=re.DOTALL | re.MULTILINE)
+    return re.findall(r"^```python\n(.*?)^```$", readme, flags=re.DOTALL | re.MULTILINE)
+
+
+def test_the_readme_shows_the_ten_lines():
+    blocks = shown_in_the_readme()
     assert (ROOT / "examples" / "ten_lines.py").read_text(encoding="utf-8") in blocks

@@ -92,6 +92,11 @@ def test_every_change_of_stability_is_found_along_loci():
         (lambda: st.root_loci(hoffmann_at, "friction", [0.0, np.nan]), "values must be at least 2 finite numbers"),
         (lambda: st.root_loci(hoffmann_at, "friction", "much"), "values must be at least 2 finite numbers"),
         (lambda: st.root_loci("squeal", "frition", [0.1, 0.2]), "did you mean 'friction'"),
+        (lambda: st.root_loci(hoffmann_at, "frequency", [0.1, 0.2]), "key must not be called as a result of the loci"),
+        (
+            lambda: st.root_loci("squeal", "friction", [0.1, 0.2], overrides={"friction": 1.0}),
+            "key must be set or varied, got both for 'friction'",
+        ),
         (lambda: st.root_loci("squeal", "angle", [0.1, 0.2], units="kg"), "slider.angle must be a number in rad or"),
         (lambda: st.root_loci(hoffmann_at, "friction", [0.1, 0.2], highest=0.0), "highest must be above 0"),
         (lambda: st.critical_value(hoffmann_at, "friction", 0.1, 0.2), "got stable at 0.1 and stable at 0.2"),
@@ -106,6 +111,36 @@ def test_bad_arguments(call, message):
         call()
     assert message in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_modes_left_out_of_what_is_followed_still_count():
+    loci = st.root_loci(hoffmann_at, "friction", np.linspace(0.5, 1.0, 6), highest=1e-3)
+    assert loci.sizes["mode"] == 0
+    assert loci["unstable_modes"].values.tolist() == [0, 0, 0, 1, 1, 1]
+    (found,) = critical_values(loci, lambda low, high: st.critical_value(hoffmann_at, "friction", low, high))
+    assert float(found["value"]) == pytest.approx(0.75, abs=1e-6)
+
+
+def test_a_parameter_may_be_a_whole_number():
+    loci = st.root_loci("squeal", "elements", [4, 5], highest=1e3)
+    assert loci["elements"].values.tolist() == [4.0, 5.0]
+
+
+def test_labels_of_critical_values_do_not_cover_each_other():
+    loci = st.root_loci(hoffmann_at, "friction", np.linspace(0.0, 1.0, 5))
+    (real,) = critical_values(loci, lambda low, high: st.critical_value(hoffmann_at, "friction", low, high))
+    near = [real.assign(value=value) for value in (0.5, 0.52, 0.54, 0.99)]
+    above = plot.root_loci(loci, near).axes[0]
+    heights = [text.xy[1] for text in above.texts]
+    assert len(set(heights[:3])) == 3
+    assert [text.get_horizontalalignment() for text in above.texts] == ["left", "left", "left", "right"]
+
+
+def test_what_is_no_root_loci_is_told():
+    with pytest.raises(ValueError, match="loci must be what root_loci returned"):
+        plot.root_loci(st.critical_value(hoffmann_at, "friction", 0.5, 1.0))
+    with pytest.raises(ValueError, match="loci must be a Dataset"):
+        plot.root_loci(0.5)
 
 
 def test_figure_shows_modes_bands_and_critical_values():

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
+import xarray as xr
+from matplotlib.collections import QuadMesh
+from matplotlib.colors import to_rgba
+from matplotlib.contour import ContourSet
 
 import stridula as st
 from stridula import analysis, plot
+from stridula.plot.colours import FAILED_COLOUR, REGIME_COLOURS
 
 LAWS = {
     "Coulomb, 0.4": st.Coulomb(0.4),
@@ -111,8 +118,6 @@ def test_each_contact_has_its_ribbon_the_first_on_top(two):
 
 
 def rgb(status):
-    from matplotlib.colors import to_rgba
-
     return to_rgba(plot.STATUS_COLOURS[status])
 
 
@@ -138,3 +143,96 @@ def test_measures_ask_which_contact(two, measure):
     with pytest.raises(ValueError, match=r"must be of one contact, got those of 'never', 'always': choose one with "):
         measure(two)
     measure(two.sel(contact="always"))
+
+
+def a_sweep(regimes, grows=None, kinds=None, x=(0.1, 0.2, 0.3), y=(10.0, 20.0)):
+    """Return what a sweep over friction and angle would, made by hand."""
+    shape = (len(x), len(y))
+    grows = np.zeros(shape) if grows is None else np.asarray(grows, dtype=float)
+    kinds = np.full(shape, "sliding", dtype=object) if kinds is None else np.array(kinds, dtype=object)
+    both = ("friction", "angle")
+    data = {
+        "regime": (both, np.array(regimes, dtype=object).reshape(shape)),
+        "unstable_modes": (both, grows),
+        "growth_rate": (both, np.where(grows > 0, 10.0 * np.arange(1.0, grows.size + 1).reshape(shape), -1.0)),
+        "equilibrium": (both, kinds),
+    }
+    axes = {"friction": ("friction", list(x), {"units": "1"}), "angle": ("angle", list(y), {"units": "deg"})}
+    return xr.Dataset(data, axes, {"title": "By hand"})
+
+
+def drawn_map(found):
+    """Return the axes, the colour of each cell over x and y, and the words of the legend."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        figure = plot.regime_map(found)
+        figure.canvas.draw()
+    (axes,) = figure.axes
+    mesh = next(one for one in axes.collections if isinstance(one, QuadMesh))
+    colours = mesh.to_rgba(mesh.get_array()).transpose(1, 0, 2)
+    return axes, colours, [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def test_a_map_has_a_colour_for_each_regime_and_counts_them():
+    found = a_sweep([["squeal", "squeal"], ["judder", ""], ["stable sliding", "squeal"]])
+    axes, colours, words = drawn_map(found)
+    for at, word in {(0, 0): "squeal", (1, 0): "judder", (2, 0): "stable sliding", (2, 1): "squeal"}.items():
+        np.testing.assert_allclose(colours[at], to_rgba(REGIME_COLOURS[word]), atol=1e-6)
+    np.testing.assert_allclose(colours[1, 1], to_rgba(FAILED_COLOUR), atol=1e-6)
+    assert words == ["stable sliding (1)", "squeal (3)", "judder (1)", "failed (1)"]
+    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_title()) == ("friction", "angle [deg]", "By hand")
+    assert axes.get_xlim() == pytest.approx((0.05, 0.35))
+
+
+def test_bounds_of_linear_theory_lie_between_cells():
+    kinds = [["sliding", "sliding"], ["sliding", "held"], ["held", "held"]]
+    found = a_sweep(["squeal"] * 6, grows=[[0, 0], [2, 0], [2, 0]], kinds=kinds)
+    axes, _, words = drawn_map(found)
+    assert words[1:] == ["linear theory: bound of growth", "linear theory: bound of steady sliding"]
+    growth, *_, sliding = (one for one in axes.collections if isinstance(one, ContourSet))
+    (line,) = growth.get_paths()
+    # Up between the first two values of friction, then along between those of the angle.
+    corners = {(round(x, 6), round(y, 6)) for x, y in line.vertices.tolist()}
+    assert {(0.15, 5.0), (0.15, 15.0), (0.35, 15.0)} <= corners
+    assert {x for x, y in corners if y < 15.0} == {0.15}
+    assert growth.get_linewidths()[0] > sliding.get_linewidths()[0]
+    # Elsewhere the bound of sliding lies: it turns where held begins.
+    assert (0.15, 25.0) in {(round(x, 6), round(y, 6)) for x, y in sliding.get_paths()[0].vertices.tolist()}
+
+
+def test_a_mode_that_grows_everywhere_is_said_and_has_contours():
+    axes, _, words = drawn_map(a_sweep(["squeal"] * 6, grows=np.ones((3, 2))))
+    assert words == ["squeal (6)", "linear theory: a mode grows everywhere"]
+    labels = {text.get_text() for text in axes.texts}
+    assert labels <= {"20 /s", "40 /s"}
+    assert labels
+
+
+def test_all_cells_may_have_failed():
+    _, colours, words = drawn_map(a_sweep([""] * 6, grows=np.full((3, 2), np.nan), kinds=[["", ""]] * 3))
+    assert words == ["failed (6)"]
+    np.testing.assert_allclose(colours, np.broadcast_to(to_rgba(FAILED_COLOUR), colours.shape))
+
+
+def test_numbers_are_drawn_in_rising_order_and_words_as_they_come():
+    regimes = ["squeal", "judder", "sticking", "stick-slip", "stable sliding", "squeal"]
+    axes, colours, _ = drawn_map(a_sweep(regimes, x=(0.3, 0.1, 0.2), y=("guided", "clamped")))
+    np.testing.assert_allclose(colours[0, 0], to_rgba(REGIME_COLOURS["sticking"]), atol=1e-6)
+    np.testing.assert_allclose(colours[2, 1], to_rgba(REGIME_COLOURS["judder"]), atol=1e-6)
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["guided", "clamped"]
+    twice, _, _ = drawn_map(a_sweep(regimes, x=(0.1, 0.1, 0.1)))
+    assert twice.get_xlim() == pytest.approx((-0.4, 0.6))
+
+
+@pytest.mark.parametrize(
+    ("found", "message"),
+    [
+        (3, "found must be a Dataset, got 3"),
+        (xr.Dataset(), "over two parameters of at least 2 values each, got none"),
+        (a_sweep(["squeal"] * 6).isel(angle=[0]), r"got {'friction': 3, 'angle': 1}"),
+        (a_sweep(["squeal"] * 6).isel(angle=0), r"got {'friction': 3}"),
+    ],
+)
+def test_what_is_no_map_is_told(found, message):
+    with pytest.raises(ValueError, match=message):
+        plot.regime_map(found)

@@ -201,7 +201,8 @@ def calibrate_(
         list[str], typer.Option(metavar="KEY=LOW:HIGH", help="Where to search; KEY=LOW:HIGH:log in ratios.")
     ],
     target: Annotated[
-        list[str], typer.Option(metavar="NAME=LOW:HIGH", help="What a measure should be; an end may be left out.")
+        list[str],
+        typer.Option(metavar="NAME=LOW:HIGH", help="What a measure should be; an end may be left out; or NAME=WORD."),
     ],
     set_: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point.")
@@ -247,14 +248,17 @@ def sensitivity_(
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the points.")] = 0,
     out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the indices, as NetCDF.")] = None,
     workers: Annotated[int | None, typer.Option(metavar="N", help="Parts at a time.")] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="Go ahead with more than 10 000 points.")] = False,
 ) -> None:
     """Say which uncertain parameter moves the outcome most, and how likely each regime is."""
-    from .points import ranges_of
+    from .points import check_count, ranges_of
     from .searching import sensitivity_of_scenario
 
+    ranges = ranges_of(vary)
+    check_count(samples * (len(ranges) + 2), yes)
     line = sensitivity_of_scenario(
         name,
-        ranges_of(vary),
+        ranges,
         measure or [],
         _pairs(set_ or []),
         out,

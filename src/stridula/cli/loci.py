@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+import xarray as xr
+
 from ..records.files import save as save_file
-from ..scenarios.quantities import parts
-from ..studies.loci import critical_value, critical_values, root_loci
-from .points import grid_of
+from ..studies.loci import critical_value, critical_values, parameter_of, root_loci
+from .points import numbers_of
 from .running import check_outputs
+from .stability import KINDS
 
 
 def print_loci(
@@ -22,25 +25,14 @@ def print_loci(
 ) -> None:
     """Print where stability changes over a parameter, and draw or write the modes over it if asked to."""
     check_outputs(out, plot)
-    ((key, values),) = grid_of([vary], yes=False).values.items()
-    known = [parts(value) for value in values]
-    numbers, units = [found[0] for found in known if found], {found[1] for found in known if found}
-    if None in known or len(units) != 1 or len(numbers) < 2:
-        raise ValueError(f"--vary must give at least 2 numbers of one unit here, got {vary!r}")
-    unit = units.pop()
+    key, numbers, unit = numbers_of(vary)
     about = {"units": unit, "overrides": overrides, **options}
     loci = root_loci(name, key, numbers, highest=highest, **about)
     critical = critical_values(loci, lambda low, high: critical_value(name, key, low, high, **about))
     for one in critical:
-        value, width = float(one["value"]), abs(float(one["unstable"]) - float(one["stable"]))
-        rises = float(one["unstable"]) > float(one["stable"])
-        print(
-            f"{'unstable' if rises else one.attrs['beyond']} from {key} = {value:.7g} {unit}".rstrip()
-            + f" (within {width:.1g}) on, at {float(one['frequency']):.5g} Hz"
-        )
+        print(_change(one, key, unit))
     if not critical:
-        grows = bool(loci["unstable"].any())
-        print(f"{'unstable' if grows else 'stable'} at all {len(numbers)} values of {key}")
+        print(_unchanged(loci))
     if out is not None:
         save_file(loci, out)
     if plot is not None:
@@ -48,3 +40,23 @@ def print_loci(
         from ..plot import save
 
         save(draw(loci, critical), plot)
+
+
+def _change(one: xr.Dataset, key: str, unit: str) -> str:
+    """Return a line that says from where on what holds."""
+    width, beyond = abs(float(one["unstable"]) - float(one["stable"])), str(one.attrs["beyond"])
+    place = f"{key} = {float(one['value']):.7g} {unit}".rstrip() + f" (within {width:.1g}) on"
+    if float(one["unstable"]) > float(one["stable"]):
+        before = "" if beyond == "stable" else f"; {beyond} before"
+        return f"unstable from {place}, at {float(one['frequency']):.5g} Hz{before}"
+    # What jams or is held has no frequency.
+    return f"{beyond} from {place}" + (f", at {float(one['frequency']):.5g} Hz" if beyond == "stable" else "")
+
+
+def _unchanged(loci: xr.Dataset) -> str:
+    """Return a line that says what holds at all values."""
+    key, kinds = parameter_of(loci), loci["equilibrium"].values
+    if bool((loci["unstable_modes"] > 0).all()):
+        return f"unstable at all {kinds.size} values of {key}"
+    words = [f"{KINDS[kind].partition(':')[0]} at {np.count_nonzero(kinds == kind)}" for kind in dict.fromkeys(kinds)]
+    return f"no mode grows at any of the {kinds.size} values of {key}: {', '.join(words)}"

@@ -7,6 +7,7 @@ import io
 import math
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -78,16 +79,30 @@ def points_of(vary: list[str], sample: int | None, seed: int | None, table: str 
         if sample is not None:
             raise ValueError("--sample must go with --vary, got --points")
         rows = _rows(table)
-        _check_count(len(rows), yes)
+        check_count(len(rows), yes)
         return rows
     if sample is None:
-        return grid_of(vary, yes)
+        return _grid(_asked(vary, is_sampled=False), yes)
     return _hypercube(_asked(vary, is_sampled=True), sample, seed, yes)
 
 
-def grid_of(vary: list[str], yes: bool) -> Grid:
-    """Return the grid that ``KEY=START:STOP:COUNT`` and ``KEY=A,B,C`` ask for; more than 10 000 points take `yes`."""
-    return _grid(_asked(vary, is_sampled=False), yes)
+def numbers_of(text: str) -> tuple[str, list[float], str]:
+    """Return the key, the numbers and the unit that ``KEY=START:STOP:COUNT`` or ``KEY=A,B,C`` ask for.
+
+    Raises
+    ------
+    ValueError
+        If they are not at least 2 rising numbers of one unit, or more than 10 000.
+    """
+    ((key, asked),) = _asked([text], is_sampled=False).items()
+    if isinstance(asked, Span) and (asked.count or 1) > MANY:
+        raise ValueError(f"--vary must have a COUNT of at most {MANY} here, got {text!r}")
+    known = [parts(value) for value in (asked.values() if isinstance(asked, Span) else asked)]
+    numbers, units = [one[0] for one in known if one], {one[1] for one in known if one}
+    rises = all(one < other for one, other in pairwise(numbers))
+    if None in known or len(units) != 1 or len(numbers) < 2 or not rises:
+        raise ValueError(f"--vary must give at least 2 rising numbers of one unit here, got {text!r}")
+    return key, numbers, units.pop()
 
 
 def _asked(vary: list[str], is_sampled: bool) -> dict[str, Span | list[str]]:
@@ -113,9 +128,9 @@ def ranges_of(vary: list[str]) -> dict[str, Range]:
     found: dict[str, Range] = {}
     for text in vary:
         key, equals, values = (part.strip() for part in text.partition("="))
-        ends, colon, word = values.rpartition(":")
+        ends, _, word = values.rpartition(":")
         logarithmic = word.strip() == "log"
-        if not equals or not key or not colon:
+        if not equals or not key or (ends if logarithmic else values).count(":") != 1:
             raise ValueError(f"--vary must be KEY=LOW:HIGH or KEY=LOW:HIGH:log, got {text!r}")
         if key in found:
             raise ValueError(f"--vary must name each key once, got {key!r} twice")
@@ -128,7 +143,7 @@ def ranges_of(vary: list[str]) -> dict[str, Range]:
 
 
 def _hypercube(asked: dict[str, Span | list[str]], sample: int, seed: int | None, yes: bool) -> LatinHypercube:
-    _check_count(sample, yes)
+    check_count(sample, yes)
     for key, given in asked.items():
         if not isinstance(given, Span):
             raise ValueError(f"--vary must be KEY=START:STOP with --sample, got a list for {key!r}")
@@ -137,13 +152,14 @@ def _hypercube(asked: dict[str, Span | list[str]], sample: int, seed: int | None
 
 
 def _grid(asked: dict[str, Span | list[str]], yes: bool) -> Grid:
-    _check_count(
+    check_count(
         math.prod((given.count or 1) if isinstance(given, Span) else len(given) for given in asked.values()), yes
     )
     return Grid({key: given.values() if isinstance(given, Span) else given for key, given in asked.items()})
 
 
-def _check_count(count: int, yes: bool) -> None:
+def check_count(count: int, yes: bool) -> None:
+    """Raise ValueError if there are more than 10 000 points and nobody said yes."""
     if count > MANY and not yes:
         raise ValueError(f"a sweep of more than {MANY} points must be confirmed with --yes, got {count} points")
 

@@ -17,9 +17,11 @@ WIDTH = 150
 def print_agreement(found: xr.Dataset) -> None:
     """Print how often each regime was seen under each verdict of linear theory, and how often the two agree."""
     counts = agreement(found)
+    seen = [str(word) for word in counts["regime"].values if int(counts["runs"].sel(regime=word).sum())]
+    if not seen:
+        return
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("runs by linear theory")
-    seen = [str(word) for word in counts["regime"].values if int(counts["runs"].sel(regime=word).sum())]
     for word in seen:
         table.add_column(word, justify="right")
     for verdict in counts["verdict"].values:
@@ -29,6 +31,8 @@ def print_agreement(found: xr.Dataset) -> None:
     console = Console()
     if not console.is_terminal:
         console = Console(width=WIDTH)
+    # A title of the table would be folded to its width.
+    console.print("Runs by linear theory and regime")
     console.print(table)
     agree, compared, missed, false = (int(counts[word]) for word in ("agree", "compared", "missed", "false_alarms"))
     if compared:

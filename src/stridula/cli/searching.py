@@ -15,11 +15,13 @@ from rich.table import Table
 
 from ..disk import check_writable, write
 from ..records.files import save as save_file
-from ..records.provenance import scenario_toml
-from ..scenarios.load import load_scenario
+from ..scenarios.keys import overridden
+from ..scenarios.load import with_matrices
+from ..scenarios.read import read_tables
+from ..scenarios.show import text_of
 from ..studies.calibration import CalibrationProgress, Target, calibrate
 from ..studies.points import Range
-from ..studies.sobol import sensitivity
+from ..studies.sobol import FEWEST, sensitivity
 from .exits import INTERRUPTED, Stopped
 
 # Of a file or a pipe; a terminal has its own.
@@ -37,7 +39,7 @@ def calibrate_scenario(
     """Search parameters that meet targets, print them, write the scenario, and return whether all targets are met."""
     if out is not None:
         check_writable(out)
-    aimed = dict(target_of(text) for text in targets)
+    aimed = targets_of(targets)
     best: dict[str, Any] = {}
 
     def follow(progress: CalibrationProgress) -> None:
@@ -56,52 +58,61 @@ def calibrate_scenario(
     _print_calibration(found, ranges, aimed)
     if out is not None:
         values = {key: _written(float(found[key]), one.unit) for key, one in ranges.items()}
-        _write_scenario(name, overrides | values, out)
+        if options.get("duration") is not None:
+            values["simulation.duration"] = options["duration"]
+        # Runs side by side share a step.
+        values["simulation.step"] = float(found["step"])
+        values["simulation.sample_rate"] = 1.0 / float(found["sample_interval"])
+        # Keys are known by now, and all problems with them.
+        tables, _ = overridden(read_tables(name), overrides | values)
+        write(out, text_of(with_matrices(tables, tables)).encode())
     return bool(found["met"].all())
 
 
-def target_of(text: str) -> tuple[str, Target | str]:
-    """Return what ``NAME=LOW:HIGH``, with an end left out or not, or ``NAME=WORD`` asks for."""
-    name, equals, wanted = (part.strip() for part in text.partition("="))
-    if not equals or not name or not wanted:
-        raise ValueError(f"--target must be NAME=LOW:HIGH or NAME=WORD, got {text!r}")
-    low, colon, high = (part.strip() for part in wanted.partition(":"))
-    if not colon:
-        return name, wanted
+def targets_of(texts: list[str]) -> dict[str, Target | str]:
+    """Return what ``NAME=LOW:HIGH``, an end left out or not, ``NAME=LOW:HIGH:SCALE`` or ``NAME=WORD`` ask for.
+
+    Raises
+    ------
+    ValueError
+        If one is anything else, or a measure comes twice.
+    """
+    found: dict[str, Target | str] = {}
+    for text in texts:
+        name, equals, wanted = (part.strip() for part in text.partition("="))
+        pieces = [piece.strip() for piece in wanted.split(":")]
+        if not equals or not name or not wanted or len(pieces) > 3:
+            raise ValueError(f"--target must be NAME=LOW:HIGH, NAME=LOW:HIGH:SCALE or NAME=WORD, got {text!r}")
+        if name in found:
+            raise ValueError(f"--target must name each measure once, got {name!r} twice")
+        found[name] = wanted if len(pieces) == 1 else _bounds(text, pieces)
+    return found
+
+
+def _bounds(text: str, pieces: list[str]) -> Target:
+    """Return the target between two ends, and its scale."""
     try:
-        return name, Target(float(low) if low else -math.inf, float(high) if high else math.inf)
+        low, high, scale = (float(piece) if piece else None for piece in [*pieces, ""][:3])
+    except ValueError:
+        raise ValueError(f"--target must have numbers for LOW, HIGH and SCALE, in SI, got {text!r}") from None
+    try:
+        return Target(-math.inf if low is None else low, math.inf if high is None else high, scale)
     except ValueError as error:
-        raise ValueError(f"--target must have numbers for LOW and HIGH, got {text!r}: {error}") from None
+        raise ValueError(f"--target {text}: {error}") from None
 
 
 def _written(number: float, unit: str) -> float | str:
     return f"{number!r} {unit}" if unit else number
 
 
-def _write_scenario(name: str, overrides: dict[str, Any], out: str) -> None:
-    scenario = load_scenario(name, overrides)
-    simulation: dict[str, Any] = {
-        "duration": scenario.duration,
-        "scheme": scenario.scheme.name,
-        "sample_rate": scenario.sample_rate,
-    }
-    if scenario.step is not None:
-        simulation["step"] = scenario.step
-    text = scenario_toml(scenario.system, scenario.probes or (), simulation)
-    write(out, text.encode())
-
-
 def _print_calibration(found: xr.Dataset, ranges: dict[str, Range], targets: dict[str, Target | str]) -> None:
     console = _console()
-    table = Table(title="parameters", title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    for head in ("key", "value", "searched"):
-        table.add_column(head)
+    table = _table("key", "value", "searched")
     for key, one in ranges.items():
-        table.add_row(escape(key), f"{float(found[key]):.6g} {one.unit}".strip(), f"{one.low} to {one.high}")
+        searched = f"{one.number(0.0):.6g} to {one.number(1.0):.6g} {one.unit}".strip()
+        table.add_row(escape(key), f"{float(found[key]):.6g} {one.unit}".strip(), searched)
     console.print(table)
-    table = Table(title="targets", title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    for head in ("measure", "found", "wanted", "met"):
-        table.add_column(head)
+    table = _table("measure", "found", "wanted", "met")
     for (name, target), met in zip(targets.items(), found["met"].values, strict=True):
         value = found[name].item()
         shown = value if isinstance(value, str) else f"{value:.5g}"
@@ -118,9 +129,15 @@ def sensitivity_of_scenario(
         check_writable(out)
     found = sensitivity(name, ranges, measures or ["regime"], overrides=overrides, **options)
     console = _console()
-    if "probability" in found:
+    if "probability" in found and np.isfinite(found["probability"].values).all():
+        console.print("How likely each regime is")
         console.print(_probabilities(found))
-    console.print(_indices(found))
+    indices = _indices(found)
+    if indices.row_count:
+        console.print("Share of the variance that each value makes alone (in all), with intervals")
+        console.print(indices)
+    else:
+        console.print(_why_no_indices(found))
     if out is not None:
         save_file(found, out)
     runs, failed = int(found["runs"]), int(found["failed"])
@@ -129,8 +146,7 @@ def sensitivity_of_scenario(
 
 def _probabilities(found: xr.Dataset) -> Table:
     level = f"{100.0 * found.attrs['confidence']:g} % interval"
-    table = Table(title="how likely each regime is", title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("regime")
+    table = _table("regime")
     for head in ("probability", level):
         table.add_column(head, justify="right")
     for word in found["regime"].values:
@@ -141,10 +157,7 @@ def _probabilities(found: xr.Dataset) -> Table:
 
 
 def _indices(found: xr.Dataset) -> Table:
-    table = Table(
-        title="share of the variance: alone (in all), with intervals", title_justify="left", box=box.SIMPLE_HEAD
-    )
-    table.add_column("output", overflow="fold")
+    table = _table("output")
     for key in found["parameter"].values:
         table.add_column(escape(str(key)), overflow="fold", justify="right")
     for name in found["output"].values:
@@ -160,6 +173,21 @@ def _indices(found: xr.Dataset) -> Table:
                 f"({float(at['total_order']):.2f} [{c:.2f}, {d:.2f}])".replace("[", "\\[")
             )
         table.add_row(escape(str(name)), *cells)
+    return table
+
+
+def _why_no_indices(found: xr.Dataset) -> str:
+    """Return why no output has indices."""
+    used = int(found["used"].max()) if found.sizes["output"] else 0
+    if used < FEWEST:
+        return f"No shares of the variance: they take {FEWEST} samples in which all runs give numbers, got {used}."
+    return "No shares of the variance: nothing varies."
+
+
+def _table(*heads: str) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for head in heads:
+        table.add_column(head, overflow="fold")
     return table
 
 

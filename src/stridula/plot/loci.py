@@ -9,9 +9,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..bodies.modes import Array
+from ..checks import instance
 from .colours import LINE, LINES
 
 UNSTABLE = LINES[1]
+# Share of the axis that a label takes.
+LABEL_WIDTH = 0.09
 # Words for what is no steady sliding, drawn as bands.
 BANDS = {"held": "#cccccc", "lifted off": "#56b4e9", "jammed": "#cc79a7"}
 
@@ -33,7 +37,16 @@ def root_loci(loci: xr.Dataset, critical: Sequence[xr.Dataset] = ()) -> Figure:
     -------
     matplotlib.figure.Figure
         Save it with `save`.
+
+    Raises
+    ------
+    ValueError
+        If they are no root loci.
     """
+    instance("loci", loci, xr.Dataset)
+    lacking = [name for name in ("frequency", "growth_rate", "unstable", "equilibrium") if name not in loci]
+    if lacking or loci["equilibrium"].ndim != 1:
+        raise ValueError(f"loci must be what root_loci returned, got {', '.join(map(str, loci.data_vars))}")
     key = str(loci["equilibrium"].dims[0])
     figure = Figure(figsize=(8.0, 7.0), layout="constrained", dpi=120)
     above, below = figure.subplots(2, 1, sharex=True)
@@ -47,18 +60,7 @@ def root_loci(loci: xr.Dataset, critical: Sequence[xr.Dataset] = ()) -> Figure:
         axes.margins(x=0.0)
     above.set_ylim(bottom=0.0)
     _scale_growth(below, loci)
-    for one in critical:
-        value, frequency = float(one["value"]), float(one["frequency"])
-        above.annotate(
-            f"{value:.4g}\n{frequency:.0f} Hz",
-            (value, 0.98),
-            (3, 0),
-            xycoords=("data", "axes fraction"),
-            textcoords="offset points",
-            va="top",
-            fontsize=8,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
-        )
+    _name_critical(above, loci[key].values, critical)
     below.set_xlabel(_label(key, loci[key]))
     present = set(loci["equilibrium"].values)
     _legend(above, [kind for kind in BANDS if kind in present])
@@ -70,7 +72,29 @@ def _draw_modes(axes: Axes, loci: xr.Dataset, key: str, name: str) -> None:
     grows = loci["unstable"].values
     axes.plot(grid, values, color=LINE, linewidth=0.8)
     # A mode that grows at one value only still has a mark.
-    axes.plot(grid, np.where(grows, values, np.nan), color=UNSTABLE, linewidth=2.2, marker=".", markersize=3)
+    drawn = np.where(grows, values, np.nan)
+    axes.plot(grid, drawn, color=UNSTABLE, linewidth=2.2, marker="o", markersize=2.2, markeredgewidth=0.0)
+
+
+def _name_critical(axes: Axes, grid: Array, critical: Sequence[xr.Dataset]) -> None:
+    """Write at each critical value where it is and what vibrates, below the last label if that is in the way."""
+    reach, width, row = -np.inf, LABEL_WIDTH * float(grid[-1] - grid[0]), 0
+    for one in sorted(critical, key=lambda one: float(one["value"])):
+        value, beyond = float(one["value"]), str(one.attrs["beyond"])
+        row = row + 1 if value < reach else 0
+        is_last = value + width > grid[-1]
+        reach = value + (0.0 if is_last else width)
+        axes.annotate(
+            f"{value:.4g}\n{float(one['frequency']):.0f} Hz" if beyond == "stable" else f"{value:.4g}\n{beyond}",
+            (value, 0.98 - 0.1 * row),
+            (-3 if is_last else 3, 0),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            ha="right" if is_last else "left",
+            va="top",
+            fontsize=8,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
+        )
 
 
 def _draw_bands(axes: Axes, loci: xr.Dataset, key: str) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -11,10 +13,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ..bodies.modes import Array
+from ..checks import instance
 from .colours import FAILED_COLOUR, REGIME_COLOURS
 
-# Growth rates at which contours are drawn, as percentiles of those on the map, and the fewest that give any.
-PERCENTILES, FEWEST = (15.0, 45.0, 75.0), 8
+# Growth rates at which contours are drawn, as percentiles of those on the map.
+PERCENTILES = (15.0, 45.0, 75.0)
 
 
 def regime_map(found: xr.Dataset) -> Figure:
@@ -22,7 +25,7 @@ def regime_map(found: xr.Dataset) -> Figure:
 
     The first parameter is along x. A thick line bounds where linear theory has a mode that grows, thin ones are
     contours of its growth rate [1/s]; a dashed line bounds where it has a contact that slides steadily. Where colours
-    and lines do not go together, the two disagree.
+    and lines do not go together, the two disagree. Numbers are drawn in rising order, words as they come.
 
     Parameters
     ----------
@@ -39,22 +42,23 @@ def regime_map(found: xr.Dataset) -> Figure:
     ValueError
         If there is no regime over two parameters of at least 2 values each.
     """
+    instance("found", found, xr.Dataset)
     if "regime" not in found or found["regime"].ndim != 2 or min(found["regime"].shape) < 2:
         shape = dict(found["regime"].sizes) if "regime" in found else "none"
         raise ValueError(f"found must have the regime over two parameters of at least 2 values each, got {shape}")
     across, along = (str(name) for name in found["regime"].dims)
+    found = _in_order(_in_order(found, across), along)
     figure = Figure(figsize=(8.0, 6.0), layout="constrained", dpi=120)
     axes = figure.subplots()
     codes = _codes(found["regime"].values)
     colours = [*REGIME_COLOURS.values(), FAILED_COLOUR]
     norm = BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours))
-    x, y = found[across].values, found[along].values
-    axes.pcolormesh(x, y, codes.T, cmap=ListedColormap(colours), norm=norm, shading="nearest", rasterized=True)
+    x, y = _places(found, across), _places(found, along)
+    axes.pcolormesh(_edges(x), _edges(y), codes.T, cmap=ListedColormap(colours), norm=norm, rasterized=True)
     lines = _draw_linear(axes, found, x, y)
-    axes.set_xlabel(_label(found, across))
-    axes.set_ylabel(_label(found, along))
-    title = str(found.attrs.get("title", ""))
-    axes.set_title(title, fontsize=11)
+    _name_axis(axes, found, across, "x")
+    _name_axis(axes, found, along, "y")
+    axes.set_title(str(found.attrs.get("title", "")), fontsize=11)
     patches = [
         Patch(facecolor=colour, edgecolor="0.5", linewidth=0.5, label=f"{word} ({np.count_nonzero(codes == k)})")
         for k, (word, colour) in enumerate([*REGIME_COLOURS.items(), ("failed", FAILED_COLOUR)])
@@ -62,6 +66,30 @@ def regime_map(found: xr.Dataset) -> Figure:
     ]
     figure.legend(handles=[*patches, *lines], loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     return figure
+
+
+def _in_order(found: xr.Dataset, key: str) -> xr.Dataset:
+    """Return a sweep with the numbers of a key rising, each once."""
+    if not _is_number(found, key):
+        return found
+    return found.isel({key: np.unique(found[key].values, return_index=True)[1]})
+
+
+def _is_number(found: xr.Dataset, key: str) -> bool:
+    return found[key].dtype.kind in "fiu"
+
+
+def _places(found: xr.Dataset, key: str) -> Array:
+    """Return where the values of a key lie on their axis: numbers where they are, words one beside another."""
+    return found[key].values.astype(float) if _is_number(found, key) else np.arange(found.sizes[key], dtype=float)
+
+
+def _edges(places: Array) -> Array:
+    """Return the bounds of cells about their places: halfway between them, the outer ones as far on the other side."""
+    if places.size == 1:
+        return np.array([places[0] - 0.5, places[0] + 0.5])
+    middle = 0.5 * (places[1:] + places[:-1])
+    return np.concatenate([[2.0 * places[0] - middle[0]], middle, [2.0 * places[-1] - middle[-1]]])
 
 
 def _codes(regimes: Array) -> Array:
@@ -78,31 +106,50 @@ def _draw_linear(axes: Axes, found: xr.Dataset, x: Array, y: Array) -> list[Line
         return []
     handles: list[Line2D] = []
     slides = found["equilibrium"].values == "sliding"
-    grows = np.where(slides, found["unstable_modes"].values > 0, np.nan)
-    if np.nanmin(grows, initial=1.0) < np.nanmax(grows, initial=0.0):
-        # Bounds lie halfway between points: a level of a growth rate would be drawn by how fast it falls beside.
-        axes.contour(x, y, grows.T, levels=[0.5], colors="black", linewidths=2.0)
-        handles.append(Line2D([], [], color="black", linewidth=2.0, label="linear theory: a mode begins to grow"))
-    rates = np.where(grows == 1.0, found["growth_rate"].values, np.nan)
-    levels = _round_levels(rates[np.isfinite(rates)])
-    if levels:
-        drawn = axes.contour(x, y, rates.T, levels=levels, colors="black", linewidths=0.7)
-        axes.clabel(drawn, fontsize=7, fmt="%g /s")
-        handles.append(Line2D([], [], color="black", linewidth=0.7, label="its growth rate"))
+    grows = slides & (np.nan_to_num(found["unstable_modes"].values) > 0)
+    if grows.any():
+        words = "linear theory: bound of growth" if not grows.all() else "linear theory: a mode grows everywhere"
+        # Where sliding ends, growth does, too: that bound is another.
+        handles.append(_draw_bound(axes, np.where(slides, grows, np.nan), x, y, "-", words))
+        drawn = _draw_growth(axes, np.where(grows, found["growth_rate"].values, np.nan), x, y)
+        handles += [Line2D([], [], color="black", linewidth=0.7, label="its growth rate")] if drawn else []
     if slides.any() and not slides.all():
-        axes.contour(x, y, slides.T.astype(float), levels=[0.5], colors="black", linewidths=1.2, linestyles="--")
         words = "linear theory: bound of steady sliding"
-        handles.append(Line2D([], [], color="black", linewidth=1.2, linestyle="--", label=words))
+        handles.append(_draw_bound(axes, slides.astype(float), x, y, "--", words))
     return handles
+
+
+def _draw_bound(axes: Axes, inside: Array, x: Array, y: Array, style: str, words: str) -> Line2D:
+    """Draw the sides of cells that part those inside, 1, from the others, 0, and return the handle of the legend."""
+    look: dict[str, Any] = {"linewidth": 2.2 if style == "-" else 1.4, "linestyle": style}
+    if np.nanmin(inside) < np.nanmax(inside):
+        # Each cell with its own corners: the level between two of them lies on the side that they share.
+        across, along = (np.repeat(_edges(places), 2)[1:-1] for places in (x, y))
+        cells = np.repeat(np.repeat(inside, 2, axis=0), 2, axis=1)
+        widths, styles = look.values()
+        axes.contour(across, along, cells.T, levels=[0.5], colors="black", linewidths=widths, linestyles=styles)
+    return Line2D([], [], color="black", label=words, **look)
+
+
+def _draw_growth(axes: Axes, rates: Array, x: Array, y: Array) -> bool:
+    """Draw contours of the growth rate where there are any to be seen, and return whether there are."""
+    known = rates[np.isfinite(rates)]
+    levels = [level for level in _round_levels(known) if known.min() < level < known.max()]
+    if min(rates.shape) < 2 or not levels:
+        return False
+    drawn = axes.contour(x, y, rates.T, levels=levels, colors="black", linewidths=0.7)
+    axes.clabel(drawn, fontsize=7, fmt="%g /s")
+    return True
 
 
 def _round_levels(rates: Array) -> list[float]:
     """Return growth rates that part all evenly, rounded; they may rise without bound where sliding jams."""
-    if rates.size < FEWEST:
-        return []
     return sorted({float(f"{rate:.1g}") for rate in np.percentile(rates, PERCENTILES)})
 
 
-def _label(found: xr.Dataset, key: str) -> str:
+def _name_axis(axes: Axes, found: xr.Dataset, key: str, name: str) -> None:
     units = str(found[key].attrs.get("units", ""))
-    return f"{key} [{units}]" if units and units != "1" else key
+    axis = axes.xaxis if name == "x" else axes.yaxis
+    axis.set_label_text(f"{key} [{units}]" if units and units != "1" else key)
+    if not _is_number(found, key):
+        axis.set_ticks(range(found.sizes[key]), labels=[str(value) for value in found[key].values])

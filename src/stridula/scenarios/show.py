@@ -21,7 +21,11 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 def scenario_text(name_or_path: str | FilePath | xr.Dataset) -> str:
     """Return a scenario as complete TOML, its base merged in and every key explained, to copy and edit."""
-    tables = read_tables(name_or_path)
+    return text_of(read_tables(name_or_path))
+
+
+def text_of(tables: dict[str, Any]) -> str:
+    """Return the tables of a scenario as TOML, every key explained."""
     return "\n".join(_lines(tables, (), tables)).strip() + "\n"
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,16 +14,25 @@ import scipy.optimize
 import scipy.stats
 import xarray as xr
 
+from ..analysis.equilibrium import HELD, JAMMED, LIFTED_OFF
+from ..analysis.regimes import REGIMES
+from ..analysis.structure import SLIDING
 from ..bodies.modes import Array
-from ..checks import count, instance, non_negative, positive, suggestion
-from .measures import MEASURES, Value
+from ..checks import choice, count, instance, non_negative, positive, suggestion
+from .measures import MEASURES, Value, value_of
 from .points import Range, ranges_of
 from .sweeps import sweep
 
 Point = dict[str, Any]
 Evaluate = Callable[[Sequence[Point]], Sequence[Mapping[str, Value]]]
-# Miss of a target that a failed run, or a measure that is not a number, counts for.
+# Miss of a target that a failed run, or a measure that is not a number, counts for; others come near it.
 WORST = 10.0
+LARGEST_POPULATION = 10_000
+# What else a calibration says.
+OWN = ("miss", "met", "target", "generation", "parameter", "best_miss", "best_parameters")
+COLUMNS = {column.name: column for measure in MEASURES.values() for column in measure.columns}
+# What measures that are words can be.
+WORDS = {"regime": tuple(REGIMES), "equilibrium": (SLIDING, HELD, LIFTED_OFF, JAMMED)}
 
 
 @dataclass(frozen=True)
@@ -35,7 +45,7 @@ class Target:
         Between these it is met; a bound that is left out does not count.
     scale : float, optional
         How far outside counts as a miss of 1, in the unit of the measure: half the width if left out, or a tenth of the
-        only bound.
+        only bound. From 5 on misses are pressed together, to stay below the 10 of a run that fails.
 
     Raises
     ------
@@ -68,10 +78,12 @@ class Target:
         return (self.high - self.low) / 2.0
 
     def miss(self, value: Value) -> float:
-        """Return how far a measure is outside, in units of the scale, at most `WORST`."""
+        """Return how far a measure is outside, in units of the scale, below `WORST` where it is a number."""
         if isinstance(value, str) or not math.isfinite(value):
             return WORST
-        return min(WORST, max(0.0, self.low - value, value - self.high) / self._scale)
+        miss = max(0.0, self.low - value, value - self.high) / self._scale
+        # Goes on smoothly and rises for ever: a search sees what is nearer, however narrow the bounds.
+        return miss if miss <= WORST / 2.0 else WORST - (WORST / 2.0) ** 2 / miss
 
 
 @dataclass(frozen=True)
@@ -117,8 +129,8 @@ def calibrate(
     Parameters
     ----------
     source : str, Path, xarray.Dataset or callable
-        A scenario, or a function that takes a list of points, values by key, and returns for each its measures by name:
-        for targets that take several runs.
+        A scenario, or a function that takes a list of points, values by key, and returns for each its measures by name,
+        those of the targets at least: for targets that take several runs.
     ranges : mapping
         Where each parameter is searched: a `Range` or its two ends.
     targets : mapping
@@ -127,7 +139,7 @@ def calibrate(
     measures : mapping, optional
         Functions of a record by name, for targets that no measure of a sweep gives.
     population : int, optional
-        Sets of parameters in a generation, at least 5.
+        Sets of parameters in a generation, from 5 to 10 000.
     generations : int, optional
         Generations after the first.
     seed : int, optional
@@ -145,39 +157,60 @@ def calibrate(
     -------
     xarray.Dataset
         The best set: each parameter and each measure, by name; ``miss``, the root of the sum of squared misses, and
-        ``met``, whether each target is met; over ``generation`` the ``best_miss`` so far and, by ``parameter``, the
-        ``best_parameters``.
+        ``met``, whether each ``target`` is met; over ``generation`` the ``best_miss`` so far and, by ``parameter``, the
+        ``best_parameters``. Of a scenario also ``step`` and ``sample_interval``: sets that run side by side share a
+        step, with which the best alone runs as it did.
 
     Raises
     ------
+    ScenarioError
+        If the scenario cannot be used, or a key is not known.
     ValueError
-        If an argument is out of its range.
+        If an argument is out of its range, or no set of the first generation can be run.
     """
     searched = ranges_of("ranges", ranges)
     aimed = _targets(targets)
-    count("population", population, low=5)
+    if count("population", population, low=5) > LARGEST_POPULATION:
+        raise ValueError(f"population must be at most {LARGEST_POPULATION}, got {population!r}")
     count("generations", generations)
     count("seed", seed, low=0)
     non_negative("spread", spread)
     evaluate = source if callable(source) else _sweeping(source, aimed, measures or {}, options)
     random = np.random.default_rng(seed)
     search = _Search(searched, aimed, evaluate, generations, watchers)
-    scipy.optimize.differential_evolution(
-        search.misses,
-        [(0.0, 1.0)] * len(searched),
-        init=_first_population(searched, population, random, start, spread),
-        maxiter=generations,
-        mutation=(0.4, 1.0),
-        recombination=0.9,
-        rng=random,
-        polish=False,
-        tol=0.0,
-        atol=-1.0,
-        vectorized=True,
-        updating="deferred",
-        callback=search.ended,
-    )
+    first = _first_population(searched, population, random, start, spread)
+    with suppress(_Met), _own_errors():
+        scipy.optimize.differential_evolution(
+            search.misses,
+            [(0.0, 1.0)] * len(searched),
+            init=first,
+            maxiter=generations,
+            mutation=(0.4, 1.0),
+            recombination=0.9,
+            rng=random,
+            polish=False,
+            tol=0.0,
+            atol=-1.0,
+            vectorized=True,
+            updating="deferred",
+        )
     return search.dataset()
+
+
+class _Met(Exception):
+    """All targets are met."""
+
+
+class _Failed(Exception):
+    """What an evaluation raised, kept from scipy, which takes some of it for its own."""
+
+
+@contextmanager
+def _own_errors() -> Iterator[None]:
+    try:
+        yield
+    except _Failed as failed:
+        raise failed.args[0] from None
 
 
 def _targets(targets: Any) -> dict[str, Target | str]:
@@ -185,10 +218,15 @@ def _targets(targets: Any) -> dict[str, Target | str]:
         raise ValueError(f"targets must be targets by the names of measures, got {targets!r}")
     found: dict[str, Target | str] = {}
     for name, given in targets.items():
+        if name in OWN:
+            raise ValueError(f"targets must not be called as what a calibration says, got {name!r}")
         if isinstance(given, (Target, str)):
             found[str(name)] = given
         elif isinstance(given, (tuple, list)) and len(given) == 2:
-            found[str(name)] = Target(*given)
+            try:
+                found[str(name)] = Target(*given)
+            except ValueError as error:
+                raise ValueError(f"targets[{name!r}]: {error}") from None
         else:
             raise ValueError(f"targets[{name!r}] must be a Target, its two bounds or a word, got {given!r}")
     return found
@@ -207,21 +245,39 @@ def _sweeping(
 ) -> Evaluate:
     """Return what runs a scenario at many points and measures what the targets are of."""
     instance("measures", functions, Mapping)
-    columns = {column.name: measure.name for measure in MEASURES.values() for column in measure.columns}
-    names = []
-    for name in targets:
-        if name not in columns and name not in functions:
-            known = [*functions, *columns]
-            raise ValueError(f"targets must be of {', '.join(known)}, got {name!r}{suggestion(name, known)}")
-        if name in columns and columns[name] not in names:
-            names.append(columns[name])
+    for option in ("out", "watchers"):
+        if option in options:
+            raise ValueError(f"{option} must not be given: every generation is a sweep of its own")
+    for name, target in targets.items():
+        if name not in functions:
+            _check_target(name, target, list(functions))
+    homes = {column.name: measure.name for measure in MEASURES.values() for column in measure.columns}
+    names = dict.fromkeys([*(homes[name] for name in targets if name not in functions), "step"])
     asked = [*names, *([dict(functions)] if functions else [])]
+    shown = [*targets, *(name for name in ("step", "sample_interval") if name not in targets)]
 
     def evaluate(points: Sequence[Point]) -> list[dict[str, Value]]:
         found = sweep(scenario, points, asked, **options)
-        return [{name: found[name].values[k].item() for name in targets} for k in range(len(points))]
+        if (found["message"].values != "").all() and not evaluated:
+            example = found["message"].values[0]
+            raise ValueError(f"ranges must hold sets that can be run, got {len(points)} that cannot: {example}")
+        evaluated.append(len(points))
+        return [{name: found[name].values[k] for name in shown} for k in range(len(points))]
 
+    evaluated: list[int] = []
     return evaluate
+
+
+def _check_target(name: str, target: Target | str, functions: Sequence[str]) -> None:
+    """Raise ValueError if a target is of no measure, or a word where that is a number, or the other way round."""
+    known = [*functions, *COLUMNS]
+    if name not in COLUMNS:
+        raise ValueError(f"targets must be of {', '.join(known)}, got {name!r}{suggestion(name, known)}")
+    if isinstance(target, str) and name in WORDS:
+        choice(f"target of {name}", target, WORDS[name])
+    elif COLUMNS[name].is_text != isinstance(target, str):
+        kind = f"one of {', '.join(WORDS[name])}" if name in WORDS else "bounds"
+        raise ValueError(f"target of {name} must be {kind}, got {target!r}")
 
 
 def _first_population(
@@ -270,7 +326,10 @@ class _Search:
     def misses(self, columns: Array) -> Array:
         """Return the sum of squared misses of each set of parameters, shape (parameters, sets) to (sets,)."""
         sets = np.atleast_2d(columns.T)
-        found = self.evaluate([self.point(shares) for shares in sets])
+        try:
+            found = self.measured_at([self.point(shares) for shares in sets])
+        except Exception as error:
+            raise _Failed(error) from None
         totals = np.array(
             [sum(miss_of(target, one[name]) ** 2 for name, target in self.targets.items()) for one in found]
         )
@@ -281,11 +340,23 @@ class _Search:
         for watch in self.watchers:
             point = self.point(self.shares)
             watch(CalibrationProgress(len(self.history) - 1, self.generations, math.sqrt(self.miss), point))
+        if self.miss == 0.0:
+            raise _Met
         return totals
 
-    def ended(self, intermediate_result: scipy.optimize.OptimizeResult) -> bool:
-        """Return whether all targets are met."""
-        return self.miss == 0.0
+    def measured_at(self, points: Sequence[Point]) -> list[dict[str, Value]]:
+        """Return the measures of each set of parameters, checked."""
+        found = self.evaluate(points)
+        if not isinstance(found, Sequence) or len(found) != len(points):
+            raise ValueError(f"source must return the measures of each of {len(points)} points, got {found!r}")
+        for one in found:
+            lacking = next((name for name in self.targets if not isinstance(one, Mapping) or name not in one), None)
+            if lacking is not None:
+                raise ValueError(f"source must return {lacking!r} for each point, got {one!r}")
+            clash = next((name for name in one if name in self.ranges or name in OWN), None)
+            if clash is not None:
+                raise ValueError(f"measures must not be called as parameters or results, got {clash!r}")
+        return [{name: value_of(value) for name, value in one.items()} for one in found]
 
     def dataset(self) -> xr.Dataset:
         """Return what came of the search."""
@@ -294,7 +365,9 @@ class _Search:
         data: dict[str, Any] = {
             key: ((), numbers[-1, k], {"units": one.unit}) for k, (key, one) in enumerate(self.ranges.items())
         }
-        data |= {name: ((), self.measured[name]) for name in self.targets}
+        for name, value in self.measured.items():
+            known = COLUMNS.get(name)
+            data[name] = ((), value, {"units": known.units, "long_name": known.long_name} if known else {})
         data["miss"] = ((), math.sqrt(self.miss), {"units": "1", "long_name": "root of the sum of squared misses"})
         met = [miss_of(target, self.measured[name]) == 0.0 for name, target in self.targets.items()]
         data["met"] = ("target", met, {"long_name": "whether the target is met"})

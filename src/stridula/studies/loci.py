@@ -13,9 +13,16 @@ from scipy.optimize import linear_sum_assignment
 from ..analysis.stability import sliding_stability
 from ..bodies.modes import Array
 from ..checks import finite, instance, positive
+from ..records.provenance import toml
 from ..scenarios import load_scenario
+from ..scenarios.keys import overridden
+from ..scenarios.read import read_tables
 from ..system import System
+from ..version import __version__
+from .task import one_thread_each
 
+# What root loci have beside the parameter.
+OWN = ("mode", "frequency", "growth_rate", "unstable", "unstable_modes", "equilibrium")
 SystemOf = Callable[[float], System]
 Source = str | Path | xr.Dataset | SystemOf
 
@@ -49,7 +56,7 @@ def root_loci(
     overrides : mapping, optional
         Other values to set in the scenario by key.
     highest : float, optional
-        Leave out modes above this frequency [Hz].
+        Leave modes above this frequency [Hz] out of what is followed; they still count as unstable.
     **options
         Arguments of `sliding_stability` such as `status` and `velocity`.
 
@@ -57,7 +64,8 @@ def root_loci(
     -------
     xarray.Dataset
         Over the parameter and ``mode``: ``frequency`` [Hz], ``growth_rate`` [1/s] and whether ``unstable``, NaN and
-        False where a mode is not there; over the parameter its ``equilibrium``.
+        False where a mode is not there; over the parameter its ``equilibrium`` and ``unstable_modes``, how many of all
+        modes grow.
 
     Raises
     ------
@@ -65,10 +73,13 @@ def root_loci(
         If an argument is out of its range, or a value gives no system.
     """
     modes_of = _modes_of(source, key, units, overrides, options)
+    if key in OWN:
+        raise ValueError(f"key must not be called as a result of the loci, got {key!r}: write its full key")
     grid = _rising(values)
     if highest is not None:
         positive("highest", highest)
-    found = [modes_of(value) for value in grid]
+    with one_thread_each():
+        found = [modes_of(value) for value in grid.tolist()]
     exponents = [_exponents(one, highest) for one in found]
     followed = _followed(exponents)
     slack = np.array([one.attrs["round_off"] for one in found])
@@ -78,9 +89,11 @@ def root_loci(
             "frequency": (both, followed.imag / (2.0 * np.pi), _words("Hz", "frequency of vibration")),
             "growth_rate": (both, followed.real, _words("1/s", "rate at which the amplitude grows")),
             "unstable": (both, followed.real > slack[:, None], _words("1", "whether the mode grows")),
+            "unstable_modes": (key, [int(one.unstable.sum()) for one in found], _words("1", "modes that grow, of all")),
             "equilibrium": (key, [one.attrs["equilibrium"] for one in found]),
         },
         {key: (key, grid, {"units": units}), "mode": np.arange(followed.shape[1])},
+        _origin(source, overrides),
     )
 
 
@@ -130,7 +143,16 @@ def critical_value(
     if finite("high", high) <= finite("low", low):
         raise ValueError(f"high must be above low ({low!r}), got {high!r}")
     positive("tolerance", tolerance)
-    at = {value: modes_of(value) for value in (float(low), float(high))}
+    low, high = float(low), float(high)
+    with one_thread_each():
+        return _bisected(key, modes_of, low, high, tolerance, units)
+
+
+def _bisected(
+    key: str, modes_of: Callable[[float], xr.Dataset], low: float, high: float, tolerance: float, units: str
+) -> xr.Dataset:
+    """Return the value between two at which stability changes."""
+    at = {value: modes_of(value) for value in (low, high)}
     grows = {value: bool(one.unstable.any()) for value, one in at.items()}
     if grows[low] == grows[high]:
         raise ValueError(
@@ -175,7 +197,7 @@ def critical_values(loci: xr.Dataset, find: Callable[[float, float], xr.Dataset]
         Takes two values, returns what `critical_value` does.
     """
     key = parameter_of(loci)
-    grows = loci["unstable"].values.any(axis=1)
+    grows = loci["unstable_modes"].values > 0
     grid = loci[key].values
     return [find(float(grid[k]), float(grid[k + 1])) for k in np.flatnonzero(np.diff(grows))]
 
@@ -185,6 +207,15 @@ def parameter_of(loci: xr.Dataset) -> str:
     return str(loci["equilibrium"].dims[0])
 
 
+def _origin(source: Source, overrides: Mapping[str, Any] | None) -> dict[str, str]:
+    """Return what a file says of where it comes from; of a function nothing is known."""
+    if callable(source):
+        return {}
+    tables, _ = overridden(read_tables(source), overrides or {})
+    words = {"title": str(tables.get("title", "")), "scenario": toml(tables)}
+    return words | {"stridula_version": __version__}
+
+
 def _modes_of(
     source: Source, key: str, units: str, overrides: Mapping[str, Any] | None, options: Mapping[str, Any]
 ) -> Callable[[float], xr.Dataset]:
@@ -192,14 +223,18 @@ def _modes_of(
     instance("key", key, str)
     instance("units", units, str)
     given = dict(overrides or {})
+    if key in given:
+        raise ValueError(f"key must be set or varied, got both for {key!r}")
 
     def system_of(value: float) -> System:
         if callable(source):
             return source(value)
-        return load_scenario(source, given | {key: f"{value!r} {units}" if units else value}).system
+        # Keys of whole numbers take no others.
+        number = int(value) if value.is_integer() else value
+        return load_scenario(source, given | {key: f"{value!r} {units}" if units else number}).system
 
     def modes_of(value: float) -> xr.Dataset:
-        return sliding_stability(system_of(float(value)), **options)
+        return sliding_stability(system_of(value), **options)
 
     return modes_of
 

@@ -92,6 +92,10 @@ def _travel(run: xr.Dataset) -> Values:
     return {"travel": advance(run)}
 
 
+def _step(run: xr.Dataset) -> Values:
+    return {name: float(run.attrs[name]) for name in ("step", "sample_interval")}
+
+
 def _regime_column(name: str) -> Column:
     units, meaning = MEANINGS[name]
     return Column(name, "" if name == "regime" else units, meaning, is_text=name == "regime")
@@ -122,6 +126,11 @@ MEASURES = {
         ),
         Measure("mean_force", (Column("mean_force", "N", "mean normal force"),), _mean_force),
         Measure("travel", (Column("travel", "m", "net way of the contact point along the track"),), _travel),
+        Measure(
+            "step",
+            (Column("step", "s", "time step of the run"), Column("sample_interval", "s", "time between samples")),
+            _step,
+        ),
         Measure("regime", tuple(map(_regime_column, MEANINGS)), regime_of, also=("stability",)),
         Measure(
             "stability",

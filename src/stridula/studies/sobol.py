@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -92,7 +93,8 @@ def sensitivity(
         # The two sets are independent draws, the mixed ones are not.
         data |= _probabilities(found["regime"].values[: 2 * samples], confidence)
         coordinates["regime"] = list(REGIMES)
-    return xr.Dataset(data, coordinates, {"confidence": confidence, "samples": samples, "seed": seed})
+    origin = {name: found.attrs[name] for name in ("title", "scenario", "stridula_version") if name in found.attrs}
+    return xr.Dataset(data, coordinates, origin | {"confidence": confidence, "samples": samples, "seed": seed})
 
 
 def _distributions(uncertain: Any) -> dict[str, Any]:
@@ -101,8 +103,17 @@ def _distributions(uncertain: Any) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for key, given in uncertain.items():
         is_distribution = callable(getattr(given, "ppf", None))
+        if is_distribution and not _is_one_number(given):
+            raise ValueError(f"uncertain[{key!r}] must be a frozen distribution of one number, got {given!r}")
         found[str(key)] = given if is_distribution else range_of(f"uncertain[{key!r}]", given)
     return found
+
+
+def _is_one_number(distribution: Any) -> bool:
+    try:
+        return math.isfinite(float(distribution.ppf(0.5)))
+    except (TypeError, ValueError):
+        return False
 
 
 def _value(distribution: Any, share: float) -> Any:
@@ -149,9 +160,12 @@ def _indices(
             continue
         first[row], total[row] = _sobol(sets)
         random = np.random.default_rng(seed)
-        drawn = [_sobol(sets[:, random.integers(0, used[row], used[row])]) for _ in range(resamples)]
+        drawn = np.array([_sobol(sets[:, random.integers(0, used[row], used[row])]) for _ in range(resamples)])
+        # What varies in few samples does not in some resamples.
+        drawn = drawn[np.isfinite(drawn).all(axis=(1, 2))]
         tails = [50.0 * (1.0 - confidence), 50.0 * (1.0 + confidence)]
-        intervals[:, row] = np.moveaxis(np.nanpercentile(np.array(drawn), tails, axis=0), 0, -1)
+        if len(drawn):
+            intervals[:, row] = np.moveaxis(np.percentile(drawn, tails, axis=0), 0, -1)
     along = ("output", "parameter")
     return {
         "first_order": (along, first, _words("share of the variance that the parameter makes alone")),

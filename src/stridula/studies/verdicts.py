@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..analysis.regimes import REGIMES
+from ..checks import instance
 
 UNSTABLE = "unstable"
 VERDICTS = (UNSTABLE, "sliding", "held", "lifted off", "jammed")
@@ -40,6 +41,7 @@ def agreement(found: xr.Dataset) -> xr.Dataset:
     ValueError
         If the sweep has no regimes or no linear analysis.
     """
+    instance("found", found, xr.Dataset)
     for name in ("regime", "unstable_modes", "equilibrium"):
         if name not in found:
             raise ValueError(

@@ -1,0 +1,262 @@
+"""The verbs that look at many parameters: stability, calibrate, sensitivity."""
+
+from __future__ import annotations
+
+import re
+import sys
+import tomllib
+
+import numpy as np
+import pytest
+
+import stridula as st
+from stridula.cli import main, searching
+from stridula.studies.measures import MEASURES
+
+SHORT = ("--duration", "2 ms")
+
+
+@pytest.fixture
+def stridula(monkeypatch, capsys, tmp_path):
+    """Run the command line in an empty folder; return exit code, output and error."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["stridula", *arguments])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        captured = capsys.readouterr()
+        return stop.value.code, captured.out, captured.err
+
+    return run
+
+
+def test_stability_says_equilibrium_and_modes(stridula):
+    code, out, err = stridula("stability", "weak-pressure", "--set", "friction=1.0")
+    assert (code, err) == (0, "")
+    modes = st.sliding_stability(st.load_scenario("weak-pressure", {"friction": 1.0}).system)
+    grows = int(modes["unstable"].sum())
+    assert f"slides steadily; {grows} modes grow, {modes.sizes['mode']} modes in all." in out
+    assert f"{float(modes['growth_rate'].max()):.5g}" in out
+    code, out, _ = stridula("stability", "squeal")
+    assert "Equilibrium: held by friction; no mode grows" in out
+    code, out, _ = stridula("stability", "squeal", "--status", "sliding")
+    assert "about the contacts as given" in out
+
+
+def test_stability_over_a_parameter_prints_draws_and_writes(stridula, tmp_path):
+    arguments = ("--vary", "friction=0.5:2:7", "--highest", "1000", "--out", "loci.nc", "--plot", "loci.png")
+    code, out, err = stridula("stability", "weak-pressure", *arguments)
+    assert (code, err) == (0, "")
+    first, second = out.splitlines()
+    assert re.fullmatch(r"unstable from friction = 0\.63\d+ \(within \S+\) on, at 32\.\d+ Hz", first)
+    assert re.fullmatch(r"jammed from friction = 1\.78\d+ \(within \S+\) on", second)
+    loci = st.load("loci.nc")
+    assert loci["friction"].values.tolist() == np.linspace(0.5, 2.0, 7).tolist()
+    assert float(loci["frequency"].max()) <= 1000.0
+    assert (tmp_path / "loci.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_stability_says_what_holds_where_nothing_changes(stridula):
+    code, out, _ = stridula("stability", "squeal", "--vary", "friction=0.5,1.5,1.6")
+    assert (code, out) == (
+        0,
+        "no mode grows at any of the 3 values of friction: slides steadily at 1, held by friction at 2\n",
+    )
+    _, out, _ = stridula("stability", "weak-pressure", "--vary", "friction=1:1.2:2")
+    assert out == "unstable at all 2 values of friction\n"
+    # Modes that are left out of the figure still count.
+    _, out, _ = stridula("stability", "weak-pressure", "--vary", "friction=1:1.2:2", "--highest", "5")
+    assert out == "unstable at all 2 values of friction\n"
+
+
+VARY = ("--vary", "friction=0.5:1:3")
+BAD_STABILITY = [
+    (("--plot", "a.png"), "--plot must go with --vary, got 'a.png' alone"),
+    (("--out", "a.nc"), "--out must go with --vary, got 'a.nc' alone"),
+    (("--highest", "9"), "--highest must go with --vary, got 9.0 alone"),
+    (("--set", "frition=1"), "did you mean 'friction'?"),
+    (("--status", "slding"), "did you mean 'sliding'?"),
+    (("--status", "sliding,sliding"), "status must be one of separated, sticking, sliding for each contact"),
+    (("--velocity", "0"), "velocity must be above 0, got 0.0"),
+    (("--velocity", "nan"), "velocity must be finite, got nan"),
+    (("--vary", "frition=0:1:3"), "did you mean 'friction'?"),
+    (("--vary", "friction"), "--vary must be KEY=START:STOP:COUNT"),
+    (("--vary", "friction=1:0:3"), "--vary must have START below STOP"),
+    (("--vary", "friction=0:inf:3"), "--vary must have finite numbers"),
+    (("--vary", "friction=0.5"), "--vary must give at least 2 rising numbers of one unit here"),
+    (("--vary", "friction=0.6,0.5"), "--vary must give at least 2 rising numbers of one unit here"),
+    (("--vary", "angle=10 deg,0.5"), "--vary must give at least 2 rising numbers of one unit here"),
+    (("--vary", "root_support=guided,clamped"), "--vary must give at least 2 rising numbers of one unit here"),
+    (("--vary", "friction=0:1:10001"), "--vary must have a COUNT of at most 10000 here"),
+    (("--vary", "friction=0:1 N:3"), "contact.friction.coefficient must be a number, got '0.0 N'"),
+    (("--vary", "elements=4:6:5"), "slider.elements must be a whole number, got 4.5"),
+    (("--vary", "angle=80deg:100deg:3"), "slider.angle must be strictly between"),
+    ((*VARY, "--set", "friction=1"), "key must be set or varied, got both for 'friction'"),
+    ((*VARY, "--highest", "0"), "highest must be above 0, got 0.0"),
+    ((*VARY, "--out", "none/a.nc"), "there is no folder 'none'"),
+    ((*VARY, "--out", "."), "it is a directory"),
+    ((*VARY, "--plot", "a.xyz"), "--plot must end in one of"),
+    ((*VARY, "--out", "a.png", "--plot", "a.png"), "--plot must be another file than --out"),
+]
+
+SEARCH = ("--vary", "friction=0.1:0.6", "--target", "travel=0:1", *SHORT)
+BAD_CALIBRATIONS = [
+    ((), "Missing option '--vary'"),
+    (("--vary", "friction=0:1"), "Missing option '--target'"),
+    (("--vary", "friction=0:1", "--target", "travel"), "--target must be NAME=LOW:HIGH"),
+    (("--vary", "friction=0:1", "--target", "travel=1:2:3:4"), "--target must be NAME=LOW:HIGH"),
+    (("--vary", "friction=0:1", "--target", "travel=a:b"), "--target must have numbers for LOW, HIGH and SCALE, in SI"),
+    (("--vary", "friction=0:1", "--target", "travel=1 mm:2 mm"), "--target must have numbers for LOW, HIGH and SCALE"),
+    (("--vary", "friction=0:1", "--target", "travel=2:1"), "low and high must be a range with an end"),
+    (("--vary", "friction=0:1", "--target", "travel=:"), "low and high must be a range with an end"),
+    (("--vary", "friction=0:1", "--target", "travel=1:1"), "scale must be given for a target at one value"),
+    (("--vary", "friction=0:1", "--target", "travel=nan:1"), "low must be a number, got nan"),
+    (("--vary", "friction=0:1", "--target", "trvel=0:1"), "did you mean 'travel'?"),
+    (("--vary", "friction=0:1", "--target", "regime=sqeal"), "did you mean 'squeal'?"),
+    (("--vary", "friction=0:1", "--target", "travel=1"), "target of travel must be bounds, got '1'"),
+    ((*SEARCH, "--target", "travel=2:3"), "--target must name each measure once, got 'travel' twice"),
+    (("--vary", "frition=0:1", "--target", "travel=0:1"), "did you mean 'friction'?"),
+    (("--vary", "friction=1:0", "--target", "travel=0:1"), "--vary must have START below STOP"),
+    (("--vary", "friction=0:1:log", "--target", "travel=0:1"), "low must be above 0 on a logarithmic range"),
+    (("--vary", "friction=0:1:5", "--target", "travel=0:1"), "--vary must be KEY=LOW:HIGH or KEY=LOW:HIGH:log"),
+    (("--vary", "friction=0:nan", "--target", "travel=0:1"), "--vary must have finite numbers"),
+    (("--vary", "friction=0:1 N", "--target", "travel=0:1"), "contact.friction.coefficient must be a number"),
+    (("--vary", "elements=4:8", "--target", "travel=0:1"), "slider.elements must be a whole number"),
+    (("--vary", "angle=95deg:99deg", "--target", "travel=0:1"), "ranges must hold sets that can be run, got 32"),
+    ((*SEARCH, "--vary", "friction=0:1"), "--vary must name each key once"),
+    ((*SEARCH, "--vary", "coefficient=0:1"), "which both mean contact.friction.coefficient"),
+    ((*SEARCH, "--set", "friction=1"), "key must be set or varied"),
+    ((*SEARCH, "--population", "4"), "population must be at least 5, got 4"),
+    ((*SEARCH, "--generations", "0"), "generations must be at least 1, got 0"),
+    ((*SEARCH, "--seed", "-1"), "seed must be at least 0, got -1"),
+    ((*SEARCH, "--workers", "0"), "workers must be at least 1, got 0"),
+    ((*SEARCH, "--out", "none/a.toml"), "there is no folder 'none'"),
+    ((*SEARCH, "--out", "."), "it is a directory"),
+]
+
+UNCERTAIN = ("--vary", "friction=0.1:0.6", *SHORT)
+BAD_SENSITIVITIES = [
+    ((), "Missing option '--vary'"),
+    (("--vary", "frition=0:1"), "did you mean 'friction'?"),
+    (("--vary", "friction=0:1:5"), "--vary must be KEY=LOW:HIGH or KEY=LOW:HIGH:log"),
+    ((*UNCERTAIN, "--measure", "regim"), "did you mean 'regime'?"),
+    ((*UNCERTAIN, "--samples", "7"), "samples must be a power of 2, got 7"),
+    ((*UNCERTAIN, "--samples", "0"), "samples must be at least 1, got 0"),
+    ((*UNCERTAIN, "--samples", "4096"), "more than 10000 points must be confirmed with --yes, got 12288 points"),
+    ((*UNCERTAIN, "--seed", "-1"), "seed must be at least 0, got -1"),
+    ((*UNCERTAIN, "--out", "none/a.nc"), "there is no folder 'none'"),
+    ((*UNCERTAIN, "--duration", "x"), "simulation.duration must be a number in s"),
+]
+BAD = [
+    *[(("stability", "squeal", *given), message) for given, message in BAD_STABILITY],
+    *[(("calibrate", "squeal", *given), message) for given, message in BAD_CALIBRATIONS],
+    *[(("sensitivity", "squeal", *given), message) for given, message in BAD_SENSITIVITIES],
+]
+
+
+@pytest.mark.parametrize(("arguments", "message"), BAD, ids=[" ".join([a[0], *a[2:]]) for a, _ in BAD])
+def test_bad_input_is_one_line_and_writes_nothing(stridula, tmp_path, monkeypatch, arguments, message):
+    monkeypatch.setattr("stridula.studies.task.simulate_many", lambda *args, **kwargs: pytest.fail("it ran"))
+    (tmp_path / "kept").write_text("kept")
+    can_keep = "--out" not in arguments and (arguments[0] != "stability" or "--vary" in arguments)
+    code, out, err = stridula(*arguments, *(("--out", "kept") if can_keep else ()))
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert message in err
+    assert [path.name for path in tmp_path.iterdir()] == ["kept"]
+    assert (tmp_path / "kept").read_text() == "kept"
+
+
+def test_what_was_calibrated_runs_again_as_the_best_did(stridula, tmp_path):
+    (tmp_path / "mine.toml").write_text(
+        'base = "stable-sliding"\ntitle = "Mine"\n[[simulation.probes]]\nbody = "track"\nquantity = "velocity"\n'
+        'point = "centre"\n'
+    )
+    arguments = ("--vary", "friction=0.1:0.6", "--vary", "slider.length=0.5:0.6 m", "--target", "peak_force=:1e6")
+    arguments = (*arguments, "--target", "travel=0:1", "--duration", "20 ms", "--set", "contact.gap=2e-6")
+    code, out, err = stridula("calibrate", "mine.toml", *arguments, "--population", "6", "--out", "found.toml")
+    assert (code, err) == (0, "generation 0 of 50: miss 0\n")
+    assert "0.5 to 0.6 m" in out
+    assert re.search(r"travel +\S+ +0 to 1 +yes", out)
+    written = tomllib.loads((tmp_path / "found.toml").read_text())
+    assert written["title"] == "Mine"
+    assert [probe["quantity"] for probe in written["simulation"]["probes"]] == ["velocity"]
+    assert written["contact"]["gap"] == 2e-6
+    assert stridula("run", "found.toml", "--out", "run.nc")[0] == 0
+    run = st.load("run.nc")
+    assert run.attrs["title"] == "Mine"
+    for name in ("travel", "peak_force"):
+        (value,) = MEASURES[name].of_record(run).values()
+        assert f"{value:.5g}" in re.search(rf"^ *{name} .*$", out, re.MULTILINE)[0]
+
+
+def test_the_calibrated_scenario_gives_the_same_numbers(stridula, tmp_path):
+    ranges = {"friction": (0.1, 0.6), "slider.length": ("0.5 m", "0.6 m")}
+    found = st.calibrate(
+        "stable-sliding", ranges, {"travel": (1.0, 2.0)}, population=5, generations=1, duration="20 ms"
+    )
+    arguments = ("--vary", "friction=0.1:0.6", "--vary", "slider.length=0.5:0.6 m", "--target", "travel=1:2")
+    arguments = (*arguments, "--population", "5", "--generations", "1", "--duration", "20 ms", "--out", "found.toml")
+    code, out, _ = stridula("calibrate", "stable-sliding", *arguments)
+    assert code == 1, "the target is not met"
+    assert re.search(r"travel .* no", out)
+    run = st.load_scenario("found.toml").simulate()
+    assert run.attrs["step"] == float(found["step"])
+    assert run["time"].values[0] == float(found["sample_interval"])
+    (travel,) = MEASURES["travel"].of_record(run).values()
+    assert travel == pytest.approx(float(found["travel"]), rel=1e-9)
+    assert "acceleration" in run, "probes left to themselves still are"
+
+
+def test_a_word_is_a_target(stridula):
+    code, out, _ = stridula(
+        "calibrate", "squeal", "--vary", "friction=1.2:1.8", "--target", "equilibrium=held", *SHORT, "--population", "5"
+    )
+    assert code == 0
+    assert re.search(r"equilibrium +held +held +yes", out)
+
+
+def interrupt(*arguments, **fields):
+    raise KeyboardInterrupt
+
+
+def test_ctrl_c_says_the_best_so_far(stridula, monkeypatch, tmp_path):
+    arguments = (*SEARCH, "--population", "5", "--out", "found.toml")
+    with monkeypatch.context() as patch:
+        patch.setattr(searching, "calibrate", interrupt)
+        expected = "stridula: interrupted; best so far: nothing yet\n"
+        assert stridula("calibrate", "stable-sliding", *arguments) == (130, "", expected)
+    real = searching.calibrate
+
+    def stopped(*given, watchers, **options):
+        return real(*given, watchers=[*watchers, interrupt], **options)
+
+    monkeypatch.setattr(searching, "calibrate", stopped)
+    code, out, err = stridula("calibrate", "stable-sliding", *arguments)
+    assert (code, out) == (130, "")
+    assert re.search(r"^stridula: interrupted; best so far: friction=0\.\d+$", err, re.MULTILINE)
+    monkeypatch.setattr(searching, "sensitivity", interrupt)
+    expected = "stridula: interrupted; nothing was kept\n"
+    assert stridula("sensitivity", "squeal", *UNCERTAIN, "--out", "a.nc") == (130, "", expected)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_sensitivity_prints_and_writes(stridula):
+    arguments = ("--vary", "friction=0.2:2.0", "--vary", "angle=30deg:80deg", "--samples", "8", "--seed", "1")
+    code, out, err = stridula("sensitivity", "squeal", *arguments, "--duration", "20 ms", "--out", "shares.nc")
+    assert (code, err) == (0, "")
+    assert out.rstrip().endswith("32 runs: 32 done, 0 failed; written to shares.nc")
+    assert "How likely each regime is" in out
+    assert re.search(r"^ *sliding +-?\d\.\d\d \[", out, re.MULTILINE)
+    found = st.load("shares.nc")
+    assert found.sizes["parameter"] == 2
+    assert float(found["probability"].sum()) == pytest.approx(1.0)
+
+
+def test_sensitivity_says_why_there_are_no_shares(stridula):
+    code, out, _ = stridula("sensitivity", "squeal", "--vary", "angle=95deg:99deg", *SHORT, "--samples", "8")
+    assert code == 0
+    assert "No shares of the variance: they take 8 samples in which all runs give numbers, got 0." in out
+    assert "24 runs: 0 done, 24 failed" in out
+    _, out, _ = stridula("sensitivity", "squeal", "--vary", "friction=1.5:1.6", *SHORT, "--samples", "8")
+    assert "nothing varies" in out
