@@ -21,7 +21,7 @@ def print_agreement(found: xr.Dataset) -> None:
     if not seen:
         return
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("runs by linear theory")
+    table.add_column("linear theory")
     for word in seen:
         table.add_column(word, justify="right")
     for verdict in counts["verdict"].values:
