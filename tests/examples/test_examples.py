@@ -155,7 +155,7 @@ def test_what_the_readme_shows_runs(tmp_path, monkeypatch, capsys):
     names: dict[str, Any] = {}
     for block in shown_in_the_readme():
         exec(block, names)
-    # The load, by the slope of the track that it bends, adds a slow one.
+    # The load, by the slope of the track that it bends, adds one.
     grows = unstable_frequencies(names["system"], sense=1.0).size + 1
     assert f"\n{grows} modes grow\n" in capsys.readouterr().out
     assert len(names["forces"]) == 4

@@ -172,7 +172,7 @@ def _list(text: str, values: str) -> list[str]:
 
 
 def _range(text: str, values: str, is_sampled: bool) -> Span:
-    wanted = "KEY=START:STOP" if is_sampled else "KEY=START:STOP:COUNT"
+    wanted = "KEY=START:STOP with --sample" if is_sampled else "KEY=START:STOP:COUNT"
     pieces = values.split(":")
     if len(pieces) != (2 if is_sampled else 3):
         raise ValueError(f"--vary must be {wanted}, got {text!r}")
