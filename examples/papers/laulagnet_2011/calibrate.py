@@ -39,8 +39,9 @@ RANGES = {
     "contact.gap": st.Range(1e-6, 1e-4, logarithmic=True),
 }
 POPULATION = 40
-# Sum of squared misses of a case from which a candidate is not run on the next ones.
-GIVE_UP = 3.0
+# Sums of squared misses of a case from which a candidate is not run on the next ones, all over the ranges and with
+# narrower aims, of which the shipped set misses one in its first case by far.
+GIVE_UP_WIDE, GIVE_UP_NARROW = 3.0, 30.0
 # Where the narrower stage aims for the measures that differ from one perturbed start to another.
 AIMS = {
     "50 N: frequency of relaxations": st.Target(2260.0, 2740.0, 560.0),
@@ -126,8 +127,8 @@ def narrow_target(claim: Claim) -> st.Target:
 class Measured:
     """The claims of candidates, case by case, the runs of a case side by side."""
 
-    def __init__(self, targets: Mapping[str, st.Target]) -> None:
-        self.targets = targets
+    def __init__(self, targets: Mapping[str, st.Target], give_up: float) -> None:
+        self.targets, self.give_up = targets, give_up
 
     def __call__(self, points: Sequence[Mapping[str, float]]) -> list[dict[str, float]]:
         """Return the value of each claim for each candidate; NaN for those that were not looked at."""
@@ -143,7 +144,7 @@ class Measured:
             for k in left:
                 values[k] |= {claim.claim: measured(claim, runs[k]) for claim in asked}
                 miss = sum(self.targets[claim.claim].miss(values[k][claim.claim]) ** 2 for claim in asked)
-                kept += [k] if miss <= GIVE_UP else []
+                kept += [k] if miss <= self.give_up else []
             left = kept
         return values
 
@@ -163,7 +164,9 @@ def measured(claim: Claim, runs: Runs) -> float:
         return math.nan
 
 
-def search(targets: Mapping[str, st.Target], seed: int, generations: int, start: Mapping[str, float] | None) -> Any:
+def search(
+    targets: Mapping[str, st.Target], give_up: float, seed: int, generations: int, start: Mapping[str, float] | None
+) -> Any:
     """Search from a seed and print each improvement."""
     best = math.inf
 
@@ -174,7 +177,7 @@ def search(targets: Mapping[str, st.Target], seed: int, generations: int, start:
             print(f"{progress.generation}: {progress.miss:.4f} {progress.best}", flush=True)
 
     return st.calibrate(
-        Measured(targets),
+        Measured(targets, give_up),
         RANGES,
         targets,
         population=POPULATION,
@@ -193,10 +196,11 @@ def main(stage: str = "wide", seed: str = "1", generations: str = "300") -> None
     start = shipped()
     if stage == "wide":
         targets = {claim.claim: wide_target(claim) for claim in FITTED}
-        found = search(targets, int(seed), int(generations), None)
+        found = search(targets, GIVE_UP_WIDE, int(seed), int(generations), None)
         start = {key: float(found[key]) for key in RANGES}
         print("narrower aims, from there", flush=True)
-    found = search({claim.claim: narrow_target(claim) for claim in FITTED}, int(seed), int(generations), start)
+    targets = {claim.claim: narrow_target(claim) for claim in FITTED}
+    found = search(targets, GIVE_UP_NARROW, int(seed), int(generations), start)
     runs = CandidateRuns({key: float(found[key]) for key in RANGES})
     rows = [claim.check(runs) for claim in FITTED]
     for row in rows:
