@@ -164,6 +164,11 @@ class ModalPlate:
         return float(np.sqrt(4.0 / self.total_mass))
 
     @property
+    def harmonics(self) -> tuple[int, int]:
+        """Numbers of bending and of axial modes kept; there are no axial ones."""
+        return len(self.numbers), 0
+
+    @property
     def numbers(self) -> Array:
         """Numbers (m, n) of half-waves of each mode along length and width, shape (modes, 2)."""
         return _numbers(self)
