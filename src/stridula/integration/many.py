@@ -15,6 +15,7 @@ import xarray as xr
 
 from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
+from ..bodies import ModalPlate
 from ..checks import choice, count
 from ..records import Probe
 from ..system import System
@@ -186,6 +187,8 @@ def _kind(arrays: Arrays, most_modes: int | None) -> Hashable | None:
     if len(flat.contacts) > 1 or flat.coupled or (most_modes and flat.mode_count > most_modes):
         return None
     (one,) = flat.contacts
+    if isinstance(one.contact.track, ModalPlate):
+        return None
     law = type(one.contact.friction), getattr(one.contact.friction, "evolution", None)
     probes = tuple(type(probe) for probe in arrays.probes)
     return flat.mode_count, one.bending, one.axial, law, len(flat.loads), probes
