@@ -216,6 +216,8 @@ class Builder:
         if table.get("line") is not None:
             with self._within(*path, "line"):
                 table["line"] = Line(**table["line"])
+            if not isinstance(table["line"], Line):
+                return None
         with self._within(*path):
             return ModalPlate(material, **table)
 

@@ -326,6 +326,7 @@ def _is_label_or_none(value: Any) -> bool:
 
 
 Ratio = Annotated[float, Quantity("1")]
+Poisson = Annotated[float, Quantity("1", above=-1.0, below=0.5)]
 Friction = Annotated[float, Quantity("1", least=0.0)]
 Damping = Annotated[float, Quantity("1", least=0.0, below=1.0)]
 Length = Annotated[float, Quantity("m", above=0.0)]

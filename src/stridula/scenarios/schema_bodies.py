@@ -20,7 +20,7 @@ class Material(Table):
     """Young's modulus [Pa]"""
     density: is_.Density
     """mass density [kg/m³]"""
-    poisson: is_.Ratio = Solid.poisson
+    poisson: is_.Poisson = Solid.poisson
     """Poisson's ratio, of plates"""
 
 
