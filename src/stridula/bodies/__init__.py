@@ -2,6 +2,7 @@
 
 from .finite_element_beam import FiniteElementBeam
 from .modal_beam import ModalBeam
+from .modal_plate import Line, ModalPlate
 from .modes import Body, BodyPoint, Modes
 from .point_mass import PointMass
 from .reduced_body import Rayleigh, ReducedBody
@@ -12,8 +13,10 @@ __all__ = [
     "BodyPoint",
     "Circle",
     "FiniteElementBeam",
+    "Line",
     "Material",
     "ModalBeam",
+    "ModalPlate",
     "Modes",
     "PointMass",
     "Rayleigh",

@@ -1,11 +1,11 @@
-"""Materials and cross-sections of beams."""
+"""Materials, and cross-sections of beams."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-from ..checks import positive
+from ..checks import finite, positive
 
 
 @dataclass(frozen=True)
@@ -18,14 +18,19 @@ class Material:
         Young's modulus [Pa].
     density : float
         Mass density [kg/m³].
+    poisson : float, optional
+        Poisson's ratio [1], above -1 and up to 0.5; of no effect on beams.
     """
 
     young: float
     density: float
+    poisson: float = 0.3
 
     def __post_init__(self) -> None:
         positive("young", self.young)
         positive("density", self.density)
+        if not -1.0 < finite("poisson", self.poisson) <= 0.5:
+            raise ValueError(f"poisson must be above -1 and up to 0.5, got {self.poisson!r}")
 
 
 @dataclass(frozen=True)
