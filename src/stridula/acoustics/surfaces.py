@@ -13,7 +13,7 @@ from .panels import Panel
 # Gauss-Legendre points along each side of a cell.
 POINTS = 8
 # Largest phase over a cell, the sum of that of the modes and of the sound [rad].
-PHASE = 2.0 * np.pi
+PHASE = 3.0 * np.pi
 # Largest side of a cell over its distance to the listener.
 NEARNESS = 2.0
 # Cells into which one side may be cut close to a listener.
@@ -42,8 +42,9 @@ class Surface:
 def surface_of(panel: Panel, listener: Array, wavenumber: float, refinement: float = 1.0) -> Surface:
     """Return the elements of a panel for a listener.
 
-    Cells of 8 x 8 Gauss-Legendre points, over which modes and sound turn by 2 pi at most and that are no larger than
-    twice their distance to the listener: both leave an error of some 1e-6 of the integrand.
+    Cells of 8 x 8 Gauss-Legendre points, over which modes and sound turn by 3 pi at most and that are no larger than
+    twice their distance to the listener. Cells of half the size move no response by more than 1e-6 of its largest
+    value.
 
     Parameters
     ----------

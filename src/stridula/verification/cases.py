@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import falling, frequencies, impacts, instabilities, jams, laws, orders, sliders
+from . import falling, frequencies, impacts, instabilities, jams, laws, orders, radiation, sliders
 from .case import Case
 
 CASES: tuple[Case, ...] = (
@@ -14,11 +14,11 @@ CASES: tuple[Case, ...] = (
     *laws.CASES,
     *frequencies.CASES,
     *orders.CASES,
+    *radiation.CASES,
 )
 
 WAITING = (
     "Frequencies of the simply supported plate: wait for a plate",
     "Sliding stability of the paper's pair and its onsets: wait for eigenvalues of the sliding pair",
-    "Radiation of the baffled plate (Wallace 1972), the baffled piston and the baffled monopole: wait for radiation",
     "Loudness of 1 kHz at 40 dB: waits for loudness",
 )
