@@ -43,7 +43,7 @@ def surface_of(panel: Panel, listener: Array, wavenumber: float, refinement: flo
     """Return the elements of a panel for a listener.
 
     Cells of 8 x 8 Gauss-Legendre points, over which modes and sound turn by 3 pi at most and that are no larger than
-    twice their distance to the listener. Cells of half the size move no response by more than 1e-6 of its largest
+    twice their distance to the listener. Cells of half the size move no response by more than 1e-5 of its largest
     value.
 
     Parameters
