@@ -14,7 +14,7 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 import xarray as xr
-from scipy.special import erf
+from scipy.special import erf, h2vp, hankel2
 
 import stridula as st
 from stridula.acoustics.delays import interpolation
@@ -213,6 +213,27 @@ def test_sound_of_a_blow_in_free_air():
     assert error(found, expected) < 0.01
     below = st.radiate(record(samples), BEAM, (0.1, 0.2, -0.1), baffled=False, air=AIR).values[:, 0]
     np.testing.assert_allclose(below, -found, atol=1e-12 * np.abs(found).max())
+
+
+@pytest.mark.parametrize("away", [0.05, 0.4])
+def test_a_long_round_beam_sounds_like_a_cylinder(away):
+    """The middle of 100 m in one half-wave against an oscillating cylinder of radius a.
+
+    Exact in the plane: ``p = i rho c v H1(k r) / H1'(k a)`` on its axis of motion (Morse & Ingard 1968, section 7.3),
+    of which the line of dipoles is the limit of small ka: terms of (ka)² ln ka. The half-wave changes it by (away / 100
+    m).
+    """
+    radius, frequency, interval = 0.002, 2000.0, 1.0 / 16e3
+    section = st.Circle(2.0 * radius)
+    panel = line_of(st.ModalBeam(STEEL, section, 100.0, bending_modes=1, axial_modes=0))
+    place = np.array([50.0, 0.0, away])
+    response = dipole_response(panel, moved_area(section), place, AIR, interval, interpolation(0.25))
+    samples = response.first + np.arange(len(response.taps))
+    found = np.exp(-2j * pi * frequency * interval * samples) @ response.taps[:, 0] / panel.amplitude
+    number = 2.0 * pi * frequency / AIR.speed
+    # For unit acceleration, v = 1 / (i w); Hankel functions of the second kind go with e^(i w t).
+    exact = -1j * AIR.impedance * hankel2(1, number * away) / h2vp(1, number * radius) / (2j * pi * frequency)
+    assert abs(found / exact - 1.0) < 3.0 * (number * radius) ** 2 * abs(np.log(number * radius))
 
 
 def test_contacts_add_and_doubled_forces_double():
