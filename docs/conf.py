@@ -104,6 +104,7 @@ HOMES = {
     "records.export": "Records for other programs",
     "records.compare": "Two records side by side",
     "integration": "How time goes on",
+    "acoustics": "What is heard",
     "scenarios": "Ready cases",
     "studies": "Many runs",
 }

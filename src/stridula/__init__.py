@@ -55,6 +55,7 @@ _HOME = {
     ),
     "analysis.stability": ("sliding_stability",),
     "analysis": ("regime",),
+    "acoustics": ("Air", "radiate", "radiation_damping", "radiation_efficiency"),
     "studies": (
         "CalibrationProgress",
         "Grid",

@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
-from . import falling, frequencies, impacts, instabilities, jams, laws, orders, plates, sliders, stability
+from . import (
+    falling,
+    frequencies,
+    impacts,
+    instabilities,
+    jams,
+    laws,
+    orders,
+    plates,
+    radiation,
+    sliders,
+    stability,
+)
 from .case import Case
 
 CASES: tuple[Case, ...] = (
@@ -16,9 +28,7 @@ CASES: tuple[Case, ...] = (
     *frequencies.CASES,
     *plates.CASES,
     *orders.CASES,
+    *radiation.CASES,
 )
 
-WAITING = (
-    "Radiation of the baffled plate (Wallace 1972), the baffled piston and the baffled monopole: wait for radiation",
-    "Loudness of 1 kHz at 40 dB: waits for loudness",
-)
+WAITING = ("Loudness of 1 kHz at 40 dB: waits for loudness",)
