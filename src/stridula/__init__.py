@@ -51,6 +51,9 @@ _HOME = {
         "simulate",
         "simulate_many",
     ),
+    "acoustics.levels": ("equivalent_level", "sound_level", "third_octave_levels"),
+    "acoustics.sensation": ("loudness", "loudness_over_time", "roughness", "sharpness"),
+    "acoustics.wav": ("SoundFile", "read_wav", "write_wav"),
     "analysis.stability": ("sliding_stability",),
     "analysis": ("regime",),
     "studies": (

@@ -1,0 +1,1 @@
+"""What is heard: sound in the air, its levels, its sensation, sound files."""
