@@ -74,7 +74,7 @@ def test_rates_are_in_a_ratio_of_whole_numbers():
     assert ratio(100e3, 44100.0) == ratio(1.0 / 1e-5, 44100.0) == Fraction(441, 1000)
     assert ratio(48e3, 44100.0) == Fraction(147, 160)
     for rate in (1.0 / 9.9873e-6, 12345.678, 1e6 * np.pi):
-        assert float(ratio(rate, 48000.0)) == pytest.approx(48000.0 / rate, rel=1e-6)
+        assert float(ratio(rate, 48000.0)) == pytest.approx(48000.0 / rate, rel=4e-6)
 
 
 def test_a_later_ear_is_the_second_channel(tmp_path):

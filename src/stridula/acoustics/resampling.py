@@ -12,7 +12,7 @@ from ..bodies.modes import Array
 # Attenuation from half of the lower rate on [dB], and how far below that the pass band ends: 20 kHz at 44.1 kHz.
 STOP_BAND = 110.0
 PASS_BAND = 0.907
-# Rates that are not in a ratio of small whole numbers are off by less than one part in 1e7.
+# Rates that are not in a ratio of such numbers are off by one part in 1e7, by some in 1e6 where they are far apart.
 LARGEST_DENOMINATOR = 5000
 
 

@@ -59,7 +59,7 @@ def loudness(pressure: xr.DataArray, field: str = "free") -> xr.DataArray:
     metrics = _metrics()
     sounds = _sounds(pressure, SHORTEST_STEADY, "the loudness of a steady sound")
     values = _each(sounds, lambda sound: float(metrics.loudness_zwst(sound, RATE, field_type=field)[0]))
-    return of_listeners(pressure, values, "loudness", "sone", "loudness, ISO 532-1, stationary")
+    return of_listeners(pressure, np.array(values), "loudness", "sone", "loudness, ISO 532-1, stationary")
 
 
 def loudness_over_time(pressure: xr.DataArray, field: str = "free") -> xr.DataArray:
@@ -124,7 +124,7 @@ def sharpness(pressure: xr.DataArray, field: str = "free") -> xr.DataArray:
             return float("nan")
         return float(metrics.sharpness_din_from_loudness(total, specific, weighting="din"))
 
-    return of_listeners(pressure, _each(sounds, of_one), "sharpness", "acum", "sharpness, DIN 45692")
+    return of_listeners(pressure, np.array(_each(sounds, of_one)), "sharpness", "acum", "sharpness, DIN 45692")
 
 
 def roughness(pressure: xr.DataArray) -> xr.DataArray:

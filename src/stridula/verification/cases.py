@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import falling, frequencies, impacts, instabilities, jams, laws, orders, sliders, stability
+from . import falling, frequencies, impacts, instabilities, jams, laws, orders, sensations, sliders, stability
 from .case import Case
 
 CASES: tuple[Case, ...] = (
@@ -15,10 +15,10 @@ CASES: tuple[Case, ...] = (
     *laws.CASES,
     *frequencies.CASES,
     *orders.CASES,
+    *sensations.CASES,
 )
 
 WAITING = (
     "Frequencies of the simply supported plate: wait for a plate",
     "Radiation of the baffled plate (Wallace 1972), the baffled piston and the baffled monopole: wait for radiation",
-    "Loudness of 1 kHz at 40 dB: waits for loudness",
 )
