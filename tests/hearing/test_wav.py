@@ -10,7 +10,7 @@ import pytest
 import soundfile
 
 import stridula as st
-from stridula.acoustics.resampling import ratio, resampled
+from stridula.acoustics.sample_rates import ratio, resampled
 
 from .sounds import heard, tone
 

@@ -56,6 +56,13 @@ def _interval(pressure: xr.DataArray) -> float:
     return interval
 
 
+def positions(pressure: xr.DataArray) -> Array | None:
+    """Return where the listeners are [m], shape (listeners, 3), or None if the coordinates x, y, z do not say."""
+    if not all(name in pressure.coords and pressure[name].dims == ("listener",) for name in "xyz"):
+        return None
+    return np.stack([pressure[name].values.astype(float) for name in "xyz"], axis=1)
+
+
 def of_listeners(pressure: xr.DataArray, values: Array, name: str, units: str, meaning: str) -> xr.DataArray:
     """Return one number for each listener, with the listeners' coordinates.
 

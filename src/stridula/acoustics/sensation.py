@@ -14,7 +14,7 @@ import xarray as xr
 from ..bodies.modes import Array
 from ..checks import choice
 from .pressures import channels, check_length, check_rate, of_listeners, over_time
-from .resampling import resampled
+from .sample_rates import resampled
 
 RATE = 48000
 FIELDS = ("free", "diffuse")

@@ -14,7 +14,7 @@ from ..bodies.modes import Array
 from ..checks import choice, positive
 from ..disk import check_writable, read, write
 from .pressures import channels
-from .resampling import resampled
+from .sample_rates import resampled
 
 RATES = (44100, 48000, 96000)
 SUBTYPES = ("PCM_24", "FLOAT")

@@ -8,9 +8,11 @@ import numpy as np
 import xarray as xr
 from rich import box
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from ..acoustics.levels import equivalent_level, sound_level
+from ..acoustics.pressures import positions
 from ..acoustics.sensation import is_available, loudness_over_time, roughness, sharpness
 
 Measure = Callable[[xr.DataArray], xr.DataArray]
@@ -49,7 +51,7 @@ def print_levels(pressure: xr.DataArray) -> None:
         except ValueError as error:
             reasons.append(f"no {head.partition(' [')[0]}: {error}")
             continue
-        table.add_column(head, justify="right")
+        table.add_column(escape(head), justify="right")
         columns.append([f"{number:.{digits}f}" if np.isfinite(number) else "-" for number in numbers])
     if not is_available():
         reasons.append("no loudness, sharpness and roughness: they take mosqito (pip install stridula[psycho])")
@@ -70,7 +72,7 @@ def _names(pressure: xr.DataArray) -> list[str]:
     names = [str(name) for name in pressure["listener"].values]
     if "listener" not in pressure.coords:
         names = [str(number + 1) for number in range(len(names))]
-    if "listener_position" not in pressure.coords:
+    places = positions(pressure)
+    if places is None:
         return names
-    places = pressure["listener_position"].transpose("listener", ...).values
     return [f"{name} at ({', '.join(f'{x:.4g}' for x in place)}) m" for name, place in zip(names, places, strict=True)]

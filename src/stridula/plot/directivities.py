@@ -9,8 +9,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..acoustics.levels import equivalent_level, third_octave_levels
+from ..acoustics.pressures import positions
 from ..bodies.modes import Array
-from ..checks import choice, positive
+from ..checks import choice, finite, positive
 from .colours import LINES
 
 PLANES = ("xy", "xz", "yz")
@@ -32,7 +33,7 @@ def directivity(
     Parameters
     ----------
     pressure : xarray.DataArray, shape (time, listener)
-        Sound pressure [Pa] with the coordinate ``listener_position`` [m], shape (listener, 3).
+        Sound pressure [Pa], with where the listeners are in the coordinates ``x``, ``y``, ``z`` [m].
     centre : sequence of float, shape (3,), optional
         The point [m].
     plane : {"xy", "xz", "yz"}, optional
@@ -86,10 +87,11 @@ def directivity(
 
 def _angles(pressure: xr.DataArray, centre: Sequence[float], plane: str) -> Array:
     choice("plane", plane, PLANES)
-    if "listener" not in pressure.dims or "listener_position" not in pressure.coords:
-        raise ValueError("pressure must have listeners with the coordinate listener_position [m], got none")
+    places = positions(pressure)
+    if places is None:
+        raise ValueError("pressure must say where its listeners are, coordinates x, y, z [m], got none")
     axes = ["xyz".index(letter) for letter in plane]
-    arms = np.asarray(pressure["listener_position"].transpose("listener", ...).values, dtype=float) - np.asarray(centre)
+    arms = places - np.array([finite(f"centre[{k}]", value) for k, value in enumerate(centre)])
     across, along = arms[:, axes[0]], arms[:, axes[1]]
     if pressure.sizes["listener"] < 3 or not np.hypot(across, along).min() > 0.0:
         raise ValueError(

@@ -67,7 +67,7 @@ class Film:
     def __str__(self) -> str:
         return (
             f"{self.path}: {self.frames} frames, {1e3 * self.duration:.4g} ms from {self.start:.6g} s, "
-            f"slowed down {self.slowdown:.4g} times, vibration drawn {self.exaggeration:.4g} times"
+            f"slowed down {self.slowdown:.6g} times, vibration drawn {self.exaggeration:.6g} times"
         )
 
 
@@ -209,7 +209,7 @@ class Picture:
         axes.set_ylabel("y [m]", fontsize=8)
         axes.tick_params(labelsize=8)
         self.words = axes.set_title("t", fontsize=9, loc="left")
-        scales = f"slowed down {self.slowdown:.4g} times, vibration drawn {self.exaggeration:.4g} times"
+        scales = f"slowed down {self.slowdown:.6g} times, vibration drawn {self.exaggeration:.6g} times"
         axes.set_title(scales, fontsize=9, loc="right")
 
     def _draw_contact(self, above: Axes, below: Axes) -> None:

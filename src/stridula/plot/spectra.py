@@ -14,8 +14,8 @@ from ..system import System
 from .colours import LINES
 from .sounds import one_signal, reference
 
-HIGHEST, RESOLUTION, RANGE = 16e3, 5.0, 100.0
-UNSTABLE = LINES[1]
+HIGHEST, RESOLUTION, RANGE = 16e3, 5.0, 90.0
+GROWS = "#000000"
 
 
 def spectrum(
@@ -80,7 +80,7 @@ def spectrum(
     axes.set_ylabel(f"power spectral density\n[{level.words}]")
     axes.grid(alpha=0.3, linewidth=0.5)
     if len(signals) > 1:
-        axes.legend(fontsize=8, frameon=False, loc="lower left")
+        axes.legend(fontsize=8, frameon=False, loc="lower right")
     axes.set_title(title, fontsize=11)
     return figure
 
@@ -107,17 +107,17 @@ def _draw_growing(axes: Axes, stability: xr.Dataset, end: float) -> None:
     for frequency, rate in zip(growing["frequency"].values, growing["growth_rate"].values, strict=True):
         if frequency > end:
             continue
-        axes.axvline(frequency / 1e3, color=UNSTABLE, linewidth=1.2, linestyle="--", zorder=1)
+        axes.axvline(frequency / 1e3, color=GROWS, linewidth=1.0, linestyle="--", zorder=1)
         axes.annotate(
-            f"{frequency:.0f} Hz\n+{rate:.3g} /s",
-            (frequency / 1e3, 0.98),
-            (3, 0),
+            f"{frequency:.0f} Hz, grows by {rate:.0f} /s",
+            (frequency / 1e3, 0.02),
+            (2, 0),
             xycoords=("data", "axes fraction"),
             textcoords="offset points",
-            va="top",
+            rotation=90,
+            va="bottom",
             fontsize=8,
-            color=UNSTABLE,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
         )
 
 
