@@ -1,4 +1,4 @@
-"""What is heard: air, the track's motion from a record, its sound in time."""
+"""What is heard: air, the track's motion from a record, its sound in time, levels, sensation, sound files."""
 
 from .air import Air
 from .radiate import radiate

@@ -169,6 +169,25 @@ def stability(
 
 
 @app.command()
+def animate(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME-OR-RUN.nc", help="A shipped scenario, a TOML file or a record, run again.")
+    ],
+    out: Annotated[str, typer.Option(metavar="FILE", help="Film to write: .mp4 or .gif.")],
+    from_: Annotated[str, typer.Option("--from", metavar="S", help="Where it begins, in s or with a unit.")] = "0",
+    duration: Annotated[str, typer.Option(metavar="S", help="Time that it shows, in s or with a unit.")] = "10 ms",
+    slowdown: Annotated[float, typer.Option(metavar="X", help="How much slower than life it is.")] = 1000.0,
+    exaggeration: Annotated[
+        float | None, typer.Option(metavar="X", help="How many times larger than life the vibration is drawn.")
+    ] = None,
+) -> None:
+    """Film two beams and their contact in slow motion."""
+    from .filming import film_scenario
+
+    print(film_scenario(name, out, from_, duration, slowdown, exaggeration))
+
+
+@app.command()
 def export(
     record: Annotated[str, typer.Argument(metavar="RUN.nc", help="A record.")],
     out: Annotated[str, typer.Option(metavar="FILE", help="Table to write: .csv or .mat.")],

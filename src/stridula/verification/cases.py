@@ -1,4 +1,4 @@
-"""All cases, and those that wait for what the package does not have yet."""
+"""All cases."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from . import (
     orders,
     plates,
     radiation,
+    sensations,
     sliders,
     stability,
 )
@@ -29,6 +30,5 @@ CASES: tuple[Case, ...] = (
     *plates.CASES,
     *orders.CASES,
     *radiation.CASES,
+    *sensations.CASES,
 )
-
-WAITING = ("Loudness of 1 kHz at 40 dB: waits for loudness",)
