@@ -7,10 +7,34 @@ from typing import Any
 
 import numpy as np
 
+from ..bodies import ModalBeam, ModalPlate
 from ..bodies.modes import Array
-from ..checks import finite
+from ..checks import finite, positive
 
 FARTHEST = 1000.0
+
+
+def ears(track: ModalBeam | ModalPlate, height: float = 1.0, spacing: float = 0.18) -> list[tuple[float, float, float]]:
+    """Return the places of two ears above the middle of a track, the left one first, side by side along it.
+
+    Parameters
+    ----------
+    track : ModalBeam or ModalPlate
+        The track.
+    height : float, optional
+        Height above it [m].
+    spacing : float, optional
+        Distance between the ears [m].
+
+    Returns
+    -------
+    list of tuple
+        x, y, z of both [m].
+    """
+    middle = positive("height", height)
+    across = track.width / 2.0 if isinstance(track, ModalPlate) else 0.0
+    half = positive("spacing", spacing) / 2.0
+    return [(track.length / 2.0 + side * half, across, middle) for side in (-1.0, 1.0)]
 
 
 def listeners_of(listener: Any) -> Array:

@@ -17,7 +17,7 @@ from .convolution import Convolution
 from .delays import Interpolation, Response, interpolation
 from .dipoles import dipole_response, moved_area
 from .driven import FASTEST, accelerations, first_time
-from .listeners import check_in_front, check_off_beam, listeners_of
+from .listeners import check_in_front, check_off_beam, ears, listeners_of
 from .panels import Panel, line_of, panel_of
 from .rayleigh import baffled_response
 from .recorded import Pressing, pressing
@@ -31,7 +31,7 @@ MEMORY = 64e6
 def radiate(
     run: xr.Dataset,
     track: ModalBeam | ModalPlate,
-    listener: Any,
+    listener: Any = None,
     *,
     baffled: bool = True,
     air: Air | None = None,
@@ -49,8 +49,8 @@ def radiate(
         A record, with or without probes. All its contacts press on the track: choose with ``run.sel(contact=[...])``.
     track : ModalBeam or ModalPlate
         What is heard; it need not be the body of the run, but must be as long as where it is pressed.
-    listener : tuple of float, or sequence of tuples
-        Where one listens, x, y, z [m]: x along the track from its left end, y across it in its surface, from the axis
+    listener : tuple of float, or sequence of tuples, optional
+        Where one listens; a pair of ears a metre above the middle of the track if left out (`ears`). A place is x, y, z [m]: x along the track from its left end, y across it in its surface, from the axis
         of a beam or from the first edge of a plate, z above it, on the slider's side.
     baffled : bool, optional
         Whether the surface is flush with an endless rigid wall; else it is a slim beam in free air.
@@ -77,7 +77,7 @@ def radiate(
     instance("baffled", baffled, bool)
     surface: Callable[[Any], Panel] = panel_of if baffled else line_of
     panel = surface(track)
-    listeners = listeners_of(listener)
+    listeners = listeners_of(ears(track) if listener is None else listener)
     _check_listeners(listeners, track, baffled)
     pressed = pressing(run, panel)
     recorded = 1.0 / pressed.interval
