@@ -50,8 +50,9 @@ def radiate(
     track : ModalBeam or ModalPlate
         What is heard; it need not be the body of the run, but must be as long as where it is pressed.
     listener : tuple of float, or sequence of tuples, optional
-        Where one listens; a pair of ears a metre above the middle of the track if left out (`ears`). A place is x, y, z [m]: x along the track from its left end, y across it in its surface, from the axis
-        of a beam or from the first edge of a plate, z above it, on the slider's side.
+        Where one listens, x, y, z [m]: x along the track from its left end, y across it in its surface, from the axis
+        of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above the
+        middle of the track if left out.
     baffled : bool, optional
         Whether the surface is flush with an endless rigid wall; else it is a slim beam in free air.
     air : Air, optional
