@@ -394,6 +394,8 @@ EXPECTED = {
     "strong-pressure": "squeal",
     "belt": "stick-slip",
     "lugre": "stick-slip",
+    "squeal-on-plate": "squeal",
+    "judder-on-plate": "judder",
 }
 
 

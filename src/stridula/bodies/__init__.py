@@ -8,6 +8,9 @@ from .point_mass import PointMass
 from .reduced_body import Rayleigh, ReducedBody
 from .sections import Circle, Material, Rectangle, Section
 
+# Bodies along which a contact point moves.
+Track = ModalBeam | ModalPlate
+
 __all__ = [
     "Body",
     "BodyPoint",
@@ -23,4 +26,5 @@ __all__ = [
     "Rectangle",
     "ReducedBody",
     "Section",
+    "Track",
 ]

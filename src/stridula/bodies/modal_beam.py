@@ -70,6 +70,11 @@ class ModalBeam:
                 )
 
     @property
+    def ends(self) -> tuple[float, float]:
+        """Abscissas of its two ends [m]."""
+        return 0.0, self.length
+
+    @property
     def centre(self) -> BodyPoint:
         """The point at mid-span."""
         return BodyPoint(self, self.length / 2.0)

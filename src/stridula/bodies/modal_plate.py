@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -96,10 +97,8 @@ class ModalPlate:
         instance("material", self.material, Material)
         for side in ("thickness", "length", "width"):
             positive(side, getattr(self, side))
-        if not isinstance(self.bending_modes, (tuple, list)) or len(self.bending_modes) != 2:
-            raise ValueError(f"bending_modes must be two whole numbers, got {self.bending_modes!r}")
-        numbers = tuple(count(f"bending_modes[{k}]", number) for k, number in enumerate(self.bending_modes))
-        object.__setattr__(self, "bending_modes", numbers)
+        words = "two whole numbers of at least 1, along length and width"
+        object.__setattr__(self, "bending_modes", _pair("bending_modes", self.bending_modes, count, words))
         if non_negative("damping", self.damping) >= 1.0:
             raise ValueError(f"damping must be below 1 (critical), got {self.damping!r}")
         instance("name", self.name, str)
@@ -124,9 +123,10 @@ class ModalPlate:
         """Raise ValueError if `position`, an abscissa or a pair [m], is not on the plate."""
         if not isinstance(position, tuple):
             within("position", position, *self.ends)
-            return
-        for k, (distance, side) in enumerate(zip(_pair("position", position), (self.length, self.width), strict=True)):
-            within(f"position[{k}]", distance, 0.0, side)
+        elif not self._holds(*_pair("position", position)):
+            raise ValueError(
+                f"position must be on the plate, from (0, 0) to ({self.length:g}, {self.width:g}), got {position!r}"
+            )
 
     @property
     def track_line(self) -> Line:
@@ -162,6 +162,11 @@ class ModalPlate:
     def amplitude(self) -> float:
         """Largest value of a mass-normalised mode shape [kg^(-1/2)], ``sqrt(4 / rho h length width)``."""
         return float(np.sqrt(4.0 / self.total_mass))
+
+    @property
+    def harmonics(self) -> tuple[int, int]:
+        """Numbers of bending and of axial modes kept; there are no axial ones."""
+        return len(self.numbers), 0
 
     @property
     def numbers(self) -> Array:
@@ -220,21 +225,29 @@ class ModalPlate:
         squared = (m / self.length) ** 2 + (n / self.width) ** 2
         return 0.5 * np.pi * squared * math.sqrt(self.rigidity / self.surface_density)
 
+    def _holds(self, x: float, y: float) -> bool:
+        return 0.0 <= x <= self.length and 0.0 <= y <= self.width
+
     def _check_line(self, line: Line) -> None:
-        inside = all(0.0 <= part <= side for part, side in zip(line.origin, (self.length, self.width), strict=True))
-        if not inside:
-            raise ValueError(f"line must have its origin on the plate, got {line.origin!r}")
+        if not self._holds(*line.origin):
+            raise ValueError(f"line must have its origin on the plate, got {line!r}")
         low, high = _ends(self, line)
         x, y = line.point((low + high) / 2.0)
         if not (high > low and 0.0 < x < self.length and 0.0 < y < self.width):
             raise ValueError(f"line must cross the plate inside its edges, got {line!r}")
 
 
-def _pair(name: str, values: Any) -> tuple[float, float]:
-    if not isinstance(values, (tuple, list)) or len(values) != 2:
-        raise ValueError(f"{name} must be two distances, along length and width, got {values!r}")
-    first, second = (finite(f"{name}[{k}]", value) for k, value in enumerate(values))
-    return first, second
+def _pair(
+    name: str,
+    values: Any,
+    check: Callable[[str, Any], Any] = finite,
+    words: str = "two finite distances, along length and width",
+) -> tuple[Any, Any]:
+    try:
+        first, second = values if isinstance(values, (tuple, list)) else ()
+        return check(name, first), check(name, second)
+    except ValueError:
+        raise ValueError(f"{name} must be {words}, got {values!r}") from None
 
 
 def _ends(plate: ModalPlate, line: Line) -> tuple[float, float]:

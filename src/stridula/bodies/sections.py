@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..checks import finite, positive
+from ..checks import positive, within
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Material:
     density : float
         Mass density [kg/m³].
     poisson : float, optional
-        Poisson's ratio [1], above -1 and up to 0.5; of no effect on beams.
+        Poisson's ratio [1], from -1 to 0.5 (both excluded); of no effect on beams.
     """
 
     young: float
@@ -29,8 +29,7 @@ class Material:
     def __post_init__(self) -> None:
         positive("young", self.young)
         positive("density", self.density)
-        if not -1.0 < finite("poisson", self.poisson) <= 0.5:
-            raise ValueError(f"poisson must be above -1 and up to 0.5, got {self.poisson!r}")
+        within("poisson", self.poisson, -1.0, 0.5, ends=False)
 
 
 @dataclass(frozen=True)

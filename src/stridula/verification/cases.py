@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import falling, frequencies, impacts, instabilities, jams, laws, orders, radiation, sliders
+from . import falling, frequencies, impacts, instabilities, jams, laws, orders, plates, radiation, sliders
 from .case import Case
 
 CASES: tuple[Case, ...] = (
@@ -13,12 +13,12 @@ CASES: tuple[Case, ...] = (
     *jams.CASES,
     *laws.CASES,
     *frequencies.CASES,
+    *plates.CASES,
     *orders.CASES,
     *radiation.CASES,
 )
 
 WAITING = (
-    "Frequencies of the simply supported plate: wait for a plate",
     "Sliding stability of the paper's pair and its onsets: wait for eigenvalues of the sliding pair",
     "Loudness of 1 kHz at 40 dB: waits for loudness",
 )
