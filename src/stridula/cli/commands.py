@@ -318,7 +318,7 @@ def sensitivity_(
 def paper(
     out: Annotated[str, typer.Option(metavar="DIR", help="Folder to write to.")] = "results/paper",
 ) -> None:
-    """Reproduce Laulagnet 2011: every figure, every record, every claim."""
+    """Reproduce Laulagnet 2011: every figure, every record, every sound, every claim."""
     from pathlib import Path
 
     from ..integration import Diverged

@@ -38,7 +38,7 @@ def run_scenario(
     check_outputs(out, plot)
     scenario = load_scenario(name, overrides)
     if wav is not None:
-        _check_wav(wav, out, plot, scenario.system)
+        _check_wav(wav, name, out, plot, scenario.system)
     try:
         with _progress(scenario.title or name) as watcher:
             record = scenario.simulate(watchers=[watcher])
@@ -49,6 +49,8 @@ def run_scenario(
         words.append("nothing was asked to be kept (no --out)" if out is None else f"the record so far is in {out}")
         if plot is not None:
             words.append(f"it is drawn in {plot}" if plot in kept else f"no figure was drawn{_why(stop)}")
+        if wav is not None:
+            words.append("no sound was written")
         raise Stopped("; ".join(words), INTERRUPTED if interrupted else FAILED) from None
     _finish(record, scenario.title or name, out, plot)
     if wav is not None:
@@ -57,13 +59,15 @@ def run_scenario(
         print(write_sound(record, scenario.system, wav))
 
 
-def _check_wav(wav: str, out: str | None, plot: str | None, system: Any) -> None:
-    from .sounding import track_of
+def _check_wav(wav: str, name: str, out: str | None, plot: str | None, system: Any) -> None:
+    from .sounding import check_baffled
 
     for option, other in (("--out", out), ("--plot", plot)):
         if other is not None and Path(other).resolve() == Path(wav).resolve():
             raise ValueError(f"--wav must be another file than {option}, got {wav!r} for both")
-    track_of(system)
+    if Path(name).is_file() and Path(name).resolve() == Path(wav).resolve():
+        raise ValueError(f"--wav must be another file than what is run, got {wav!r} for both")
+    check_baffled(system)
     check_writable(wav)
 
 
