@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from scipy.signal import find_peaks
 
 from ..bodies.modes import Array
 from ..checks import positive
@@ -105,6 +104,9 @@ def tones(
     level : ndarray, shape (tones,)
         Levels below the strongest [dB].
     """
+    # Slow to import.
+    from scipy.signal import find_peaks
+
     positive("prominence", prominence)
     frequency, energy = spectrum(signal, intervals)
     width = max(1, round(positive("resolution", resolution) / frequency[1]))
