@@ -49,8 +49,8 @@ class Panel:
         along, across = self.wavenumbers.T
         shapes = self.amplitude * _sines(x, along)
         if across.any():
-            shapes *= _sines(y - self.edge, across)
-        return shapes
+            shapes = shapes * _sines(y - self.edge, across)
+        return np.broadcast_to(shapes, (*shapes.shape[:-1], len(along)))
 
     def only(self, modes: Any) -> Panel:
         """Return the panel with the chosen modes, an index or a slice, only."""
@@ -96,9 +96,11 @@ def line_of(track: ModalBeam) -> Panel:
 
 
 def _sines(places: Array, wavenumbers: Array) -> Array:
-    """Return the sines at places (...) for each wavenumber, equal ones evaluated once, shape (..., modes)."""
+    """Return the sines at places (...) for each wavenumber, shape (..., modes), or (..., 1) if all are equal."""
     different, number = np.unique(wavenumbers, return_inverse=True)
-    return np.sin(places[..., None] * different)[..., number]
+    sines = np.sin(places[..., None] * different)
+    in_order = len(different) == 1 or (len(different) == len(number) and bool((np.diff(number) > 0).all()))
+    return sines if in_order else sines[..., number]
 
 
 def _bent(beam: ModalBeam, width: float) -> Panel:

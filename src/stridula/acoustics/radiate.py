@@ -85,6 +85,8 @@ def radiate(
     ratio = ratio_of(sample_rate, recorded, pressed.samples)
     bandwidth = bandwidth_of(ratio, recorded)
     kept = np.flatnonzero(panel.angular_frequency * pressed.interval < FASTEST)
+    # Modes that share a sine stand together.
+    kept = kept[np.argsort(panel.wavenumbers[kept, 0], kind="stable")]
     heard = panel.only(kept)
     responses = _responses(heard, track, baffled, listeners, air, pressed, bandwidth)
     pressure = resample(_sum(heard, pressed, responses), ratio)

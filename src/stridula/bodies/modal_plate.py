@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from ..checks import count, finite, instance, non_negative, positive, within
+from ..checks import count, finite, instance, positive, within
+from .damping import check_damping_count, checked_damping, damping_of_modes
 from .modes import Array, BodyPoint, Modes
 from .sections import Material
 
@@ -68,8 +69,8 @@ class ModalPlate:
         Thickness and sides [m].
     bending_modes : tuple of int, optional
         Numbers of half-waves kept along the length and along the width; each pair of them is a mode.
-    damping : float, optional
-        Modal damping ratio of every mode [1], from 0 to 1 (1 excluded).
+    damping : float or sequence of float, optional
+        Modal damping ratio of every mode [1], from 0 to 1 (1 excluded), or one for each mode in their order.
     cutoff : float, optional
         Keep all the modes up to this frequency [Hz] instead of the numbers above.
     line : Line, optional
@@ -88,7 +89,7 @@ class ModalPlate:
     length: float
     width: float
     bending_modes: tuple[int, int] = (12, 12)
-    damping: float = 0.0
+    damping: float | Sequence[float] = 0.0
     cutoff: float | None = None
     line: Line | None = None
     name: str = ""
@@ -99,13 +100,13 @@ class ModalPlate:
             positive(side, getattr(self, side))
         words = "two whole numbers of at least 1, along length and width"
         object.__setattr__(self, "bending_modes", _pair("bending_modes", self.bending_modes, count, words))
-        if non_negative("damping", self.damping) >= 1.0:
-            raise ValueError(f"damping must be below 1 (critical), got {self.damping!r}")
+        object.__setattr__(self, "damping", checked_damping(self.damping))
         instance("name", self.name, str)
         if self.cutoff is not None and positive("cutoff", self.cutoff) * (1.0 + 1e-12) < self._frequency(1, 1):
             raise ValueError(
                 f"cutoff must leave at least one mode (first at {self._frequency(1, 1):.6g} Hz), got {self.cutoff!r} Hz"
             )
+        check_damping_count(self.damping, len(self.numbers))  # type: ignore[arg-type]
         if self.line is not None:
             instance("line", self.line, Line)
             self._check_line(self.line)
@@ -285,4 +286,4 @@ def _modes(plate: ModalPlate) -> Modes:
     mean = (1.0 - (-1.0) ** m) / (m * np.pi) * (1.0 - (-1.0) ** n) / (n * np.pi)
     translation = np.zeros((2, len(m)))
     translation[1] = plate.total_mass * plate.amplitude * mean
-    return Modes(2.0 * np.pi * plate._frequency(m, n), np.full(len(m), float(plate.damping)), translation)
+    return Modes(2.0 * np.pi * plate._frequency(m, n), damping_of_modes(plate.damping, len(m)), translation)

@@ -123,6 +123,26 @@ class Quantity(_Kind):
 
 
 @dataclass(frozen=True)
+class OneOrEach(_Kind):
+    """One quantity, or a list of them.
+
+    Attributes
+    ----------
+    one : Quantity
+        What each is.
+    """
+
+    one: Quantity
+
+    def read(self, value: Any) -> Any:
+        return [self.one.read(each) for each in value] if isinstance(value, list) else self.one.read(value)
+
+    def json_schema(self) -> dict[str, Any]:
+        one = self.one.json_schema()
+        return {"anyOf": [*one["anyOf"], {"type": "array", "items": one}]}
+
+
+@dataclass(frozen=True)
 class Whole(_Kind):
     """A whole number.
 
@@ -356,6 +376,7 @@ PositiveRatio = Annotated[float, Quantity("1", above=0.0)]
 Bristles = Annotated[float, Quantity("1/m", above=0.0)]
 Slope = Annotated[float, Quantity("s/m", least=0.0)]
 Matrix = Annotated[Any, Numbers((2,), file=True)]
+ModalDamping = Annotated[Any, OneOrEach(Quantity("1", least=0.0, below=1.0))]
 ReducedDamping = Annotated[Any, Numbers((0, 1, 2), file=True, rayleigh=True)]
 Vector = Annotated[Any, Numbers((1,))]
 PointTable = Annotated[Any, Points()]

@@ -88,8 +88,8 @@ class Track(Table):
     """number of bending modes, unless there is a cutoff"""
     axial_modes: is_.CountOrNone = ModalBeam.axial_modes
     """number of axial modes, unless there is a cutoff"""
-    damping: is_.Damping = ModalBeam.damping
-    """damping ratio of every mode"""
+    damping: is_.ModalDamping = ModalBeam.damping
+    """damping ratio of every mode, or one for each"""
     cutoff: is_.Frequency | None = None
     """keep the modes up to this frequency [Hz]"""
     name: str = ""
@@ -126,8 +126,8 @@ class Plate(Table):
     """other side [m]"""
     bending_modes: is_.Counts = ModalPlate.bending_modes
     """numbers of half-waves along length and width, unless there is a cutoff"""
-    damping: is_.Damping = ModalPlate.damping
-    """damping ratio of every mode"""
+    damping: is_.ModalDamping = ModalPlate.damping
+    """damping ratio of every mode, or one for each"""
     cutoff: is_.Frequency | None = None
     """keep the modes up to this frequency [Hz]"""
     line: Line | None = None

@@ -79,7 +79,7 @@ def of_images(plate: ModalPlate, place: tuple[float, float], low: float, high: f
     the images by ``exp(-zeta k r / 2)``; the outermost ring of them counts as what is left out, at its size.
     """
     band = np.sqrt(2.0 * pi * np.array([low, high]) * sqrt(plate.surface_density / plate.rigidity))
-    cells = np.arange(-3, 4)
+    cells, zeta = np.arange(-3, 4), float(plate.modes().damping[0])
     mean, rest = 1.0, 0.0
     for p in cells:
         for q in cells:
@@ -90,7 +90,7 @@ def of_images(plate: ModalPlate, place: tuple[float, float], low: float, high: f
                     r = float(np.hypot(x, y))
                     if r == 0.0:
                         continue
-                    ends = band * j1(band * r) * np.exp(-plate.damping * band * r / 2.0)
+                    ends = band * j1(band * r) * np.exp(-zeta * band * r / 2.0)
                     share = sign_x * sign_y * 2.0 * float(ends[1] - ends[0]) / (r * float(np.ptp(band**2)))
                     mean += share
                     rest += abs(share) * (max(abs(p), abs(q)) == 3)
@@ -103,7 +103,7 @@ def of_modes_kept(plate: ModalPlate, frequency: Array) -> float:
     Modes are as dense at every frequency, and one adds a constant times ``2 zeta u / ((u² - 1)² + 4 zeta² u²)`` at
     u = w / omega; its integral is elementary. From zero to infinity it is ``1 - 2 zeta / pi`` of that without damping.
     """
-    zeta = plate.damping
+    zeta = float(plate.modes().damping[0])
     middle = 1.0 - 2.0 * zeta**2
     half = sqrt(1.0 - middle**2)
     highest = (plate.modes().frequency[-1] / frequency) ** 2
