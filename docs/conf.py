@@ -84,10 +84,23 @@ html_sidebars = {"**": []}
 
 logger = logging.getLogger(__name__)
 
+FIGURES = (
+    "overview",
+    "timeline",
+    "friction",
+    "root_loci",
+    "regime_map",
+    "spectrogram",
+    "spectrum",
+    "directivity",
+    "animate",
+    "Film",
+    "save",
+)
 # The public names that do not live in the package root: module, title, names unless they are its ``__all__``.
 MODULES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("stridula.analysis", "What a record means", ()),
-    ("stridula.plot", "Figures", ("overview", "timeline", "friction", "root_loci", "regime_map", "save")),
+    ("stridula.plot", "Figures", FIGURES),
     ("stridula.scenarios", "More on scenarios", ()),
     ("stridula.studies", "More on ensembles and sweeps", ()),
     ("stridula.papers.laulagnet_2011", "Laulagnet 2011", ()),
@@ -96,6 +109,9 @@ HOMES = {
     "bodies": "What vibrates",
     "contact": "Where bodies touch",
     "connections": "What joins bodies",
+    "acoustics.levels": "Levels of sound",
+    "acoustics.sensation": "What sound feels like",
+    "acoustics.wav": "Sound files",
     "drives": "What pushes",
     "histories": "How a drive goes in time",
     "system": "The system",
@@ -104,6 +120,7 @@ HOMES = {
     "records.export": "Records for other programs",
     "records.compare": "Two records side by side",
     "integration": "How time goes on",
+    "acoustics": "What is heard",
     "scenarios": "Ready cases",
     "studies": "Many runs",
 }
@@ -359,7 +376,7 @@ def verification_page() -> str:
         lines += [f".. figure:: /_generated/verification/{case.name}.png", f"   :alt: {plain(case.title)}", ""]
         cells = [verification_cells(row) for row in rows if row["case"] == case.name]
         head = ["quantity", "scheme", "expected", "obtained", "error", "tolerance", "within", "tolerance from"]
-        lines += [list_table(head, cells, [17, 10, 12, 12, 9, 9, 6, 25])]
+        lines += [list_table(head, cells, [17, 10, 12, 12, 9, 9, 6, 25]) if cells else "Not run here.\n"]
     return "\n".join(lines)
 
 

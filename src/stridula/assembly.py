@@ -53,7 +53,7 @@ class ContactRows:
     fixed : ndarray, shape (2, modes)
         Displacement of the tip, less that of a frozen track, along normal and tangent.
     bending, axial : tuple of int
-        First mode and the one after the last of the harmonics of a beam that the tip moves along.
+        First mode and the one after the last of each kind of a track that the tip moves along.
     """
 
     contact: PointContact

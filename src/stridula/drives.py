@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, PointMass, ReducedBody
+from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, PointMass, ReducedBody
 from .checks import finite, instance, positive
 from .histories import HISTORIES, Constant, History
 
@@ -100,18 +100,18 @@ class InitialVelocity:
 
     Parameters
     ----------
-    body : FiniteElementBeam, ModalBeam, PointMass or ReducedBody
+    body : FiniteElementBeam, ModalBeam, ModalPlate, PointMass or ReducedBody
         The body; a ReducedBody needs its `translation`.
     x, y : float, optional
         Velocity along the world's axes [m/s].
     """
 
-    body: FiniteElementBeam | ModalBeam | PointMass | ReducedBody
+    body: FiniteElementBeam | ModalBeam | ModalPlate | PointMass | ReducedBody
     x: float = 0.0
     y: float = 0.0
 
     def __post_init__(self) -> None:
-        instance("body", self.body, (FiniteElementBeam, ModalBeam, PointMass, ReducedBody))
+        instance("body", self.body, (FiniteElementBeam, ModalBeam, ModalPlate, PointMass, ReducedBody))
         if isinstance(self.body, ReducedBody) and not self.body.has_translation:
             raise ValueError("body must have its translation given for a uniform velocity, got a ReducedBody without")
         finite("x", self.x)

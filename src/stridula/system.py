@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, ReducedBody
+from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, ReducedBody, Track
 from .checks import instance
 from .connections import Connection, Dashpot, Spring, ends
 from .contact import PointContact, RigidTrack
@@ -171,6 +171,8 @@ def _listed(name: str, given: Any, kinds: tuple[type, ...]) -> tuple[Any, ...]:
 def _body_line(name: str, body: Any) -> str:
     modes = body.modes()
     length = f"{body.length:.4g} m, " if isinstance(body, (FiniteElementBeam, ModalBeam)) else ""
+    if isinstance(body, ModalPlate):
+        length = f"{body.length:.4g} m x {body.width:.4g} m x {body.thickness:.4g} m, "
     lean = f", leaning {math.degrees(body.angle):.4g} deg" if isinstance(body, FiniteElementBeam) else ""
     mass = f"{body.total_mass:.4g} kg" if math.isfinite(body.total_mass) else "given by matrices"
     damping = f", damping {modes.damping.max():.3g}" if modes.damping.any() else ""
@@ -178,7 +180,8 @@ def _body_line(name: str, body: Any) -> str:
 
 
 def _contact_line(name: str, contact: PointContact) -> str:
-    of = f" of {contact.track.length:.4g} m" if isinstance(contact.track, ModalBeam) else ""
+    low, high = contact.track.ends if isinstance(contact.track, Track) else (0.0, 0.0)
+    of = f" of {high - low:.4g} m" if high > low else ""
     kind = {RigidTrack: " on a rigid track", BodyPoint: " against a point"}.get(type(contact.track), "")
     lean = f", inclined {math.degrees(contact.inclination):.4g} deg" if contact.inclination else ""
     return f"{name:<8} at {contact.at:.4g} m{of}{kind}, gap {contact.gap:.3g} m, friction {contact.friction}{lean}"
@@ -209,4 +212,6 @@ def _drive_words(drive: Drive) -> str:
     ]
     place = drive.point.position
     where = f"{place:.4g} m" if isinstance(place, float) else str(place)
+    if isinstance(place, tuple):
+        where = f"({place[0]:.4g}, {place[1]:.4g}) m"
     return f"force {', '.join(parts) or '0 N'} at {where}, {kind}"

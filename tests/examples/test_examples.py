@@ -159,6 +159,10 @@ def test_what_the_readme_shows_runs(tmp_path, monkeypatch, capsys):
     grows = unstable_frequencies(names["system"], sense=1.0).size + 1
     assert f"\n{grows} modes grow\n" in capsys.readouterr().out
     assert len(names["forces"]) == 4
+    back, heard = st.read_wav("squeal.wav"), names["heard"]
+    assert back.sizes["listener"] == 2
+    # The file ends at 24 kHz, where little of the sound is left.
+    assert float((back**2).mean()) == pytest.approx(float((heard**2).mean()), rel=0.05)
 
 
 def shown_in_the_readme() -> list[str]:

@@ -339,6 +339,7 @@ class Touch:
         self.normal, self.tangent = np.array([-np.sin(a), np.cos(a)]), np.array([np.cos(a), np.sin(a)])
         self.tip = matrices.trace(contact.tip)
         self.along_beam = isinstance(contact.track, st.ModalBeam)
+        self.along_plate = isinstance(contact.track, st.ModalPlate)
         self.law = contact.friction
         self.status, self.state, self.anchor = SEPARATED, state_of_new(self.law), 0.0
         self.material = self.place = self.place_before = self.last_slip = 0.0
@@ -356,6 +357,15 @@ class Touch:
                 k = np.pi / track.length * np.arange(1, count + 1)
                 against[side, start : start + count] = size * np.sin(k * x)
                 slopes[side, start : start + count] = size * k * np.cos(k * x)
+        if self.along_plate:
+            span, line = m.spans[track], track.line or st.Line((0.0, track.width / 2))
+            along = np.array([np.cos(line.direction), np.sin(line.direction)])
+            place = line.origin + x * along
+            size = 2 / np.sqrt(track.material.density * track.thickness * track.length * track.width)
+            a, b = np.pi * (track.numbers / [track.length, track.width]).T
+            against[1, span] = size * np.sin(a * place[0]) * np.sin(b * place[1])
+            slopes[1, span] = size * a * along[0] * np.cos(a * place[0]) * np.sin(b * place[1])
+            slopes[1, span] += size * b * along[1] * np.sin(a * place[0]) * np.cos(b * place[1])
         return self.normal @ (self.tip - against), self.tangent @ (self.tip - against), slopes
 
     def motions(self, t):

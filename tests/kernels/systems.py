@@ -108,6 +108,37 @@ def two_on_a_beam() -> st.System:
     return st.System(contacts, [st.Force(left.root, transverse=0.5), st.Force(right.root, axial=-0.6)])
 
 
+def plate(line=None, **changes) -> st.ModalPlate:
+    """A sheet of steel of 0.3 m x 0.2 m x 1 mm."""
+    words = {"damping": 0.01, "cutoff": 4e3, "line": line} | changes
+    return st.ModalPlate(st.Material(2.1e11, 7800.0, 0.28), 0.001, 0.3, 0.2, **words)
+
+
+def on_a_plate(line=None, angle=30.0, **changes) -> st.System:
+    """A slider dragged over a plate."""
+    sheet, rod = plate(line, **changes), slider(angle, cutoff=8e3)
+    contact = st.PointContact(rod.tip, sheet, at=0.1, friction=st.Coulomb(0.9), gap=1e-8)
+    return st.System(contact, dragged(0.05, 3.0)(rod))
+
+
+def sprung_plate() -> st.System:
+    """A pad on three feet thrown along a diagonal of a plate that a spring and a dashpot hold."""
+    sheet = plate(st.Line((0.05, 0.04), 0.5), cutoff=2e3)
+    block = pad(3)
+    laws = (st.Coulomb(0.6), st.StaticKinetic(0.5, 0.3), st.Coulomb(0.4))
+    contacts = [
+        st.PointContact(block.at(f"foot {n}"), sheet, at=0.1 + x, friction=law, gap=1e-8, name=f"foot {n}")
+        for n, (x, law) in enumerate(zip((-0.03, 0.0, 0.03), laws, strict=True))
+    ]
+    joints = [
+        st.Spring(block.at("back"), stiffness=5e3),
+        st.Spring(block.at("back"), stiffness=2e3, direction="y"),
+        st.Spring(sheet.at((0.2, 0.05)), stiffness=1e4, direction="y"),
+        st.Dashpot(sheet.at(0.15), coefficient=2.0, direction="y"),
+    ]
+    return st.System(contacts, [st.InitialVelocity(block, x=0.2), st.Gravity()], joints)
+
+
 def frozen() -> st.System:
     """A dragged slider against a point of a sprung block."""
     rod, block = slider(25.0, cutoff=8e3), pad()
@@ -185,6 +216,9 @@ SYSTEMS = {
     "slider, bristles": (lambda: on_a_beam(st.LuGre(1.0, 0.7, 0.01, 1e5, 10.0)), 5e-6),
     "beam on a spring": (sprung_beam, 5e-6),
     "two sliders": (two_on_a_beam, 5e-6),
+    "plate": (on_a_plate, 5e-6),
+    "diagonal of a plate": (lambda: on_a_plate(st.Line((0.25, 0.03), 2.3), -30.0), 5e-6),
+    "sprung plate": (sprung_plate, 5e-6),
     "frozen contact": (frozen, 5e-6),
     "groove": (groove, 1e-4),
     "inclined plane": (inclined_pin, 5e-6),

@@ -124,6 +124,10 @@ def slightly(change, system):
         contacts[0] = replace(contacts[0], track=replace(contacts[0].track, velocity=0.02 * (1 + 1e-5)))
     elif change == "inclination":
         contacts[0] = replace(contacts[0], inclination=contacts[0].inclination * (1 + 1e-5))
+    elif change == "direction of the line":
+        sheet = contacts[0].track
+        line = replace(sheet.line, direction=sheet.line.direction + 1e-4)
+        contacts[0] = replace(contacts[0], track=replace(sheet, line=line))
     elif change == "dashpot left out":
         joints = [joint for joint in joints if not isinstance(joint, st.Dashpot)]
     elif change == "spring":
@@ -143,6 +147,7 @@ def slightly(change, system):
         ("dashpot left out", "beam on a spring"),
         ("dashpot left out", "chain on a belt"),
         ("spring", "frozen contact"),
+        ("direction of the line", "diagonal of a plate"),
     ],
 )
 def test_comparison_rejects_a_wrong_twin(change, name):

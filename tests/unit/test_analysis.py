@@ -228,3 +228,44 @@ def test_swing_is_peak_to_peak_over_mean():
 def test_bad_arguments(call, words):
     with pytest.raises(ValueError, match=words):
         call(record([("sliding", 0.1)]))
+
+
+def test_tones_are_found_the_strongest_first():
+    amplitudes = {900.0: 1.0, 2500.0: 2.0, 6000.0: 0.1}
+
+    def force(time):
+        noise = 1e-3 * np.random.default_rng(0).standard_normal(time.size)
+        return 5.0 + noise + sum(a * np.sin(2 * np.pi * f * time) for f, a in amplitudes.items())
+
+    frequency, level = analysis.tones(record([("sliding", 1.0)], force).normal_force, prominence=20.0)
+    np.testing.assert_allclose(frequency, [2500.0, 900.0, 6000.0], atol=10.0)
+    np.testing.assert_allclose(level, 20.0 * np.log10([1.0, 0.5, 0.05]), atol=0.1)
+
+
+def test_tones_in_bursts_are_those_of_the_bursts():
+    intervals = np.array([[0.1 * k, 0.1 * k + 0.05] for k in range(1, 8)])
+
+    def force(time):
+        inside = np.any([(time > a) & (time < b) for a, b in intervals], axis=0)
+        return np.where(inside, np.sin(2 * np.pi * 900.0 * time), 5.0 * np.sin(2 * np.pi * 3000.0 * time))
+
+    signal = record([("sliding", 1.0)], force).normal_force
+    assert analysis.tones(signal, intervals)[0][0] == pytest.approx(900.0, abs=10.0)
+    assert analysis.tones(signal)[0][0] == pytest.approx(3000.0, abs=10.0)
+
+
+def test_a_tone_beside_a_stronger_one_must_stand_out():
+    """One is 30 Hz and another 300 Hz away: bands of 20 Hz tell both apart, those of 100 Hz the second only."""
+    lines = ((1000.0, 1.0), (1030.0, 0.5), (1300.0, 0.5))
+    signal = record([("sliding", 1.0)], lambda t: sum(a * np.sin(2 * np.pi * f * t) for f, a in lines)).normal_force
+    near = [np.count_nonzero(analysis.tones(signal, resolution=width)[0] < 1350.0) for width in (20.0, 100.0)]
+    assert near == [3, 2]
+
+
+def test_nothing_has_no_tones_and_bad_numbers_are_refused():
+    signal = record([("sliding", 0.5)], lambda t: 0.0 * t).normal_force
+    for found in (*analysis.tones(signal), *analysis.tones(signal, np.empty((0, 2)))):
+        assert found.size == 0
+    for name in ("resolution", "prominence"):
+        with pytest.raises(ValueError, match=f"{name} must be above 0"):
+            analysis.tones(signal, **{name: 0.0})

@@ -25,10 +25,36 @@ def bar(**changes):
     return st.ModalBeam(**words)
 
 
+def sheet(**changes):
+    words = {"material": STEEL, "thickness": 0.002, "length": 0.4, "width": 0.3, "bending_modes": (4, 3)} | changes
+    return st.ModalPlate(**words)
+
+
 POSITIVE = [NAN, INF, -INF, -1.0, 0.0, True, "1", None, [1.0], 1j]
 MAKERS = {
     "Material.young": (lambda v: st.Material(v, 7800.0), "young", POSITIVE),
     "Material.density": (lambda v: st.Material(2.1e11, v), "density", POSITIVE),
+    "Material.poisson": (lambda v: st.Material(2.1e11, 7800.0, v), "poisson", [NAN, INF, -1.0, 0.5, "1", None]),
+    "Line.origin": (lambda v: st.Line(v), "origin", [0.1, (0.1,), (0.1, 0.2, 0.3), None, "ab", (0.1, NAN)]),
+    "Line.direction": (lambda v: st.Line((0.1, 0.1), v), "direction", [NAN, INF, 7.0, "1", None]),
+    "ModalPlate.material": (lambda v: sheet(material=v), "material", [None, 1.0, "steel", STRIP]),
+    "ModalPlate.thickness": (lambda v: sheet(thickness=v), "thickness", POSITIVE),
+    "ModalPlate.length": (lambda v: sheet(length=v), "length", POSITIVE),
+    "ModalPlate.width": (lambda v: sheet(width=v), "width", POSITIVE),
+    "ModalPlate.bending_modes": (
+        lambda v: sheet(bending_modes=v),
+        "bending_modes",
+        [None, 5, (5,), (5, 0), (5, 1.5), (True, 2), "ab"],
+    ),
+    "ModalPlate.damping": (lambda v: sheet(damping=v), "damping", [NAN, INF, -0.1, 1.0, "1", None]),
+    "ModalPlate.cutoff": (lambda v: sheet(cutoff=v), "cutoff", [NAN, INF, -1.0, 0.0, 85.0, "1"]),
+    "ModalPlate.line": (
+        lambda v: sheet(line=v),
+        "line",
+        [0.1, (0.1, 0.1), st.Line((0.5, 0.1)), st.Line((0.1, 0.0)), st.Line((0.0, 0.0), 2.0), st.Line((0.0, 0.3), 0.8)],
+    ),
+    "ModalPlate.name": (lambda v: sheet(name=v), "name", [None, 1]),
+    "ModalPlate.at": (lambda v: sheet().at(v), "position", [-0.1, 0.41, NAN, "centre", None, (0.1, 0.31), (0.1,)]),
     "Section.area": (lambda v: st.Section(v, 1e-9), "area", POSITIVE),
     "Section.second_moment": (lambda v: st.Section(1e-4, v), "second_moment", POSITIVE),
     "Rectangle.width": (lambda v: st.Rectangle(v, 0.01), "width", POSITIVE),

@@ -138,7 +138,7 @@ def test_a_tone_while_sliding_is_squeal():
     assert (found.regime, found.confidence) == ("squeal", 1.0)
     assert found.frequency == pytest.approx(1000.0, abs=1.0)
     assert found.tonality > 0.99
-    assert found.loudness == pytest.approx(0.3 / np.sqrt(2.0), rel=2e-2)
+    assert found.audibility == pytest.approx(0.3 / np.sqrt(2.0), rel=2e-2)
 
 
 def hammering(rng):
@@ -206,7 +206,7 @@ def test_ringing_that_dies_away_is_not_squeal_and_growth_is():
     assert named(record(always(SLIDING), 1.0 + np.exp(-SECOND / 0.1) * tone(1000.0, 0.9))) == ("stable sliding", 1.0)
     grows = analysis.regime(record(always(SLIDING), 1.0 + np.exp((SECOND - 1.0) / 0.2) * tone(1000.0, 0.02)))
     assert (grows.regime, grows.confidence) == ("squeal", 1.0)
-    assert grows.loudness < 0.05
+    assert grows.audibility < 0.05
 
 
 def test_the_start_does_not_decide():
@@ -394,6 +394,8 @@ EXPECTED = {
     "strong-pressure": "squeal",
     "belt": "stick-slip",
     "lugre": "stick-slip",
+    "squeal-on-plate": "squeal",
+    "judder-on-plate": "judder",
 }
 
 

@@ -21,6 +21,7 @@ from stridula.scenarios.quantities import quantity
 
 CASES = ["axial-sliding", "judder", "squeal", "stable-sliding", "strong-pressure", "weak-pressure"]
 MASSES = ["belt", "lugre"]
+PLATES = ["judder-on-plate", "squeal-on-plate"]
 STEEL = st.Material(young=2.1e11, density=7800.0)
 SIMULATION = {"duration": 0.5, "scheme": "central difference", "step": 1e-6, "sample_rate": 5e4}
 
@@ -75,7 +76,7 @@ def test_a_quantity_must_be_finite(value):
 
 def test_the_cases_are_listed_by_their_sources():
     cases = st.list_scenarios()
-    assert sorted(case.name for case in cases) == sorted(CASES + MASSES)
+    assert sorted(case.name for case in cases) == sorted(CASES + MASSES + PLATES)
     assert all(case.source for case in cases)
     assert [case.source for case in cases] == sorted(case.source for case in cases)
 
@@ -89,7 +90,7 @@ def test_all_cases_share_one_set_of_beams():
     assert len({(slider.length, slider.material, slider.section, slider.damping) for slider in sliders.values()}) == 1
 
 
-@pytest.mark.parametrize("name", CASES + MASSES)
+@pytest.mark.parametrize("name", CASES + MASSES + PLATES)
 def test_what_is_shown_loads_as_the_same_scenario(name, tmp_path):
     path = tmp_path / "copy.toml"
     path.write_text(st.scenario_text(name), encoding="utf-8")
@@ -97,7 +98,7 @@ def test_what_is_shown_loads_as_the_same_scenario(name, tmp_path):
     assert st.load_scenario(path) == st.load_scenario(name)
 
 
-@pytest.mark.parametrize("name", CASES + MASSES)
+@pytest.mark.parametrize("name", CASES + MASSES + PLATES)
 def test_every_case_survives_provenance(name, tmp_path):
     scenario = st.load_scenario(name)
     assert reloaded(scenario.system, (), tmp_path).system == scenario.system
@@ -646,9 +647,9 @@ def test_every_problem_of_bodies_and_contacts_is_told(tmp_path):
         "bodies.a.mass must be a number in kg, g or t, got '3 m'",
         "bodies.b.mass must be a matrix, a list of rows of numbers or a file, got [[1, 2], [3]]",
         "bodies.b.points must be a table of points by name, got 3",
-        "bodies.c.kind must be one of finite-element beam, modal beam, point mass, reduced, got 'mass'",
+        "bodies.c.kind must be one of finite-element beam, modal beam, modal plate, point mass, reduced, got 'mass'",
         "contacts.0.tip.pint must be one of the known keys body, point, got pint = 'centre'; did you mean 'point'?",
-        "contacts.0.track.kind must be one of beam, rigid, point, got 'belt'",
+        "contacts.0.track.kind must be one of beam, plate, rigid, point, got 'belt'",
         "contacts.0.friction.law must be one of coulomb, static-kinetic, stribeck",
         "did you mean 'stribeck'?",
         "connections.0.stiffness must be given: stiffness [N/m]",
@@ -724,3 +725,96 @@ def test_the_pull_test_peaks_just_below_the_static_limit():
     force = run["tangential_force"].values
     assert 1.45 < force.max() < 1.5
     assert force[run["time"].values > 12.0].min() > 0.6
+
+
+PLATE = """
+damping = "1 %"
+cutoff = "2 kHz"
+material = {young = "210 GPa", density = 7800, poisson = 0.28}
+section = {shape = "circle", diameter = "5 mm"}
+[bodies.rod]
+kind = "finite-element beam"
+length = 0.3
+[bodies.sheet]
+kind = "modal plate"
+thickness = "1 mm"
+length = "30 cm"
+width = "20 cm"
+bending_modes = [5, 4]
+line = {origin = ["5 cm", 0.04], direction = "30 deg"}
+[[contacts]]
+tip = {body = "rod"}
+track = {kind = "plate", body = "sheet"}
+at = "10 cm"
+friction = 0.5
+[[drives]]
+kind = "force"
+body = "sheet"
+point = ["20 cm", 0.1]
+y = 1.0
+[[simulation.probes]]
+quantity = "velocity"
+body = "sheet"
+point = "centre"
+[[simulation.probes]]
+quantity = "velocity"
+body = "sheet"
+point = 0.05
+[simulation]
+duration = "1 ms"
+"""
+
+
+def test_a_plate_takes_what_stands_at_the_top_and_survives_provenance(tmp_path):
+    (tmp_path / "plate.toml").write_text(PLATE, encoding="utf-8")
+    case = st.load_scenario(tmp_path / "plate.toml")
+    steel, line = st.Material(2.1e11, 7800.0, 0.28), st.Line((0.05, 0.04), math.radians(30.0))
+    sheet = st.ModalPlate(steel, 0.001, 0.3, 0.2, (5, 4), 0.01, 2e3, line, "sheet")
+    assert case.system.track == sheet
+    assert case.system.drives[0].point == sheet.at((0.2, 0.1))
+    assert case.probes == (st.Velocity(sheet.centre), st.Velocity(sheet.at(0.05)))
+    record = case.simulate()
+    again = st.load_scenario(record)
+    assert (again.system, again.probes) == (case.system, case.probes)
+    assert again.simulate().attrs["scenario"] == record.attrs["scenario"]
+    turned = st.load_scenario(tmp_path / "plate.toml", {"direction": "60 deg", "poisson": 0.3}).system.track
+    assert turned.line.direction == math.radians(60.0)
+    assert turned.material.poisson == 0.3
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("[5, 4]", "5", "bodies.sheet.bending_modes must be two whole numbers, along length and width, got 5"),
+        ("[5, 4]", "[5, 0]", "along length and width, each of which must be at least 1, got [5, 0]"),
+        ('["5 cm", 0.04]', '["5 kg", 0.04]', "bodies.sheet.line.origin must be two distances"),
+        (
+            '["5 cm", 0.04]',
+            "[0.5, 0.04]",
+            "bodies.sheet.line must have its origin on the plate, got Line(origin=(0.5, 0.04)",
+        ),
+        (
+            '["20 cm", 0.1]',
+            "[0.2, 0.3]",
+            "drives.0.point must be on the plate, from (0, 0) to (0.3, 0.2), got (0.2, 0.3)",
+        ),
+        ('"30 deg"', "7", "bodies.sheet.line.direction must be from -2 pi to 2 pi rad, got 7"),
+        ("point = 0.05", "point = 2", "simulation.probes.1.point must be from"),
+        ('point = "centre"', 'point = "tip"', "simulation.probes.0.point must be centre or a position"),
+        ('kind = "plate"', 'kind = "beam"', "contacts.0.track.body must be a modal beam, got 'sheet'"),
+        ("poisson = 0.28", "poisson = 0.7", "poisson must be below 0.5, got 0.7"),
+        ("thickness", 'section = {shape = "circle", diameter = 1}\nthickness', "must be one of the known keys"),
+        ("2 kHz", "20 Hz", "cutoff must leave at least one mode (first at"),
+    ],
+)
+def test_a_bad_plate_says_what_is_wrong(old, new, message, tmp_path):
+    assert old in PLATE
+    assert message in "\n".join(problems(PLATE.replace(old, new), tmp_path))
+
+
+def test_records_without_poisson_load_as_before(tmp_path):
+    record = st.simulate(st.load_scenario("squeal").system, 1e-4)
+    old = "\n".join(line for line in record.attrs["scenario"].split("\n") if not line.startswith("poisson"))
+    assert old != record.attrs["scenario"]
+    (tmp_path / "old.toml").write_text(old, encoding="utf-8")
+    assert st.load_scenario(tmp_path / "old.toml").system == st.load_scenario("squeal").system

@@ -14,17 +14,22 @@ Q, D = range(2)
 # Rows of a contact: relative displacement of the tip against the fixed part of the track, along normal and tangent.
 NORMAL, TANGENTIAL = range(2)
 
-# Spans of the modes that a contact sees: fixed rows; bending and axial harmonics of a beam that the tip moves along.
-FIXED, FIXED_END, BENDING, BENDING_END, AXIAL, AXIAL_END = range(6)
-SPANS = 6
+# Spans of the modes that a contact sees: fixed rows; bending and axial modes of a track that the tip moves along. Then
+# how many half-waves these have along the track, on a plate along its two sides; along the second none on a beam.
+FIXED, FIXED_END, BENDING, BENDING_END, AXIAL, AXIAL_END, WAVES, CROSS_WAVES = range(8)
+SPANS = 8
+
+# Rows of the half-waves of each mode of a plate along its two sides, counted from zero.
+ALONG, ACROSS = range(2)
 
 # Motion imposed on a contact: of the tip and of the track along the tangent, of the gap.
 TIP_MOTION, TRACK_MOTION, GAP_MOTION = range(3)
 MOTIONS = 3
 
-# Constants of a contact.
-START, GAP, WAVENUMBER, AMPLITUDE, LENGTH, LAW = range(6)
-CONTACT_CONSTANTS = 6
+# Constants of a contact. On a track that the tip moves along: its ends; phase of a half-wave at abscissa zero and its
+# rate along the track, on a plate of both sides; amplitude of a mode.
+START, GAP, LAW, LOW, HIGH, PHASE, WAVENUMBER, CROSS_PHASE, CROSS_WAVENUMBER, AMPLITUDE = range(10)
+CONTACT_CONSTANTS = 10
 
 # Laws of friction, and the parameters of each, the state of a new contact last.
 COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, LUGRE, AGING, SLIP = range(7)

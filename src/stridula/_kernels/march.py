@@ -65,18 +65,35 @@ def along(rows, i, side, vector, first, last):
 
 
 @numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def set_harmonics(contacts, spans, i, place, rows, sines, cosines, slopes):
-    """Put minus the track's trace at abscissa `place`, and its slope, into the harmonic spans of contact `i`."""
+def set_harmonics(contacts, spans, i, place, rows, waves, slopes):
+    """Put minus the trace of a beam at abscissa `place`, and its slope, into the harmonic spans of contact `i`."""
+    sines, cosines = waves[0], waves[1]
     first, first_axial = spans[i, at.BENDING], spans[i, at.AXIAL]
     wavenumber, amplitude = contacts[i, at.WAVENUMBER], contacts[i, at.AMPLITUDE]
-    count = np.int64(max(spans[i, at.BENDING_END] - first, spans[i, at.AXIAL_END] - first_axial))
-    harmonics(wavenumber * place, count, sines, cosines)
+    count = np.int64(spans[i, at.WAVES])
+    harmonics(contacts[i, at.PHASE] + wavenumber * place, count, sines, cosines)
     for k in range(first, spans[i, at.BENDING_END]):
         rows[i, at.NORMAL, k] = -amplitude * sines[k - first]
     for k in range(first_axial, spans[i, at.AXIAL_END]):
         rows[i, at.TANGENTIAL, k] = -amplitude * sines[k - first_axial]
     for k in range(count):
         slopes[i, k] = -amplitude * wavenumber * (k + 1.0) * cosines[k]
+
+
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
+def set_products(contacts, spans, half_waves, i, place, rows, waves, slopes):
+    """Put minus the trace of a plate at abscissa `place` of its line, and its slope, into the span of contact `i`."""
+    sines, cosines, cross_sines, cross_cosines = waves[0], waves[1], waves[2], waves[3]
+    first, amplitude = spans[i, at.BENDING], contacts[i, at.AMPLITUDE]
+    rate, cross_rate = contacts[i, at.WAVENUMBER], contacts[i, at.CROSS_WAVENUMBER]
+    harmonics(contacts[i, at.PHASE] + rate * place, np.int64(spans[i, at.WAVES]), sines, cosines)
+    phase = contacts[i, at.CROSS_PHASE] + cross_rate * place
+    harmonics(phase, np.int64(spans[i, at.CROSS_WAVES]), cross_sines, cross_cosines)
+    for k in range(first, spans[i, at.BENDING_END]):
+        m, n = half_waves[at.ALONG, k], half_waves[at.ACROSS, k]
+        rows[i, at.NORMAL, k] = -amplitude * sines[m] * cross_sines[n]
+        turn = rate * (m + 1.0) * cosines[m] * cross_sines[n] + cross_rate * (n + 1.0) * sines[m] * cross_cosines[n]
+        slopes[i, k - first] = -amplitude * turn
 
 
 @numba.njit(cache=True, fastmath=FASTMATH, inline="always")
@@ -180,6 +197,7 @@ def march(
     contacts,
     laws,
     spans,
+    half_waves,
     rows,
     compliance,
     state,
@@ -199,15 +217,16 @@ def march(
     """March through ``record.shape[0]`` samples and return (samples completed, what ended the march).
 
     `loads` has a row of load increments for each of the first signals, `signals` a row of amplitudes a step, `motion`
-    the motions imposed on each contact at every step, the one before and the one after. `rows` are the contacts'
-    traces, their harmonic spans filled here; `compliance` is that of the fixed parts. `state`, `carried` and `energies`
-    are updated in place; `energy_record` and `record` get a row a sample, `raw` the probes at every step.
+    the motions imposed on each contact at every step, the one before and the one after. `half_waves` are those of
+    the modes of plates. `rows` are the contacts' traces, their harmonic spans filled here; `compliance` is that of the
+    fixed parts. `state`, `carried` and `energies` are updated in place; `energy_record` and `record` get a row a
+    sample, `raw` the probes at every step.
     """
     n_modes, n_contacts = block.shape[1], contacts.shape[0]
     n_harmonic = 0
     for i in range(n_contacts):
         n_harmonic += spans[i, at.BENDING_END] > spans[i, at.BENDING]
-    sines, cosines, slopes = np.zeros(2 * n_modes), np.zeros(2 * n_modes), np.zeros((n_contacts, n_modes))
+    waves, slopes = np.zeros((4, 2 * n_modes)), np.zeros((n_contacts, n_modes))
     load, new, position = np.zeros(n_modes), np.empty(n_modes), np.empty(n_modes)
     push, work = np.empty(n_modes), np.empty(n_modes)
     gaps, slips, places = np.empty(n_contacts), np.empty(n_contacts), np.empty(n_contacts)
@@ -249,12 +268,15 @@ def march(
                 material = place - motion[n + 2, i, at.TRACK_MOTION]
                 bending, bending_end = spans[i, at.BENDING], spans[i, at.BENDING_END]
                 if bending_end > bending:
-                    length = contacts[i, at.LENGTH]
-                    if not 0.0 < place < length:
+                    low, high = contacts[i, at.LOW], contacts[i, at.HIGH]
+                    if not low < place < high:
                         # A tip does not cross the whole track in one step: that is a march that diverges.
-                        crossed = abs(place - carried[i, at.ABSCISSA]) < length
+                        crossed = abs(place - carried[i, at.ABSCISSA]) < high - low
                         return sample, (at.OFF_TRACK if crossed else at.NOT_FINITE)
-                    set_harmonics(contacts, spans, i, place, rows, sines, cosines, slopes)
+                    if spans[i, at.CROSS_WAVES] > 0:
+                        set_products(contacts, spans, half_waves, i, place, rows, waves, slopes)
+                    else:
+                        set_harmonics(contacts, spans, i, place, rows, waves, slopes)
                     gap += along(rows, i, at.NORMAL, position, bending, bending_end)
                     material += along(rows, i, at.TANGENTIAL, position, spans[i, at.AXIAL], spans[i, at.AXIAL_END])
                 gaps[i], slips[i], places[i] = gap, material - carried[i, at.MATERIAL], place

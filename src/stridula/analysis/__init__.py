@@ -4,7 +4,14 @@ from .levels import largest_jump, peak_level, swing
 from .phases import advance, bursts, complete, longest_unchanged, phases, settling_time, status_share, stops
 from .regime_measures import Thresholds
 from .regimes import REGIMES, regime, regime_of
-from .spectra import dominant_frequency, envelope, envelope_correlation, frequency_resolution, spectrum
+from .spectra import (
+    dominant_frequency,
+    envelope,
+    envelope_correlation,
+    frequency_resolution,
+    spectrum,
+    tones,
+)
 
 __all__ = [
     "REGIMES",
@@ -27,4 +34,5 @@ __all__ = [
     "status_share",
     "stops",
     "swing",
+    "tones",
 ]

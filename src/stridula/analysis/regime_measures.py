@@ -97,10 +97,10 @@ class Measures:
         Shares of the time [1].
     tonality : float
         Share of the heard power that repeats itself [1]; of what the samples hide, how alike they are.
-    loudness : float
+    audibility : float
         Root mean square of the heard forces over the mean normal force [1].
     growth : float
-        Loudness of the later half of the time over that of the earlier one [1], NaN where there is one frame.
+        Audibility of the later half of the time over that of the earlier one [1], NaN where there is one frame.
     tone : float
         Frequency of what the samples hide, else of the strongest tone that is heard [Hz]; NaN if nothing is.
     cycle : float
@@ -132,7 +132,7 @@ class Measures:
     sticking: float
     sliding: float
     tonality: float
-    loudness: float
+    audibility: float
     growth: float
     tone: float
     cycle: float
@@ -179,12 +179,12 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     swing = float(np.sqrt(signals.forces[:, heard_from:].var(axis=1).sum())) / mean
     heard = _heard(signals.forces[:, heard_from:], interval, limits)
     counted = heard.later_half() if settles else heard
-    loudness = counted.level / mean
+    audibility = counted.level / mean
     tonality, tone, cycle = counted.tonality, float("nan"), _cycle(onsets, interval)
-    is_loud = loudness >= limits.faint or change_rate >= limits.lowest_tone
-    if loudness < limits.faint and np.mean(status[first:] == MIXED) >= UNRESOLVED:
+    is_loud = audibility >= limits.faint or change_rate >= limits.lowest_tone
+    if audibility < limits.faint and np.mean(status[first:] == MIXED) >= UNRESOLVED:
         tonality, tone, cycle = _likeness(signals.forces[:, first:], mean), change_rate, change_rate
-    elif is_loud or (heard.growth > 1.0 and loudness >= BUDDING * limits.faint):
+    elif is_loud or (heard.growth > 1.0 and audibility >= BUDDING * limits.faint):
         weight = between_stops(signals.share[heard_from:, STICKING], _odd(SMOOTHING / interval))
         tone = strongest_tone(weight * signals.forces[:, heard_from:], interval, limits.frame, limits.lowest_tone)
     elif settles and loss >= limits.lossy and swing < limits.faint:
@@ -196,7 +196,7 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         sticking=sticking,
         sliding=sliding,
         tonality=tonality,
-        loudness=loudness,
+        audibility=audibility,
         growth=heard.growth,
         tone=tone,
         cycle=cycle,

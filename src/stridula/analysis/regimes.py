@@ -29,7 +29,7 @@ MEANINGS = {
     "sticking": ("1", "share of the time sticking"),
     "sliding": ("1", "share of the time sliding"),
     "tonality": ("1", "share of the heard power that repeats itself"),
-    "loudness": ("1", "heard forces over the mean normal force"),
+    "audibility": ("1", "heard forces over the mean normal force"),
     "periodicity": ("1", "regularity of the stick phases"),
     "frequency": ("Hz", "frequency of the strongest tone, or of the stick phases"),
     "impact_rate": ("1/s", "landings per second"),
@@ -86,7 +86,7 @@ def regime(
     xarray.Dataset
         Scalars: ``regime``, one of `REGIMES`; ``confidence`` [1], ``0.5 + 0.5 min(1, |log2 r|)`` with r the factor by
         which the least clear of the decisive measures is away from its threshold; the shares ``separated``,
-        ``sticking`` and ``sliding``; ``tonality``, ``loudness``, ``periodicity``, ``frequency``, ``impact_rate``,
+        ``sticking`` and ``sliding``; ``tonality``, ``audibility``, ``periodicity``, ``frequency``, ``impact_rate``,
         ``slip_rate``, ``settle_time`` and ``level``. The frequency is that of the stick phases in stick-slip, else that
         of the strongest tone; it is NaN where nothing is heard, and a lower bound where the samples hide the cycle.
 
@@ -167,9 +167,9 @@ def _at_rest(found: Measures, limits: Thresholds) -> tuple[str, float]:
     """Return the regime of a run whose status settles, and its margin."""
     if found.last_status != 2:
         return (STICKS if found.last_status == 1 else LEFT), math.inf
-    tonal, loud = _odds_above(found.tonality, limits.tonal), _above(found.loudness, limits.faint)
-    kept = min(tonal, loud, _above(found.growth, KEPT))
-    growing = min(tonal, _above(found.loudness, BUDDING * limits.faint), _above(found.growth, GROWING))
+    tonal, heard = _odds_above(found.tonality, limits.tonal), _above(found.audibility, limits.faint)
+    kept = min(tonal, heard, _above(found.growth, KEPT))
+    growing = min(tonal, _above(found.audibility, BUDDING * limits.faint), _above(found.growth, GROWING))
     hidden = min(
         _above(found.loss, limits.lossy),
         _above(found.loss_growth, KEPT),
@@ -183,7 +183,7 @@ def _at_rest(found: Measures, limits: Thresholds) -> tuple[str, float]:
 def _on_the_move(found: Measures, limits: Thresholds) -> tuple[str, float]:
     """Return the regime of a run whose status goes on changing, and its margin."""
     # A cycle of states this fast is a limit cycle, however little of it the forces show.
-    heard = max(_above(found.loudness, limits.faint), _above(found.change_rate, limits.lowest_tone))
+    heard = max(_above(found.audibility, limits.faint), _above(found.change_rate, limits.lowest_tone))
     squeals = min(heard, _odds_above(found.tonality, limits.tonal))
     if squeals >= 0.0:
         return SQUEALS, squeals

@@ -78,6 +78,45 @@ def dominant_frequency(signal: xr.DataArray, intervals: Array | None = None, low
     return float(frequency[top] + shift * frequency[1])
 
 
+def tones(
+    signal: xr.DataArray, intervals: Array | None = None, resolution: float = 20.0, prominence: float = 6.0
+) -> tuple[Array, Array]:
+    """Return the tones that stand out of the spectrum of a signal, the strongest first.
+
+    The energy spectrum is averaged over bands of `resolution`; a tone is a local maximum that one must go down from by
+    `prominence` before a higher one is reached.
+
+    Parameters
+    ----------
+    signal : xarray.DataArray, shape (time,)
+        A signal, such as a sound pressure or a recorded force.
+    intervals : ndarray, shape (intervals, 2), optional
+        Starts and ends [s]; the whole signal if left out.
+    resolution : float, optional
+        Width of the bands [Hz].
+    prominence : float, optional
+        How far a tone stands out [dB].
+
+    Returns
+    -------
+    frequency : ndarray, shape (tones,)
+        Frequencies [Hz].
+    level : ndarray, shape (tones,)
+        Levels below the strongest [dB].
+    """
+    # Slow to import, and seldom needed.
+    from scipy.signal import find_peaks
+
+    positive("prominence", prominence)
+    frequency, energy = spectrum(signal, intervals)
+    width = max(1, round(positive("resolution", resolution) / frequency[1]))
+    smooth = np.convolve(energy, np.full(width, 1.0 / width), "same")
+    level = 10.0 * np.log10(smooth / max(float(smooth.max()), 1e-300) + 1e-30)
+    peaks, _ = find_peaks(level, prominence=prominence)
+    order = peaks[np.argsort(-level[peaks], kind="stable")]
+    return frequency[order], level[order]
+
+
 def frequency_resolution(signal: xr.DataArray, intervals: Array | None = None) -> float:
     """Return the frequency step [Hz] that the median interval can tell apart, one over its length."""
     return 1.0 / _median_length(signal, intervals)

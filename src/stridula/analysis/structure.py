@@ -9,7 +9,7 @@ import numpy as np
 import scipy.linalg
 
 from ..assembly import ContactRows, assemble
-from ..bodies import BodyPoint, ModalBeam
+from ..bodies import BodyPoint, Track
 from ..bodies.modes import Array
 from ..contact import PointContact, RigidTrack
 from ..histories import History
@@ -33,7 +33,7 @@ class ContactLine:
     normal, tangent : ndarray
         Displacement of the tip less that of the track, along normal and tangent; also how contact forces act.
     along : ndarray
-        Shift of the contact point along a beam; zero on other tracks, which look the same everywhere.
+        Shift of the contact point along a beam or a plate; zero on other tracks, which look the same everywhere.
     normal_slope, tangent_slope : ndarray
         Displacement of the track along normal and tangent, derived along the track [1/m].
     """
@@ -172,7 +172,7 @@ def settled_time(system: System) -> float:
 def _line(one: ContactRows) -> ContactLine:
     nothing = np.zeros(one.fixed.shape[1])
     track = one.contact.track
-    if not isinstance(track, ModalBeam):
+    if not isinstance(track, Track):
         return ContactLine(one.fixed[0], one.fixed[1], nothing, nothing, nothing)
     modes = slice(one.bending[0], one.axial[1])
     trace, slope = np.zeros((2, 2, nothing.size))

@@ -2,22 +2,29 @@
 
 from .finite_element_beam import FiniteElementBeam
 from .modal_beam import ModalBeam
+from .modal_plate import Line, ModalPlate
 from .modes import Body, BodyPoint, Modes
 from .point_mass import PointMass
 from .reduced_body import Rayleigh, ReducedBody
 from .sections import Circle, Material, Rectangle, Section
+
+# Bodies along which a contact point moves.
+Track = ModalBeam | ModalPlate
 
 __all__ = [
     "Body",
     "BodyPoint",
     "Circle",
     "FiniteElementBeam",
+    "Line",
     "Material",
     "ModalBeam",
+    "ModalPlate",
     "Modes",
     "PointMass",
     "Rayleigh",
     "Rectangle",
     "ReducedBody",
     "Section",
+    "Track",
 ]

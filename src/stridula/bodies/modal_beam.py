@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
-from ..checks import count, instance, non_negative, positive, within
+from ..checks import count, instance, positive, within
+from .damping import check_damping_count, checked_damping, damping_of_modes
 from .modes import Array, BodyPoint, Modes
 from .sections import Circle, Material, Rectangle, Section
 
@@ -30,8 +32,8 @@ class ModalBeam:
         Length [m], from x = 0 to its right end.
     bending_modes, axial_modes : int, optional
         Number of modes kept of each kind.
-    damping : float, optional
-        Modal damping ratio of every mode [1], from 0 to 1 (1 excluded).
+    damping : float or sequence of float, optional
+        Modal damping ratio of every mode [1], from 0 to 1 (1 excluded), or one for each mode in their order.
     cutoff : float, optional
         Keep the modes up to this frequency [Hz] instead of the counts above.
     name : str, optional
@@ -48,7 +50,7 @@ class ModalBeam:
     length: float
     bending_modes: int = 40
     axial_modes: int = 20
-    damping: float = 0.0
+    damping: float | Sequence[float] = 0.0
     cutoff: float | None = None
     name: str = ""
 
@@ -58,8 +60,7 @@ class ModalBeam:
         positive("length", self.length)
         count("bending_modes", self.bending_modes)
         count("axial_modes", self.axial_modes, low=0)
-        if non_negative("damping", self.damping) >= 1.0:
-            raise ValueError(f"damping must be below 1 (critical), got {self.damping!r}")
+        object.__setattr__(self, "damping", checked_damping(self.damping))
         instance("name", self.name, str)
         if self.cutoff is not None:
             positive("cutoff", self.cutoff)
@@ -68,6 +69,12 @@ class ModalBeam:
                     f"cutoff must leave at least one bending mode (first at {self._bending(1) / (2 * np.pi):.6g} Hz), "
                     f"got {self.cutoff!r} Hz"
                 )
+        check_damping_count(self.damping, sum(self.harmonics))  # type: ignore[arg-type]
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Abscissas of its two ends [m]."""
+        return 0.0, self.length
 
     @property
     def centre(self) -> BodyPoint:
@@ -149,4 +156,4 @@ def _modes(beam: ModalBeam) -> Modes:
     translation = np.zeros((2, angular.size))
     translation[1, : bending.size] = line * mean_bending
     translation[0, bending.size :] = line * mean_axial
-    return Modes(angular, np.full(angular.size, float(beam.damping)), translation)
+    return Modes(angular, damping_of_modes(beam.damping, angular.size), translation)

@@ -77,11 +77,12 @@ class BodyPoint:
 
     Attributes
     ----------
-    body : FiniteElementBeam, ModalBeam, ReducedBody or PointMass
+    body : FiniteElementBeam, ModalBeam, ModalPlate, ReducedBody or PointMass
         The body.
-    position : float or str
+    position : float, tuple of float or str
         On beams the distance along the axis from the first end [m]: from the tip of a slider, from the left end of a
-        track. On other bodies the name of the point.
+        track. On plates the abscissa along the line, or the distances along length and width [m]. On other bodies the
+        name of the point.
 
     Raises
     ------
@@ -90,7 +91,7 @@ class BodyPoint:
     """
 
     body: Body
-    position: float | str
+    position: float | tuple[float, float] | str
 
     def __post_init__(self) -> None:
         check = getattr(self.body, "check_position", None)

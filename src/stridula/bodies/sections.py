@@ -1,11 +1,11 @@
-"""Materials and cross-sections of beams."""
+"""Materials, and cross-sections of beams."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-from ..checks import positive
+from ..checks import positive, within
 
 
 @dataclass(frozen=True)
@@ -18,14 +18,18 @@ class Material:
         Young's modulus [Pa].
     density : float
         Mass density [kg/m³].
+    poisson : float, optional
+        Poisson's ratio [1], from -1 to 0.5 (both excluded); of no effect on beams.
     """
 
     young: float
     density: float
+    poisson: float = 0.3
 
     def __post_init__(self) -> None:
         positive("young", self.young)
         positive("density", self.density)
+        within("poisson", self.poisson, -1.0, 0.5, ends=False)
 
 
 @dataclass(frozen=True)

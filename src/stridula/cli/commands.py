@@ -76,6 +76,9 @@ def run(
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw the record; the name's end is the format.")
     ] = None,
+    wav: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write what two ears a metre above the track hear, as WAV.")
+    ] = None,
 ) -> None:
     """Run a scenario and say what came of it."""
     with _importing():
@@ -84,7 +87,29 @@ def run(
     overrides = _pairs(set_ or [])
     if duration is not None:
         overrides["simulation.duration"] = duration
-    run_scenario(name, overrides, out, plot)
+    run_scenario(name, overrides, out, plot, wav)
+
+
+@app.command()
+def sound(
+    record: Annotated[str, typer.Argument(metavar="RUN.nc", help="A record.")],
+    listener: Annotated[
+        list[str] | None,
+        typer.Option(metavar="X,Y,Z", help="Where one listens, in m; again for more; two ears 1 m above if left out."),
+    ] = None,
+    wav: Annotated[str | None, typer.Option(metavar="FILE", help="Write the sound, a channel each.")] = None,
+    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the spectrogram of the first.")] = None,
+    sample_rate: Annotated[str, typer.Option(metavar="HZ", help="Of the sound file: 44.1, 48 or 96 kHz.")] = "48 kHz",
+    full_scale: Annotated[
+        str, typer.Option(metavar="PA", help="Pressure of full scale, or normalised: 1 dB above the peak.")
+    ] = "normalised",
+    subtype: Annotated[str, typer.Option(metavar="WORD", help="PCM_24 or FLOAT.")] = "PCM_24",
+    unbaffled: Annotated[bool, typer.Option("--unbaffled", help="A slim beam in free air, without a baffle.")] = False,
+) -> None:
+    """Say how loud a record is for a listener, and write the sound as WAV."""
+    from .sounding import sound_of_record
+
+    sound_of_record(record, listener or [], wav, plot, sample_rate, full_scale, subtype, not unbaffled)
 
 
 @app.command()
@@ -166,6 +191,25 @@ def stability(
     from .stability import statuses
 
     print_loci(name, vary, overrides, highest, out, plot, status=statuses(status), velocity=velocity)
+
+
+@app.command()
+def animate(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME-OR-RUN.nc", help="A shipped scenario, a TOML file or a record, run again.")
+    ],
+    out: Annotated[str, typer.Option(metavar="FILE", help="Film to write: .mp4 or .gif.")],
+    from_: Annotated[str, typer.Option("--from", metavar="S", help="Where it begins, in s or with a unit.")] = "0",
+    duration: Annotated[str, typer.Option(metavar="S", help="Time that it shows, in s or with a unit.")] = "10 ms",
+    slowdown: Annotated[float, typer.Option(metavar="X", help="How much slower than life it is.")] = 1000.0,
+    exaggeration: Annotated[
+        float | None, typer.Option(metavar="X", help="How many times larger than life the vibration is drawn.")
+    ] = None,
+) -> None:
+    """Film two beams and their contact in slow motion."""
+    from .filming import film_scenario
+
+    print(film_scenario(name, out, from_, duration, slowdown, exaggeration))
 
 
 @app.command()
@@ -274,7 +318,7 @@ def sensitivity_(
 def paper(
     out: Annotated[str, typer.Option(metavar="DIR", help="Folder to write to.")] = "results/paper",
 ) -> None:
-    """Reproduce Laulagnet 2011: every figure, every record, every claim."""
+    """Reproduce Laulagnet 2011: every figure, every record, every sound, every claim."""
     from pathlib import Path
 
     from ..integration import Diverged

@@ -21,7 +21,9 @@ from .card import print_card
 from .exits import FAILED, INTERRUPTED, Stopped
 
 
-def run_scenario(name: str, overrides: dict[str, Any], out: str | None, plot: str | None) -> None:
+def run_scenario(
+    name: str, overrides: dict[str, Any], out: str | None, plot: str | None, wav: str | None = None
+) -> None:
     """Run a scenario, write what was asked for, and print the card.
 
     Raises
@@ -35,6 +37,8 @@ def run_scenario(name: str, overrides: dict[str, Any], out: str | None, plot: st
     """
     check_outputs(out, plot)
     scenario = load_scenario(name, overrides)
+    if wav is not None:
+        _check_wav(wav, name, out, plot, scenario.system)
     try:
         with _progress(scenario.title or name) as watcher:
             record = scenario.simulate(watchers=[watcher])
@@ -45,20 +49,40 @@ def run_scenario(name: str, overrides: dict[str, Any], out: str | None, plot: st
         words.append("nothing was asked to be kept (no --out)" if out is None else f"the record so far is in {out}")
         if plot is not None:
             words.append(f"it is drawn in {plot}" if plot in kept else f"no figure was drawn{_why(stop)}")
+        if wav is not None:
+            words.append("no sound was written")
         raise Stopped("; ".join(words), INTERRUPTED if interrupted else FAILED) from None
     _finish(record, scenario.title or name, out, plot)
+    if wav is not None:
+        from .sounding import write_sound
+
+        print(write_sound(record, scenario.system, wav))
 
 
-def check_outputs(out: str | None, plot: str | None) -> None:
-    """Raise ValueError or OSError if a record and a figure cannot be written there; write nothing.
+def _check_wav(wav: str, name: str, out: str | None, plot: str | None, system: Any) -> None:
+    from .sounding import check_baffled
+
+    for option, other in (("--out", out), ("--plot", plot)):
+        if other is not None and Path(other).resolve() == Path(wav).resolve():
+            raise ValueError(f"--wav must be another file than {option}, got {wav!r} for both")
+    if Path(name).is_file() and Path(name).resolve() == Path(wav).resolve():
+        raise ValueError(f"--wav must be another file than what is run, got {wav!r} for both")
+    check_baffled(system)
+    check_writable(wav)
+
+
+def check_outputs(out: str | None, plot: str | None, word: str = "--out") -> None:
+    """Raise ValueError or OSError if a file and a figure cannot be written there; write nothing.
 
     Parameters
     ----------
     out, plot : str or None
         The files, None for one that is not asked for.
+    word : str, optional
+        The option of the first.
     """
     if out is not None and plot is not None and Path(out).resolve() == Path(plot).resolve():
-        raise ValueError(f"--plot must be another file than --out, got {plot!r} for both")
+        raise ValueError(f"--plot must be another file than {word}, got {plot!r} for both")
     if plot is not None:
         from matplotlib.figure import Figure
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..bodies import BodyPoint, ModalBeam
+from ..bodies import BodyPoint, Track
 from ..bodies.modes import Array
 from ..checks import finite, instance, non_negative, within
 from .coulomb import Coulomb, StaticKinetic
@@ -27,30 +27,30 @@ class PointContact:
     """The tip of a slider on a track: unilateral (Signorini), with dry friction, without restitution.
 
     The normal force is compressive and never below zero; the tangential force is the force on the track along its
-    tangent. On a beam or a rigid track the contact point moves along the track with the tip; against a point of
-    another body it is frozen.
+    tangent. On a beam, a plate or a rigid track the contact point moves along the track with the tip; against a
+    point of another body it is frozen.
 
     Parameters
     ----------
     tip : BodyPoint
         The point of the slider that touches.
-    track : ModalBeam, RigidTrack or BodyPoint
-        What it slides on: a beam, a rigid track, or a point of another body.
+    track : ModalBeam, ModalPlate, RigidTrack or BodyPoint
+        What it slides on: a beam, a plate along its line, a rigid track, or a point of another body.
     at : float, optional
-        Abscissa of the tip on the track at the start [m]; strictly between the ends of a beam.
+        Abscissa of the tip on the track at the start [m]; strictly between the ends of a beam or of a plate's line.
     friction : Coulomb, StaticKinetic, Stribeck, ExponentialWeakening, LinearWeakening, LuGre or RateAndState, optional
         Law of friction; none if left out.
     gap : float, optional
         Distance between tip and track at the start [m].
     inclination : float, optional
         Angle from world x to the track's tangent [rad], counter-clockwise; the normal, from the track to the tip, is
-        the tangent turned by 90 degrees counter-clockwise. Zero on a ModalBeam.
+        the tangent turned by 90 degrees counter-clockwise. Zero on a beam or a plate.
     name : str, optional
         What it is called in records.
     """
 
     tip: BodyPoint
-    track: ModalBeam | RigidTrack | BodyPoint
+    track: Track | RigidTrack | BodyPoint
     at: float = 0.0
     friction: FrictionLaw = field(default_factory=lambda: Coulomb(0.0))
     gap: float = 0.0
@@ -59,11 +59,11 @@ class PointContact:
 
     def __post_init__(self) -> None:
         instance("tip", self.tip, BodyPoint)
-        instance("track", self.track, (ModalBeam, RigidTrack, BodyPoint))
-        if isinstance(self.track, ModalBeam):
-            within("at", self.at, 0.0, self.track.length, ends=False)
+        instance("track", self.track, (*Track.__args__, RigidTrack, BodyPoint))
+        if isinstance(self.track, Track):
+            within("at", self.at, *self.track.ends, ends=False)
             if self.inclination != 0.0:
-                raise ValueError(f"inclination must be 0 on a ModalBeam, got {self.inclination!r}")
+                raise ValueError(f"inclination must be 0 on a {type(self.track).__name__}, got {self.inclination!r}")
         finite("at", self.at)
         if self.track_body == self.tip.body:
             raise ValueError(

@@ -8,7 +8,7 @@ import numpy as np
 
 from .._kernels import layout as at
 from ..assembly import Assembly
-from ..bodies import ModalBeam
+from ..bodies import ModalPlate, Track
 from ..bodies.modes import Array
 from ..contact import (
     Coulomb,
@@ -106,6 +106,8 @@ class ContactBlocks:
         Parameters of its law of friction.
     spans : ndarray, shape (contacts, spans)
         Spans of modes that each contact sees.
+    half_waves : ndarray, shape (2, modes)
+        Half-waves of the modes of plates along their two sides, counted from zero.
     rows : ndarray, shape (contacts, 2, modes)
         Rows along normal and tangent; harmonic spans are filled by the march.
     compliance : ndarray, shape (2 contacts, 2 contacts)
@@ -115,6 +117,7 @@ class ContactBlocks:
     constants: Array
     laws: Array
     spans: Array
+    half_waves: Array
     rows: Array
     compliance: Array
 
@@ -126,15 +129,16 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
     # Unsigned, so that the march need not look for indices below zero.
     spans = np.zeros((count, at.SPANS), dtype=np.uint64)
     rows = np.array([contact.fixed for contact in arrays.contacts])
+    half_waves = np.zeros((2, arrays.mode_count), dtype=np.uint64)
     for i, one in enumerate(arrays.contacts):
         used = np.flatnonzero(one.fixed.any(axis=0))
         fixed = (used[0], used[-1] + 1) if used.size else (0, 0)
-        spans[i] = (*fixed, *one.bending, *one.axial)
+        spans[i, : at.WAVES] = (*fixed, *one.bending, *one.axial)
         constants[i, [at.START, at.GAP]] = one.contact.at, one.contact.gap
-        if isinstance(one.contact.track, ModalBeam):
-            track = one.contact.track
-            constants[i, [at.WAVENUMBER, at.AMPLITUDE]] = np.pi / track.length, track.amplitude
-            constants[i, at.LENGTH] = track.length
+        if isinstance(one.contact.track, Track):
+            constants[i, at.LOW :], spans[i, at.WAVES :] = _waves(one.contact.track)
+        if isinstance(one.contact.track, ModalPlate):
+            half_waves[:, slice(*one.bending)] = one.contact.track.numbers.T - 1
         constants[i, at.LAW], parameters = _law(one.contact.friction)
         laws[i, : len(parameters)] = parameters
         if not one.fixed[0].any() and one.bending[0] == one.bending[1]:
@@ -143,7 +147,17 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
                 "got a tip that does not"
             )
     flat = rows.reshape(2 * count, -1)
-    return ContactBlocks(constants, laws, spans, rows, np.ascontiguousarray(modes.mobility(flat) @ flat.T))
+    return ContactBlocks(constants, laws, spans, half_waves, rows, np.ascontiguousarray(modes.mobility(flat) @ flat.T))
+
+
+def _waves(track: Track) -> tuple[tuple[float, ...], tuple[int, int]]:
+    """Return the constants of a track that the tip moves along, and how many half-waves its modes have."""
+    if not isinstance(track, ModalPlate):
+        return (*track.ends, 0.0, np.pi / track.length, 0.0, 0.0, track.amplitude), (max(track.harmonics), 0)
+    (x, y), (cosine, sine) = track.track_line.origin, track.track_line.tangent
+    along, across = np.pi / track.length, np.pi / track.width
+    most = track.numbers.max(axis=0)
+    return (*track.ends, along * x, along * cosine, across * y, across * sine, track.amplitude), (most[0], most[1])
 
 
 def _law(law: FrictionLaw) -> tuple[int, tuple[float, ...]]:
@@ -234,8 +248,9 @@ class Blocks:
 
     @property
     def is_simple(self) -> bool:
-        """Whether there is one contact, between bodies of uncoupled modes."""
-        return len(self.contacts.constants) == 1 and not self.modes.matrices.size
+        """Whether there is one contact, between bodies of uncoupled modes, and not on a plate."""
+        on_a_plate = self.contacts.spans[:, at.CROSS_WAVES].any()
+        return len(self.contacts.constants) == 1 and not self.modes.matrices.size and not on_a_plate
 
     @property
     def heard(self) -> tuple[int, ...]:

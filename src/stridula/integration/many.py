@@ -15,6 +15,7 @@ import xarray as xr
 
 from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
+from ..bodies import ModalPlate
 from ..checks import choice, count
 from ..records import Probe
 from ..system import System
@@ -56,9 +57,9 @@ def simulate_many(
 ) -> list[Any]:
     """March many systems in time, several at once on each processor.
 
-    Runs of the same kind march side by side: of one contact, between bodies of uncoupled modes, with the same numbers
-    of modes and loads, the same law of friction and kinds of probes. Coefficients, angles, loads, damping and lengths
-    may differ. All others march one by one.
+    Runs of the same kind march side by side: of one contact, between bodies of uncoupled modes, not on a plate, with
+    the same numbers of modes and loads, the same law of friction and kinds of probes. Coefficients, angles, loads,
+    damping and lengths may differ. All others march one by one.
 
     Side by side, sums over modes have another order than alone: records are the same but for round-off, which chaotic
     runs amplify. Which runs share a vector does not matter.
@@ -186,6 +187,8 @@ def _kind(arrays: Arrays, most_modes: int | None) -> Hashable | None:
     if len(flat.contacts) > 1 or flat.coupled or (most_modes and flat.mode_count > most_modes):
         return None
     (one,) = flat.contacts
+    if isinstance(one.contact.track, ModalPlate):
+        return None
     law = type(one.contact.friction), getattr(one.contact.friction, "evolution", None)
     probes = tuple(type(probe) for probe in arrays.probes)
     return flat.mode_count, one.bending, one.axial, law, len(flat.loads), probes

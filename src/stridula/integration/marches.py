@@ -129,6 +129,7 @@ class GeneralMarch:
             contacts.constants,
             contacts.laws,
             contacts.spans,
+            contacts.half_waves,
             contacts.rows,
             contacts.compliance,
             state.modal,

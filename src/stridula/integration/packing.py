@@ -98,5 +98,5 @@ def rows_of(blocks: Blocks, state: State) -> tuple[Array, Array]:
 def numbers_of(contacts: ContactBlocks) -> Array:
     """Return the numbers of a run that the march reads."""
     constants, w = contacts.constants[0], contacts.compliance
-    own = constants[[at.START, at.GAP, at.LENGTH, at.WAVENUMBER]]
+    own = constants[[at.START, at.GAP, at.HIGH, at.WAVENUMBER]]
     return np.array([*own, w[0, 0], w[0, 1], w[1, 1], contacts.laws[0, 0]])

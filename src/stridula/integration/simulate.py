@@ -10,7 +10,7 @@ import xarray as xr
 
 from .._kernels.layout import COLUMNS, ENERGIES
 from ..assembly import Assembly, assemble
-from ..bodies import ModalBeam
+from ..bodies import Track
 from ..checks import instance, positive
 from ..records import Acceleration, Probe
 from ..system import System
@@ -147,7 +147,7 @@ class Asked:
     def arrays(self, system: System) -> Arrays:
         """Return a system as flat arrays."""
         instance("system", system, System)
-        default = (Acceleration(system.track.centre, "y"),) if isinstance(system.track, ModalBeam) else ()
+        default = (Acceleration(system.track.centre, "y"),) if isinstance(system.track, Track) else ()
         probes = tuple(self.probes) if self.probes is not None else default
         for number, probe in enumerate(probes):
             instance(f"probes[{number}]", probe, Probe.__args__)

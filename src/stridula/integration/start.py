@@ -10,7 +10,7 @@ from .._kernels.friction import next_state
 from .._kernels.gauss_seidel import solve_all
 from .._kernels.march import stored_energy
 from ..assembly import Assembly, ContactRows
-from ..bodies import ModalBeam
+from ..bodies import Track
 from ..bodies.modes import Array
 from ..contact import FrictionLaw, RateAndState
 from ..records.state import State
@@ -135,8 +135,8 @@ class _Start:
 
 
 def _rows(one: ContactRows) -> Array:
-    """Return the rows of a contact along normal and tangent, those of a beam's harmonics at its first abscissa."""
-    if not isinstance(one.contact.track, ModalBeam):
+    """Return the rows of a contact along normal and tangent, those of a track's modes at its first abscissa."""
+    if not isinstance(one.contact.track, Track):
         return one.fixed
     full = one.fixed.copy()
     full[:, one.bending[0] : one.axial[1]] -= one.contact.track.trace(one.contact.at)[::-1]

@@ -1,20 +1,35 @@
 """Figures from Datasets (matplotlib lives here and nowhere else)."""
 
-from .colours import LINE, LINES, STATUS_COLOURS
-from .files import save
-from .laws import friction
-from .loci import root_loci
-from .maps import regime_map
-from .timelines import overview, timeline
+from __future__ import annotations
 
-__all__ = [
-    "LINE",
-    "LINES",
-    "STATUS_COLOURS",
-    "friction",
-    "overview",
-    "regime_map",
-    "root_loci",
-    "save",
-    "timeline",
-]
+from importlib import import_module
+from typing import Any
+
+_HOME = {
+    "LINE": "colours",
+    "LINES": "colours",
+    "STATUS_COLOURS": "colours",
+    "Film": "films",
+    "animate": "films",
+    "directivity": "directivities",
+    "friction": "laws",
+    "overview": "timelines",
+    "regime_map": "maps",
+    "root_loci": "loci",
+    "save": "files",
+    "spectrogram": "spectrograms",
+    "spectrum": "spectra",
+    "timeline": "timelines",
+}
+__all__ = list(_HOME)
+
+
+def __getattr__(name: str) -> Any:
+    """Import a figure from its home on first use: films and spectra are slow to import."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'stridula.plot' has no attribute {name!r}")
+    return getattr(import_module(f".{_HOME[name]}", __name__), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

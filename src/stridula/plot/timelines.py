@@ -57,7 +57,7 @@ def timeline(
     figure = Figure(figsize=(9.0, 1.2 + 2.4 * sum(heights)), layout="constrained", dpi=120)
     panels = figure.subplots(len(variables), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
     for name, axes in zip(variables, panels, strict=True):
-        _PANELS.get(name, _line)(axes, shown, name)
+        _PANELS.get(name, draw_line)(axes, shown, name)
         axes.margins(x=0.0)
     panels[-1].set_xlabel("time [s]")
     figure.suptitle(run.attrs.get("title", "") if title is None else title, fontsize=11)
@@ -70,7 +70,7 @@ def overview(run: xr.Dataset) -> Figure:
     return timeline(run, [name for name in names if name in run])
 
 
-def _line(axes: Axes, run: xr.Dataset, name: str) -> None:
+def draw_line(axes: Axes, run: xr.Dataset, name: str) -> None:
     variable = run[name]
     lines = variable.values.reshape(variable.shape[0], -1).T
     labels = _labels(variable) if len(lines) > 1 else [""]
@@ -118,13 +118,13 @@ def _draw(axes: Axes, time: Array, values: Array, colour: str, label: str) -> No
     axes.fill_between(middle, low, high, color=colour, linewidth=0.8, label=label)
 
 
-def _status(axes: Axes, run: xr.Dataset, name: str) -> None:
+def draw_status(axes: Axes, run: xr.Dataset, name: str) -> None:
     share = run["status_share"].values
     ribbons = share.reshape(share.shape[0], -1, share.shape[-1])
     count = ribbons.shape[1]
     for row in range(count):
         # The first contact on top.
-        _ribbon(axes, run["time"].values, ribbons[:, row], float(count - 1 - row), labelled=row == 0)
+        _draw_ribbon(axes, run["time"].values, ribbons[:, row], float(count - 1 - row), labelled=row == 0)
     axes.set_ylim(0.0, float(count))
     axes.set_yticks([])
     axes.set_ylabel("status")
@@ -135,7 +135,7 @@ def _status(axes: Axes, run: xr.Dataset, name: str) -> None:
     _legend(axes, 3)
 
 
-def _ribbon(axes: Axes, time: Array, share: Array, bottom: float, labelled: bool) -> None:
+def _draw_ribbon(axes: Axes, time: Array, share: Array, bottom: float, labelled: bool) -> None:
     columns = min(COLUMNS, time.size)
     edges = np.linspace(0, time.size, columns + 1).astype(int)
     means = np.add.reduceat(share, edges[:-1], axis=0) / np.diff(edges)[:, None]
@@ -156,4 +156,4 @@ def _ribbon(axes: Axes, time: Array, share: Array, bottom: float, labelled: bool
         below = top
 
 
-_PANELS: dict[str, Callable[[Axes, xr.Dataset, str], None]] = {"status": _status}
+_PANELS: dict[str, Callable[[Axes, xr.Dataset, str], None]] = {"status": draw_status}

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam
+from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, Track
 from ..bodies.modes import Array
 from ..contact import PointContact, RigidTrack
 from ..drives import Drive, Force, ImposedVelocity, InitialState, InitialVelocity
@@ -32,6 +32,7 @@ _LIST_OF_NUMBERS = re.compile(r"\[\n((?:\s*[-+.\dinfaeE]+,\n)+)\s*\]")
 BODY_KINDS = {
     "FiniteElementBeam": "finite-element beam",
     "ModalBeam": "modal beam",
+    "ModalPlate": "modal plate",
     "PointMass": "point mass",
     "ReducedBody": "reduced",
 }
@@ -85,7 +86,8 @@ def _general(system: System) -> dict[str, Any]:
             return {"kind": "rigid", **_plain(contact.track, "history", "normal_history"), **_histories(contact.track)}
         if isinstance(contact.track, BodyPoint):
             return {"kind": "point", **place(contact.track)}
-        return {"kind": "beam", "body": system.body_name(contact.track)}
+        kind = "plate" if isinstance(contact.track, ModalPlate) else "beam"
+        return {"kind": kind, "body": system.body_name(contact.track)}
 
     tables: dict[str, Any] = {
         "bodies": {system.body_name(body): _general_body(body, system) for body in system.bodies},
@@ -153,6 +155,8 @@ def _value(value: Any) -> Any:
 
 def _body(body: Any) -> dict[str, Any]:
     given = _plain(body, "material", "section", "points")
+    if hasattr(body, "material"):
+        given["material"] = _plain(body.material)
     if hasattr(body, "points"):
         given["points"] = {name: _rows(rows) for name, rows in body.points.items()}
     if not hasattr(body, "section"):
@@ -160,7 +164,7 @@ def _body(body: Any) -> dict[str, Any]:
     section = {"shape": type(body.section).__name__.lower(), **_plain(body.section)}
     if section["shape"] == "section":
         section["shape"] = "general"
-    return {**given, "material": _plain(body.material), "section": section}
+    return {**given, "section": section}
 
 
 def body_table(body: Any) -> dict[str, Any]:
@@ -193,11 +197,13 @@ def _rows(rows: Array) -> Any:
     return _value(rows)
 
 
-def _point(point: BodyPoint) -> str | float:
+def _point(point: BodyPoint) -> Any:
     body: Any = point.body
     if isinstance(point.position, str):
         return point.position
-    named = {"tip": 0.0, "root": body.length} if isinstance(body, FiniteElementBeam) else {"centre": body.length / 2.0}
+    named: dict[str, Any] = {"tip": 0.0, "root": body.length} if isinstance(body, FiniteElementBeam) else {}
+    if isinstance(body, Track):
+        named = {"centre": body.centre.position}
     return next((name for name, position in named.items() if position == point.position), _value(point.position))
 
 

@@ -14,8 +14,10 @@ from ..bodies import (
     BodyPoint,
     Circle,
     FiniteElementBeam,
+    Line,
     Material,
     ModalBeam,
+    ModalPlate,
     PointMass,
     Rayleigh,
     Rectangle,
@@ -42,6 +44,7 @@ HISTORIES: dict[str, Callable[..., Any]] = {
 MOTIONS = {"displacement": Displacement, "velocity": Velocity, "acceleration": Acceleration}
 FRICTIONS: dict[str, Callable[..., Any]] = {law.law: law for law in LAWS}
 CONNECTIONS: dict[str, Callable[..., Any]] = {"spring": Spring, "dashpot": Dashpot}
+TRACKS = {"beam": ModalBeam, "plate": ModalPlate}
 Tables = dict[str, Any]
 Place = tuple[str | int, ...]
 # What SciPy says of matrices that have overflowed.
@@ -169,6 +172,8 @@ class Builder:
             return None
         if kind == "reduced":
             return self._reduced(path, table)
+        if kind == "modal plate":
+            return self._plate(path, table)
         return self._beam(path, FiniteElementBeam if kind == "finite-element beam" else ModalBeam, table)
 
     def _default_name(self, name: str, used: list[str]) -> str:
@@ -205,6 +210,17 @@ class Builder:
         with self._within(*path):
             return kind(material, shape, **table)
 
+    def _plate(self, path: Place, table: Tables) -> Any:
+        with self._within(*path, "material"):
+            material = Material(**table.pop("material"))
+        if table.get("line") is not None:
+            with self._within(*path, "line"):
+                table["line"] = Line(**table["line"])
+            if not isinstance(table["line"], Line):
+                return None
+        with self._within(*path):
+            return ModalPlate(material, **table)
+
     def _friction(self, path: Place, table: Tables) -> dict[str, Any]:
         """Take the law of friction out of the table of a contact, if it has one."""
         given = dict(table.pop("friction", None) or {})
@@ -226,10 +242,10 @@ class Builder:
         kind = table.pop("kind")
         if kind == "point":
             return self._place(path, table)
-        if kind == "beam":
+        if kind in TRACKS:
             body = self.bodies[table["body"]]
-            if not isinstance(body, ModalBeam):
-                self.problems.append(f"{self.words((*path, 'body'))} must be a modal beam, got {table['body']!r}")
+            if not isinstance(body, TRACKS[kind]):
+                self.problems.append(f"{self.words((*path, 'body'))} must be a modal {kind}, got {table['body']!r}")
             return body
         for name in ("history", "normal_history"):
             if table.get(name) is not None:
@@ -294,11 +310,11 @@ class Builder:
             self.problems.append(_unknown(self.words(path), name, list(self.bodies)))
         return self.bodies.get(name)
 
-    def _point(self, path: Place, body: Any, place: str | float | None, end: str = "") -> Any:
+    def _point(self, path: Place, body: Any, place: str | float | tuple[float, float] | None, end: str = "") -> Any:
         """Return a point of a body; without a place the `end` of a slider, the centre or the only point."""
         if body is None:
             return None
-        if isinstance(body, (FiniteElementBeam, ModalBeam)):
+        if isinstance(body, (FiniteElementBeam, ModalBeam, ModalPlate)):
             return self._point_of_beam(path, body, place, end)
         known = tuple(body.points) if isinstance(body, ReducedBody) else ("centre",)
         if place is None and len(known) == 1:
@@ -311,7 +327,7 @@ class Builder:
             self.problems.append(_unknown(self.words(path), place, known))
         return None
 
-    def _point_of_beam(self, path: Place, body: Any, place: str | float | None, end: str) -> Any:
+    def _point_of_beam(self, path: Place, body: Any, place: str | float | tuple[float, float] | None, end: str) -> Any:
         names = ("tip", "root") if isinstance(body, FiniteElementBeam) else ("centre",)
         if place is None:
             place = end if end in names else names[0]
@@ -319,7 +335,7 @@ class Builder:
             point: BodyPoint = getattr(body, str(place))
             return point
         try:
-            return body.at(quantity(place, "m"))
+            return body.at(place if isinstance(place, tuple) else quantity(place, "m"))
         except ValueError as error:
             key, words = self.words(path), str(error)
             problem = words.replace("position", key, 1) if words.startswith("position") else ""

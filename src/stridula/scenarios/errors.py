@@ -42,7 +42,10 @@ def wrong_form(tables: dict[str, Any]) -> list[str]:
     ]
     if is_general and isinstance(tables.get("bodies"), dict) and not outline.beams(tables):
         shared = [key for key in outline.SHARED if key in tables]
-        problems += [f"{key} must stand in a body, got one at the top, where only beams take it from" for key in shared]
+        problems += [
+            f"{key} must stand in a body, got one at the top, where only beams and plates take it from"
+            for key in shared
+        ]
     for key in wanted:
         if key not in tables:
             problems.append(f"{key} must be given: {(outline.node_at((key,), tables) or {})['description']}")

@@ -123,6 +123,26 @@ class Quantity(_Kind):
 
 
 @dataclass(frozen=True)
+class OneOrEach(_Kind):
+    """One quantity, or a list of them.
+
+    Attributes
+    ----------
+    one : Quantity
+        What each is.
+    """
+
+    one: Quantity
+
+    def read(self, value: Any) -> Any:
+        return [self.one.read(each) for each in value] if isinstance(value, list) else self.one.read(value)
+
+    def json_schema(self) -> dict[str, Any]:
+        one = self.one.json_schema()
+        return {"anyOf": [*one["anyOf"], {"type": "array", "items": one}]}
+
+
+@dataclass(frozen=True)
 class Whole(_Kind):
     """A whole number.
 
@@ -146,21 +166,54 @@ class Whole(_Kind):
 
 
 @dataclass(frozen=True)
+class Pair(_Kind):
+    """Two values of the same kind, one along the length of a plate and one along its width.
+
+    Attributes
+    ----------
+    each : Quantity or Whole
+        What both are.
+    words : str
+        What both are, in words.
+    """
+
+    each: Quantity | Whole
+    words: str
+
+    def read(self, value: Any) -> tuple[Any, Any]:
+        if not isinstance(value, (list, tuple)) or len(value) != 2:
+            raise ValueError(f"must be two {self.words}, along length and width")
+        try:
+            first, second = (self.each.read(one) for one in value)
+        except ValueError as error:
+            raise ValueError(f"must be two {self.words}, along length and width, each of which {error}") from None
+        return first, second
+
+    def json_schema(self) -> dict[str, Any]:
+        return {"type": "array", "items": self.each.json_schema(), "minItems": 2, "maxItems": 2}
+
+
+DISTANCES = Pair(Quantity("m"), "distances")
+
+
+@dataclass(frozen=True)
 class Place(_Kind):
-    """A point of a body: one of its named points, or a position along a beam."""
+    """A point of a body: one of its named points, a position along a beam, or two distances on a plate."""
 
     names = ("tip", "root", "centre")
 
-    def read(self, value: Any) -> str | float:
+    def read(self, value: Any) -> str | float | tuple[float, float]:
         if isinstance(value, str):
             return value
+        if isinstance(value, (list, tuple)):
+            return DISTANCES.read(value)
         try:
             return quantity(value, "m")
         except ValueError as error:
             raise ValueError(f"must be the name of a point or a position, which {error}") from None
 
     def json_schema(self) -> dict[str, Any]:
-        return {"anyOf": [{"enum": list(self.names)}, {"type": "string"}, {"type": "number"}]}
+        return {"anyOf": [{"enum": list(self.names)}, {"type": "string"}, {"type": "number"}, DISTANCES.json_schema()]}
 
 
 @dataclass(frozen=True)
@@ -293,6 +346,7 @@ def _is_label_or_none(value: Any) -> bool:
 
 
 Ratio = Annotated[float, Quantity("1")]
+Poisson = Annotated[float, Quantity("1", above=-1.0, below=0.5)]
 Friction = Annotated[float, Quantity("1", least=0.0)]
 Damping = Annotated[float, Quantity("1", least=0.0, below=1.0)]
 Length = Annotated[float, Quantity("m", above=0.0)]
@@ -310,7 +364,9 @@ Velocity = Annotated[float, Quantity("m/s")]
 Acceleration = Annotated[float, Quantity("m/s2", above=0.0)]
 Count = Annotated[int, Whole(1)]
 CountOrNone = Annotated[int, Whole(0)]
-Point = Annotated[str | float, Place()]
+Counts = Annotated[tuple[int, int], Pair(Whole(1), "whole numbers")]
+Point = Annotated[str | float | tuple[float, float], Place()]
+Spot = Annotated[tuple[float, float], DISTANCES]
 Position = Annotated[float, Quantity("m")]
 Mass = Annotated[float, Quantity("kg", above=0.0)]
 Stiffness = Annotated[float, Quantity("N/m", above=0.0)]
@@ -320,6 +376,7 @@ PositiveRatio = Annotated[float, Quantity("1", above=0.0)]
 Bristles = Annotated[float, Quantity("1/m", above=0.0)]
 Slope = Annotated[float, Quantity("s/m", least=0.0)]
 Matrix = Annotated[Any, Numbers((2,), file=True)]
+ModalDamping = Annotated[Any, OneOrEach(Quantity("1", least=0.0, below=1.0))]
 ReducedDamping = Annotated[Any, Numbers((0, 1, 2), file=True, rayleigh=True)]
 Vector = Annotated[Any, Numbers((1,))]
 PointTable = Annotated[Any, Points()]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .outline import SHARED, TAGS, Path, beams, look_up
+from .outline import PLATES, SHARED, TAGS, Path, beams, look_up
 
 
 def merged(below: Any, above: Any) -> Any:
@@ -21,11 +21,13 @@ def merged(below: Any, above: Any) -> Any:
 
 
 def shared_out(tables: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables with what all beams share put into each of them, and each friction with its law."""
+    """Return the tables with what all beams share put into each of them that has it, and each friction with its law."""
     shared = {key: tables[key] for key in SHARED if key in tables}
     full = {key: value for key, value in tables.items() if key not in SHARED}
     for path in beams(full):
-        _replace(full, path, merged(shared, look_up(full, path)))
+        body = look_up(full, path)
+        skipped = "section" if body.get("kind") in PLATES else None
+        _replace(full, path, merged({key: value for key, value in shared.items() if key != skipped}, body))
     for path in _frictions(full):
         friction = look_up(full, path)
         if isinstance(friction, dict) and "law" not in friction:

@@ -12,6 +12,7 @@ Path = tuple[str | int, ...]
 SHARED = ("material", "section", "damping", "cutoff")
 TAGS = ("shape", "law", "kind", "quantity")
 BEAMS = ("finite-element beam", "modal beam")
+PLATES = ("modal plate",)
 
 
 def properties(node: Node | None, table: Any = None) -> dict[str, Node]:
@@ -62,10 +63,10 @@ def words(node: Node | None) -> list[str]:
 
 
 def beams(tables: Any) -> list[Path]:
-    """Return the paths of the beams, which take what stands at the top."""
+    """Return the paths of beams and plates, which take what stands at the top; plates have no section."""
     bodies = look_up(tables, ("bodies",))
     named = bodies if isinstance(bodies, dict) else {}
-    kinds = [("bodies", name) for name, body in named.items() if look_up(body, ("kind",)) in BEAMS]
+    kinds = [("bodies", name) for name, body in named.items() if look_up(body, ("kind",)) in (*BEAMS, *PLATES)]
     return [path for path in (("slider",), ("track",), *kinds) if isinstance(look_up(tables, path), dict)]
 
 

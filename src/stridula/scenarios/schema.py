@@ -73,13 +73,13 @@ class ScenarioTable(Table):
     base: str | None = None
     """scenario file, or shipped base, that this one changes"""
     material: Material | None = None
-    """material of all beams, unless a body has its own"""
+    """material of all beams and plates, unless a body has its own"""
     section: Section | None = None
     """cross-section of all beams, unless a body has its own"""
     damping: is_.Damping | None = None
-    """damping ratio of all beams, unless a body has its own"""
+    """damping ratio of all beams and plates, unless a body has its own"""
     cutoff: is_.Frequency | None = None
-    """highest frequency of the modes of all beams, unless a body has its own [Hz]"""
+    """highest frequency of the modes of all beams and plates, unless a body has its own [Hz]"""
     slider: Slider | None = None
     """the beam whose tip touches"""
     track: Track | None = None

@@ -6,7 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from ..bodies import FiniteElementBeam, ModalBeam
+from ..bodies import FiniteElementBeam, ModalBeam, ModalPlate
+from ..bodies import Line as Straight
+from ..bodies import Material as Solid
 from . import fields as is_
 from .fields import Table
 
@@ -18,6 +20,8 @@ class Material(Table):
     """Young's modulus [Pa]"""
     density: is_.Density
     """mass density [kg/m³]"""
+    poisson: is_.Poisson = Solid.poisson
+    """Poisson's ratio, of plates"""
 
 
 class Rectangle(Table):
@@ -84,8 +88,8 @@ class Track(Table):
     """number of bending modes, unless there is a cutoff"""
     axial_modes: is_.CountOrNone = ModalBeam.axial_modes
     """number of axial modes, unless there is a cutoff"""
-    damping: is_.Damping = ModalBeam.damping
-    """damping ratio of every mode"""
+    damping: is_.ModalDamping = ModalBeam.damping
+    """damping ratio of every mode, or one for each"""
     cutoff: is_.Frequency | None = None
     """keep the modes up to this frequency [Hz]"""
     name: str = ""
@@ -94,17 +98,47 @@ class Track(Table):
 
 class FiniteElementBody(Slider):
     kind: Literal["finite-element beam"]
-    """finite-element beam, modal beam, point mass or reduced"""
+    """finite-element beam, modal beam, modal plate, point mass or reduced"""
 
 
 class ModalBody(Track):
     kind: Literal["modal beam"]
-    """finite-element beam, modal beam, point mass or reduced"""
+    """finite-element beam, modal beam, modal plate, point mass or reduced"""
+
+
+class Line(Table):
+    origin: is_.Spot
+    """point of abscissa 0: distances along length and width from the corner [m]"""
+    direction: is_.Angle = Straight.direction
+    """angle from the plate's length to the line, towards its width [rad]"""
+
+
+class Plate(Table):
+    kind: Literal["modal plate"]
+    """finite-element beam, modal beam, modal plate, point mass or reduced"""
+    material: Material
+    """what the plate is made of"""
+    thickness: is_.Length
+    """thickness [m]"""
+    length: is_.Length
+    """one side [m]"""
+    width: is_.Length
+    """other side [m]"""
+    bending_modes: is_.Counts = ModalPlate.bending_modes
+    """numbers of half-waves along length and width, unless there is a cutoff"""
+    damping: is_.ModalDamping = ModalPlate.damping
+    """damping ratio of every mode, or one for each"""
+    cutoff: is_.Frequency | None = None
+    """keep the modes up to this frequency [Hz]"""
+    line: Line | None = None
+    """where bodies slide on it, along its length in the middle of its width if left out"""
+    name: str = ""
+    """what it is called in records, the table's own name if left out"""
 
 
 class PointMass(Table):
     kind: Literal["point mass"]
-    """finite-element beam, modal beam, point mass or reduced"""
+    """finite-element beam, modal beam, modal plate, point mass or reduced"""
     mass: is_.Mass
     """mass [kg]"""
     name: str = ""
@@ -113,7 +147,7 @@ class PointMass(Table):
 
 class Reduced(Table):
     kind: Literal["reduced"]
-    """finite-element beam, modal beam, point mass or reduced"""
+    """finite-element beam, modal beam, modal plate, point mass or reduced"""
     file: str | None = None
     """.npz or .mat file with matrices and points, beside the scenario"""
     mass: is_.Matrix | None = None
@@ -132,4 +166,4 @@ class Reduced(Table):
     """what it is called in records, the table's own name if left out"""
 
 
-Body = Annotated[FiniteElementBody | ModalBody | PointMass | Reduced, Field(discriminator="kind")]
+Body = Annotated[FiniteElementBody | ModalBody | Plate | PointMass | Reduced, Field(discriminator="kind")]

@@ -132,14 +132,21 @@ class Place(Table):
 
 class BeamTrack(Table):
     kind: Literal["beam"]
-    """beam, rigid or point"""
+    """beam, plate, rigid or point"""
     body: str
     """modal beam along which it slides: its name among the bodies"""
 
 
+class PlateTrack(Table):
+    kind: Literal["plate"]
+    """beam, plate, rigid or point"""
+    body: str
+    """modal plate along whose line it slides: its name among the bodies"""
+
+
 class Rigid(Table):
     kind: Literal["rigid"]
-    """beam, rigid or point"""
+    """beam, plate, rigid or point"""
     velocity: is_.Velocity = RigidTrack.velocity
     """velocity along its tangent, as of a belt [m/s]"""
     normal_velocity: is_.Velocity = RigidTrack.normal_velocity
@@ -154,7 +161,7 @@ class Rigid(Table):
 
 class PointTrack(Table):
     kind: Literal["point"]
-    """beam, rigid or point"""
+    """beam, plate, rigid or point"""
     body: str
     """body that is touched: its name among the bodies"""
     point: is_.Point | None = None
@@ -166,7 +173,7 @@ class Contact(Table):
     """what it is called in records"""
     tip: Place
     """what touches"""
-    track: Annotated[BeamTrack | Rigid | PointTrack, Field(discriminator="kind")]
+    track: Annotated[BeamTrack | PlateTrack | Rigid | PointTrack, Field(discriminator="kind")]
     """what it slides on"""
     at: is_.Position = PointContact.at
     """abscissa of the tip on the track at the start [m]"""

@@ -1,8 +1,21 @@
-"""All cases, and those that wait for what the package does not have yet."""
+"""All cases."""
 
 from __future__ import annotations
 
-from . import falling, frequencies, impacts, instabilities, jams, laws, orders, sliders, stability
+from . import (
+    falling,
+    frequencies,
+    impacts,
+    instabilities,
+    jams,
+    laws,
+    orders,
+    plates,
+    radiation,
+    sensations,
+    sliders,
+    stability,
+)
 from .case import Case
 
 CASES: tuple[Case, ...] = (
@@ -14,11 +27,8 @@ CASES: tuple[Case, ...] = (
     *jams.CASES,
     *laws.CASES,
     *frequencies.CASES,
+    *plates.CASES,
     *orders.CASES,
-)
-
-WAITING = (
-    "Frequencies of the simply supported plate: wait for a plate",
-    "Radiation of the baffled plate (Wallace 1972), the baffled piston and the baffled monopole: wait for radiation",
-    "Loudness of 1 kHz at 40 dB: waits for loudness",
+    *radiation.CASES,
+    *sensations.CASES,
 )

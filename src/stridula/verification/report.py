@@ -13,7 +13,7 @@ from ..disk import write
 from ..plot import save as save_figure
 from ..version import __version__
 from .case import Case, Outcome, Row, Sketch, table_row
-from .cases import CASES, WAITING
+from .cases import CASES
 
 
 def verify(
@@ -102,7 +102,6 @@ def page(outcomes: Sequence[tuple[Case, Outcome]], seconds: float) -> str:
         lines += ["|---|---|---|---|---|---|---|---|"]
         lines += [_line(table_row(case, row)) for row in outcome.rows]
         lines += ["", *(f"- {note}" for note in outcome.notes), ""]
-    lines += ["## Not run yet", "", *(f"- {what}" for what in WAITING), ""]
     return "\n".join(lines)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ...disk import write
-from ...plot import overview
+from ...plot import overview, spectrogram
 from ...plot import save as save_figure
 from ...records.files import save as save_record
 from ...version import __version__
@@ -18,7 +18,7 @@ from .runs import CASES, Runs
 
 
 def reproduce(folder: str | Path, report: Callable[[str], None] = lambda name: None) -> list[dict[str, Any]]:
-    """Run every case of the paper and write records, figures, `claims.json` and `claims.md` into a folder.
+    """Run every case of the paper and write records, sounds, figures, `claims.json` and `claims.md` into a folder.
 
     Parameters
     ----------
@@ -46,6 +46,8 @@ def reproduce(folder: str | Path, report: Callable[[str], None] = lambda name: N
     for case in CASES:
         save_record(runs.record(case), target / f"{case}.nc")
         save_figure(overview(runs.record(case)), target / f"{case}.png")
+        heard = runs.sound(case, target / f"{case}.wav").isel(listener=0)
+        save_figure(spectrogram(heard, runs.record(case)), target / f"{case}-sound.png")
     for figure in FIGURES:
         report(figure.file_name)
         save_figure(figure.draw(runs), target / figure.file_name)

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from ...acoustics import radiate
+from ...acoustics.wav import read_wav, write_wav
 from ...analysis import settling_time
 from ...scenarios.load import Scenario, load_scenario
 
@@ -33,6 +37,7 @@ class Runs:
     overrides: Mapping[str, Any] = field(default_factory=dict)
     report: Callable[[str], None] = lambda name: None
     _records: dict[str, xr.Dataset] = field(default_factory=dict, repr=False)
+    _sounds: dict[str, xr.DataArray] = field(default_factory=dict, repr=False)
     _onsets: dict[str, dict[float, str]] = field(default_factory=dict, repr=False)
 
     def scenario(self, case: str, **overrides: Any) -> Scenario:
@@ -42,6 +47,20 @@ class Runs:
     def record(self, case: str) -> xr.Dataset:
         """Return the record of one of `CASES`."""
         return self._kept(case, case)
+
+    def sound(self, case: str, path: str | Path | None = None) -> xr.DataArray:
+        """Return what a sound file of a case holds [Pa]: two ears a metre above the track, in a baffle.
+
+        The file is written to `path`, or to one that is gone again if left out.
+        """
+        if case not in self._sounds or path is not None:
+            self.report(f"sound of {case}")
+            pressure = radiate(self.record(case), self.scenario(case).system.track)
+            with TemporaryDirectory() as folder:
+                file = Path(folder) / "sound.wav" if path is None else path
+                write_wav(file, pressure)
+                self._sounds[case] = read_wav(file)
+        return self._sounds[case]
 
     def under_load(self, load: float) -> xr.Dataset:
         """Return the record of section 3.4 under a normal load [N]."""

@@ -1,0 +1,112 @@
+"""Impulse responses of what arrives from many points, each after its own time, on a grid of samples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse
+import scipy.special
+
+from ..bodies.modes import Array
+
+# Largest error of a delay within the bandwidth [dB].
+ATTENUATION = 100.0
+
+
+@dataclass(frozen=True)
+class Interpolation:
+    """A sinc under a Kaiser window, which delays by any share of a sample.
+
+    Exact to `ATTENUATION` up to the bandwidth that `interpolation` made it for (Kaiser 1974: an attenuation A in dB and
+    a transition D, a share of the sample rate, ask for ``(A - 8) / (2.285 2 pi D)`` taps).
+
+    Attributes
+    ----------
+    half_span : int
+        Samples on each side.
+    beta : float
+        Shape of the window.
+    """
+
+    half_span: int
+    beta: float
+
+    def values(self, offset: Array) -> Array:
+        """Return its values at distances from the delay in samples, zero beyond its span."""
+        inside = np.sqrt(np.maximum(1.0 - (offset / self.half_span) ** 2, 0.0))
+        window = scipy.special.i0(self.beta * inside) / scipy.special.i0(self.beta)
+        return np.asarray(np.sinc(offset) * window)
+
+    def rates(self, offset: Array) -> Array:
+        """Return its derivative at distances from the delay, per sample."""
+        inside = np.sqrt(np.maximum(1.0 - (offset / self.half_span) ** 2, 0.0))
+        scale = scipy.special.i0(self.beta)
+        window = scipy.special.i0(self.beta * inside) / scale
+        # I1(z) / z is 1/2 at zero.
+        ratio = np.where(inside > 1e-9, scipy.special.i1(self.beta * inside) / np.maximum(inside, 1e-9), self.beta / 2)
+        sloped = -self.beta * offset / self.half_span**2 * ratio / scale
+        near = np.abs(offset) < 1e-4
+        safe = np.where(near, 1.0, offset)
+        slope = np.where(near, -(np.pi**2) * offset / 3.0, (np.cos(np.pi * safe) - np.sinc(safe)) / safe)
+        return np.asarray(slope * window + np.sinc(offset) * sloped)
+
+
+def interpolation(share: float, attenuation: float = ATTENUATION) -> Interpolation:
+    """Return the interpolation that is right up to `share` of the sample rate, below one half."""
+    taps = (attenuation - 8.0) / (2.285 * 2.0 * np.pi * (1.0 - 2.0 * share))
+    return Interpolation(half_span=int(np.ceil(taps / 2.0)) + 1, beta=0.1102 * (attenuation - 8.7))
+
+
+@dataclass(frozen=True)
+class Response:
+    """Impulse responses of the modes at a listener.
+
+    Attributes
+    ----------
+    first : int
+        Sample of the first tap; may be below zero.
+    taps : ndarray, shape (taps, modes)
+        The responses.
+    """
+
+    first: int
+    taps: Array
+
+
+def response(first: int, count: int, modes: int) -> Response:
+    """Return an empty response."""
+    return Response(first, np.zeros((count, modes)))
+
+
+def span(least: float, largest: float, kernel: Interpolation) -> tuple[int, int]:
+    """Return the first tap of delays from `least` to `largest` in samples, and the number of taps."""
+    first = int(np.floor(least)) - kernel.half_span
+    return first, int(np.floor(largest)) + kernel.half_span + 1 - first
+
+
+def add(to: Response, delays: Array, strengths: Array, kernel: Interpolation, derivative: bool = False) -> None:
+    """Add what arrives from points.
+
+    Parameters
+    ----------
+    to : Response
+        What it is added to.
+    delays : ndarray, shape (points,)
+        Travel times in samples.
+    strengths : ndarray, shape (points, modes)
+        What each mode sends from each point.
+    kernel : Interpolation
+        The interpolation.
+    derivative : bool, optional
+        Whether what arrives is the derivative per sample of what was sent.
+    """
+    whole = np.floor(delays).astype(np.int64)
+    rows = whole[:, None] + np.arange(1 - kernel.half_span, kernel.half_span + 1)
+    offsets = rows - delays[:, None]
+    data = kernel.rates(offsets) if derivative else kernel.values(offsets)
+    columns = np.arange(len(delays) + 1) * rows.shape[1]
+    matrix = scipy.sparse.csc_array(
+        (data.ravel(), (rows - to.first).ravel(), columns), shape=(len(to.taps), len(delays))
+    )
+    to.taps[...] += matrix @ strengths

@@ -1,0 +1,163 @@
+"""Levels of sound: equivalent, over time, in third-octave bands."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from scipy.fft import next_fast_len, rfft, rfftfreq
+
+from ..bodies.modes import Array
+from ..checks import choice, positive
+from .pressures import channels, check_length, check_rate, of_listeners
+from .weighting import TIME_CONSTANTS, a_weighted, time_weighted
+
+# Reference sound pressure [Pa] (ISO 1683).
+REFERENCE = 20e-6
+WEIGHTINGS = ("Z", "A")
+# What weighted levels take: samples up to 20 kHz, and a period of 20 Hz.
+LOWEST_RATE, SHORTEST = 40e3, 0.05
+# Order of the band filters.
+ORDER = 6
+# Numbers of the bands from 25 Hz to 20 kHz; their exact centres are 10^(n/10) Hz.
+BANDS = np.arange(14, 44)
+NOMINAL = np.outer([10.0, 100.0, 1000.0, 10000.0], [1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0]).ravel()
+
+
+def equivalent_level(pressure: xr.DataArray, weighting: str = "Z") -> xr.DataArray:
+    """Return the equivalent sound pressure level over the whole of a sound, Leq or LAeq.
+
+    Parameters
+    ----------
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        Sound pressure [Pa].
+    weighting : {"Z", "A"}, optional
+        None, or A of IEC 61672-1, which takes samples at 40 kHz or more.
+
+    Returns
+    -------
+    xarray.DataArray, shape () or (listener,)
+        Level [dB] re 20 µPa; minus infinity for silence.
+
+    Raises
+    ------
+    ValueError
+        If the sound lasts less than 0.05 s or is sampled too slowly, or an argument is out of its range.
+    """
+    squares = np.mean(_weighted(pressure, weighting)[0] ** 2, axis=0)
+    name = "LAeq" if weighting == "A" else "Leq"
+    return of_listeners(pressure, decibels(squares), name, "dB", f"equivalent sound pressure level {name} re 20 µPa")
+
+
+def sound_level(pressure: xr.DataArray, weighting: str = "A", response: str = "fast") -> xr.DataArray:
+    """Return the sound level over time as a sound level meter shows it, such as LAF.
+
+    Parameters
+    ----------
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        Sound pressure [Pa], silence before it.
+    weighting : {"A", "Z"}, optional
+        A of IEC 61672-1, or none.
+    response : {"fast", "slow"}, optional
+        Time weighting F (0.125 s) or S (1 s).
+
+    Returns
+    -------
+    xarray.DataArray, shape of `pressure`
+        Level [dB] re 20 µPa. Its largest value is LAFmax.
+
+    Raises
+    ------
+    ValueError
+        If the sound lasts less than 0.05 s or is sampled too slowly, or an argument is out of its range.
+    """
+    choice("response", response, tuple(TIME_CONSTANTS))
+    values, rate = _weighted(pressure, weighting)
+    levels = decibels(time_weighted(values**2, rate, response)).reshape(pressure.shape)
+    name = f"L{weighting}{response[0].upper()}"
+    words = {"units": "dB", "long_name": f"sound level {name} re 20 µPa"}
+    return pressure.copy(data=levels).rename(name).assign_attrs(words)
+
+
+def third_octave_levels(pressure: xr.DataArray, lowest: float = 25.0, highest: float = 16000.0) -> xr.DataArray:
+    """Return equivalent levels in the third-octave bands of IEC 61260-1 (base ten, class 1).
+
+    The bands are analogue Butterworth filters of order 6, their mean squares taken from the spectrum of the whole sound
+    (Parseval). No filter has to settle, none is bent near half of the sample rate, and the bands add up to within
+    0.05 dB of the whole; a sound that starts at once spreads into other bands, as it does in any filter.
+
+    Parameters
+    ----------
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        Sound pressure [Pa].
+    lowest, highest : float, optional
+        Nominal centres of the first and the last band [Hz], from 25 to 20000.
+
+    Returns
+    -------
+    xarray.DataArray, shape (band,) or (band, listener)
+        Levels [dB] re 20 µPa over the nominal centres ``band`` [Hz]; ``centre`` has the exact ones.
+
+    Raises
+    ------
+    ValueError
+        If the sound lasts less than one over the width of the lowest band, is sampled at less than twice the upper edge
+        of the highest one, or an argument is out of its range.
+    """
+    numbers = np.arange(_band("lowest", lowest), _band("highest", highest) + 1)
+    if not numbers.size:
+        raise ValueError(f"highest must be at or above the lowest band of {lowest!r} Hz, got {highest!r}")
+    centres = 10.0 ** (numbers / 10.0)
+    values, rate = channels(pressure)
+    narrowest = centres[0] * (10.0**0.05 - 10.0**-0.05)
+    check_length(pressure, 1.0 / narrowest, f"a lowest band of {lowest:g} Hz")
+    check_rate(rate, 2.0 * centres[-1] * 10.0**0.05, f"a highest band of {highest:g} Hz")
+    size = next_fast_len(2 * values.shape[0], real=True)
+    frequency = rfftfreq(size, 1.0 / rate)
+    # Each frequency stands for its negative one, too.
+    energy = 2.0 * np.abs(rfft(values, size, axis=0)) ** 2 / size
+    squares = np.array([band_gain(frequency, centre) @ energy for centre in centres]) / values.shape[0]
+    words = {"units": "Hz", "long_name": "nominal centre frequency"}
+    at = xr.Variable("band", NOMINAL[numbers - 10], words)
+    bare = pressure.isel(time=0, drop=True).expand_dims(band=at)
+    levels = bare.copy(data=decibels(squares).reshape(bare.shape)).rename("third_octave_level")
+    exact = ("band", centres, {"units": "Hz", "long_name": "exact centre frequency"})
+    return levels.assign_coords(centre=exact).assign_attrs(
+        units="dB", long_name="sound pressure level in third-octave bands re 20 µPa"
+    )
+
+
+def band_gain(frequency: Array, centre: float) -> Array:
+    """Return the gain in power of the third-octave filter about an exact centre [Hz] at frequencies [Hz]."""
+    width = 10.0**0.05 - 10.0**-0.05
+    with np.errstate(divide="ignore"):
+        off = (frequency / centre - centre / frequency) / width
+    return np.asarray(1.0 / (1.0 + off ** (2 * ORDER)))
+
+
+def decibels(squares: Array) -> Array:
+    """Return the levels re 20 µPa [dB] of mean squares [Pa²]."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(10.0 * np.log10(squares / REFERENCE**2))
+
+
+def _weighted(pressure: xr.DataArray, weighting: str) -> tuple[Array, float]:
+    choice("weighting", weighting, WEIGHTINGS)
+    values, rate = channels(pressure)
+    check_length(pressure, SHORTEST, "a level")
+    if weighting == "Z":
+        return values, rate
+    check_rate(rate, LOWEST_RATE, "A-weighting")
+    return a_weighted(values, rate), rate
+
+
+def _band(name: str, nominal: float) -> int:
+    """Return the number of the band with a nominal centre."""
+    positive(name, nominal)
+    known = NOMINAL[BANDS - 10]
+    nearest = int(np.argmin(np.abs(np.log(known / nominal))))
+    if abs(known[nearest] - nominal) > 1e-6 * nominal:
+        raise ValueError(
+            f"{name} must be the nominal centre of a third-octave band from 25 to 20000 Hz, got {nominal!r}; "
+            f"the nearest is {known[nearest]:g}"
+        )
+    return int(BANDS[nearest])

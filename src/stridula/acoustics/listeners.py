@@ -1,0 +1,86 @@
+"""Where one listens, checked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..bodies import ModalBeam, ModalPlate
+from ..bodies.modes import Array
+from ..checks import finite, positive
+
+FARTHEST = 1000.0
+
+
+def ears(track: ModalBeam | ModalPlate, height: float = 1.0, spacing: float = 0.18) -> list[tuple[float, float, float]]:
+    """Return the places of two ears above the middle of a track, the left one first, side by side along it.
+
+    Parameters
+    ----------
+    track : ModalBeam or ModalPlate
+        The track.
+    height : float, optional
+        Height above it [m].
+    spacing : float, optional
+        Distance between the ears [m].
+
+    Returns
+    -------
+    list of tuple
+        x, y, z of both [m].
+    """
+    middle = positive("height", height)
+    across = track.width / 2.0 if isinstance(track, ModalPlate) else 0.0
+    half = positive("spacing", spacing) / 2.0
+    return [(track.length / 2.0 + side * half, across, middle) for side in (-1.0, 1.0)]
+
+
+def listeners_of(listener: Any) -> Array:
+    """Return one or several listeners as an array, shape (listeners, 3).
+
+    Raises
+    ------
+    ValueError
+        If it is no triple of finite numbers, no list of them, or is farther than 1000 m away.
+    """
+    if isinstance(listener, np.ndarray):
+        listener = listener.tolist()
+    if not isinstance(listener, Sequence) or isinstance(listener, (str, bytes)) or not listener:
+        raise ValueError(f"listener must be (x, y, z) or a list of such, got {listener!r}")
+    several = listener if isinstance(listener[0], (Sequence, np.ndarray)) else [listener]
+    found = []
+    for number, place in enumerate(several):
+        name = "listener" if several is not listener else f"listener[{number}]"
+        if not isinstance(place, (Sequence, np.ndarray)) or isinstance(place, (str, bytes)) or len(place) != 3:
+            raise ValueError(f"{name} must be three distances x, y, z, got {place!r}")
+        found.append([_distance(f"{name}.{axis}", value) for axis, value in zip("xyz", place, strict=True)])
+    return np.array(found)
+
+
+def _distance(name: str, value: Any) -> float:
+    number = finite(name, value.item() if isinstance(value, np.generic) else value)
+    if abs(number) > FARTHEST:
+        raise ValueError(f"{name} must be within {FARTHEST:g} m, got {value!r}")
+    return number
+
+
+def check_in_front(listeners: Array) -> None:
+    """Raise ValueError if a listener is in the surface of a baffle or behind it."""
+    for place in listeners:
+        if place[2] <= 0.0:
+            where = "in the surface" if place[2] == 0.0 else "behind the baffle"
+            raise ValueError(f"listener must be in front of the baffle, z above 0, got z = {place[2]:g} {where}")
+
+
+def check_off_beam(listeners: Array, length: float, radius: float) -> None:
+    """Raise ValueError if a listener is on a beam of a length whose section lies within a radius of its axis."""
+    for place in listeners:
+        along = place[0] - min(max(place[0], 0.0), length)
+        distance = float(np.hypot(along, np.hypot(place[1], place[2])))
+        if distance <= radius:
+            raise ValueError(
+                f"listener must be farther than {radius:.4g} m from the beam's axis, got {tuple(place.tolist())} at "
+                f"{distance:.4g} m"
+            )

@@ -1,0 +1,139 @@
+"""Tracks as flat rectangles whose modes are sines: what the integrals over their surface need of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..bodies import ModalBeam, ModalPlate, Rectangle
+from ..bodies.modes import Array
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A flat rectangle and the modes in which it moves out of its plane.
+
+    Attributes
+    ----------
+    length, width : float
+        Sides along x and y [m]; x is zero at the left end.
+    edge : float
+        Where it begins along y [m].
+    amplitude : float
+        Largest value of a mass-normalised mode shape [kg^(-1/2)].
+    wavenumbers : ndarray, shape (modes, 2)
+        Wavenumbers of the sines along x and y [rad/m]; zero where a mode is uniform across.
+    angular_frequency, damping : ndarray, shape (modes,)
+        Angular frequencies [rad/s] and damping ratios [1].
+    ends : tuple of float
+        Least and largest abscissa of a contact point [m].
+    place : callable
+        Takes abscissas of contact points (...), returns their x and y [m], each (...).
+    """
+
+    length: float
+    width: float
+    edge: float
+    amplitude: float
+    wavenumbers: Array
+    angular_frequency: Array
+    damping: Array
+    ends: tuple[float, float]
+    place: Callable[[Array], tuple[Any, Any]]
+
+    def shapes(self, x: Array, y: Array) -> Array:
+        """Return the mass-normalised mode shapes [kg^(-1/2)] at points x, y [m], shape (..., modes)."""
+        along, across = self.wavenumbers.T
+        shapes = self.amplitude * _sines(x, along)
+        if across.any():
+            shapes = shapes * _sines(y - self.edge, across)
+        return np.broadcast_to(shapes, (*shapes.shape[:-1], len(along)))
+
+    def only(self, modes: Any) -> Panel:
+        """Return the panel with the chosen modes, an index or a slice, only."""
+        return replace(
+            self,
+            wavenumbers=self.wavenumbers[modes],
+            angular_frequency=self.angular_frequency[modes],
+            damping=self.damping[modes],
+        )
+
+
+def panel_of(track: ModalBeam | ModalPlate) -> Panel:
+    """Return the surface of a track: a plate, or a beam as a strip that moves uniformly across its width.
+
+    Axial modes move in the plane of the surface and are left out.
+
+    Parameters
+    ----------
+    track : ModalBeam or ModalPlate
+        The track. The strip's y is zero on the beam's axis, that of a plate on its first edge.
+
+    Raises
+    ------
+    ValueError
+        If it is no such track, or a beam whose section is no rectangle.
+    """
+    if isinstance(track, ModalPlate):
+        return _plate(track)
+    if isinstance(track, ModalBeam) and isinstance(track.section, Rectangle):
+        return _bent(track, track.section.width)
+    if isinstance(track, ModalBeam):
+        raise ValueError(
+            f"track must have a Rectangle as section to have a flat surface in a baffle, got {track.section!r}"
+        )
+    raise ValueError(f"track must be a ModalBeam or a ModalPlate, got {_short(track)}")
+
+
+def line_of(track: ModalBeam) -> Panel:
+    """Return the bending modes of a beam as a panel without width."""
+    if not isinstance(track, ModalBeam):
+        raise ValueError(f"track must be a ModalBeam to radiate without a baffle, got {_short(track)}")
+    return _bent(track, 0.0)
+
+
+def _sines(places: Array, wavenumbers: Array) -> Array:
+    """Return the sines at places (...) for each wavenumber, shape (..., modes), or (..., 1) if all are equal."""
+    different, number = np.unique(wavenumbers, return_inverse=True)
+    sines = np.sin(places[..., None] * different)
+    in_order = len(different) == 1 or (len(different) == len(number) and bool((np.diff(number) > 0).all()))
+    return sines if in_order else sines[..., number]
+
+
+def _bent(beam: ModalBeam, width: float) -> Panel:
+    modes, count = beam.modes(), beam.harmonics[0]
+    along = np.arange(1, count + 1) * np.pi / beam.length
+    return Panel(
+        length=beam.length,
+        width=width,
+        edge=-width / 2.0,
+        amplitude=beam.amplitude,
+        wavenumbers=np.stack([along, np.zeros(count)], axis=1),
+        angular_frequency=modes.angular_frequency[:count],
+        damping=modes.damping[:count],
+        ends=(0.0, beam.length),
+        place=lambda position: (position, np.zeros_like(position)),
+    )
+
+
+def _plate(plate: ModalPlate) -> Panel:
+    modes = plate.modes()
+    return Panel(
+        length=plate.length,
+        width=plate.width,
+        edge=0.0,
+        amplitude=plate.amplitude,
+        wavenumbers=plate.wavenumbers,
+        angular_frequency=modes.angular_frequency,
+        damping=modes.damping,
+        ends=plate.ends,
+        place=plate.track_line.point,
+    )
+
+
+def _short(track: object) -> str:
+    text = repr(track)
+    return text if "\n" not in text else f"a {type(track).__name__}"

@@ -1,0 +1,121 @@
+"""Sound pressures as plain arrays, and what is known of each listener as labelled ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from ..bodies.modes import Array
+from ..checks import instance
+
+# Share of the sample interval by which samples may be off an even grid: rounding of times leaves far less.
+EVEN = 1e-3
+
+
+def channels(pressure: xr.DataArray) -> tuple[Array, float]:
+    """Return sound pressures as an array and their sample rate.
+
+    Parameters
+    ----------
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        Sound pressure [Pa], evenly sampled over ``time`` [s].
+
+    Returns
+    -------
+    values : ndarray, shape (samples, listeners)
+        Sound pressure [Pa].
+    rate : float
+        Sample rate [Hz].
+
+    Raises
+    ------
+    ValueError
+        If it is anything else.
+    """
+    instance("pressure", pressure, xr.DataArray)
+    if pressure.dims not in (("time",), ("time", "listener")) or pressure.sizes["time"] < 2 or not pressure.size:
+        raise ValueError(
+            f"pressure must have the dimensions time (at least 2 samples) and listener, got {dict(pressure.sizes)}"
+        )
+    units = pressure.attrs.get("units", "Pa")
+    if units != "Pa":
+        raise ValueError(f"pressure must be in Pa, got {units!r}")
+    values = pressure.values.astype(float).reshape(pressure.shape[0], -1)
+    if not np.isfinite(values).all():
+        raise ValueError(f"pressure must be finite, got {np.count_nonzero(~np.isfinite(values))} values that are not")
+    return values, 1.0 / _interval(pressure)
+
+
+def _interval(pressure: xr.DataArray) -> float:
+    if "time" not in pressure.coords:
+        raise ValueError("pressure must have the coordinate time [s], got none")
+    time = pressure["time"].values.astype(float)
+    interval = float((time[-1] - time[0]) / (time.size - 1))
+    if not interval > 0.0 or np.abs(np.diff(time) - interval).max() > EVEN * interval:
+        raise ValueError("pressure must be evenly sampled over time, got uneven times")
+    return interval
+
+
+def positions(pressure: xr.DataArray) -> Array | None:
+    """Return where the listeners are [m], shape (listeners, 3), or None if the coordinates x, y, z do not say."""
+    if not all(name in pressure.coords and pressure[name].dims == ("listener",) for name in "xyz"):
+        return None
+    return np.stack([pressure[name].values.astype(float) for name in "xyz"], axis=1)
+
+
+def of_listeners(pressure: xr.DataArray, values: Array, name: str, units: str, meaning: str) -> xr.DataArray:
+    """Return one number for each listener, with the listeners' coordinates.
+
+    Parameters
+    ----------
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        What was listened to.
+    values : ndarray, shape (listeners,)
+        The numbers.
+    name, units, meaning : str
+        What they are.
+
+    Returns
+    -------
+    xarray.DataArray, shape () or (listener,)
+    """
+    bare = pressure.isel(time=0, drop=True)
+    shaped = np.asarray(values, dtype=float).reshape(bare.shape)
+    return bare.copy(data=shaped).rename(name).assign_attrs(units=units, long_name=meaning)
+
+
+def over_time(pressure: xr.DataArray, time: Array, values: Array, name: str, units: str, meaning: str) -> xr.DataArray:
+    """Return a signal for each listener at other times than those of the pressure, with the listeners' coordinates.
+
+    Parameters
+    ----------
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        What was listened to.
+    time : ndarray, shape (times,)
+        Times since its first sample [s].
+    values : ndarray, shape (times, listeners)
+        The signals.
+    name, units, meaning : str
+        What they are.
+
+    Returns
+    -------
+    xarray.DataArray, shape (times,) or (times, listener)
+    """
+    at = xr.Variable("time", float(pressure["time"][0]) + time, {"units": "s"})
+    bare = pressure.isel(time=0, drop=True).expand_dims(time=at)
+    shaped = np.asarray(values, dtype=float).reshape(bare.shape)
+    return bare.copy(data=shaped).rename(name).assign_attrs(units=units, long_name=meaning)
+
+
+def check_length(pressure: xr.DataArray, shortest: float, what: str) -> None:
+    """Raise ValueError if a pressure lasts less than `shortest` seconds, which `what` takes."""
+    lasts = pressure.sizes["time"] * _interval(pressure)
+    if lasts < shortest * (1.0 - 1e-9):
+        raise ValueError(f"pressure must last at least {shortest:.3g} s for {what}, got {lasts:.3g} s")
+
+
+def check_rate(rate: float, lowest: float, what: str) -> None:
+    """Raise ValueError if a sample rate is below `lowest` [Hz], which `what` takes."""
+    if rate < lowest * (1.0 - 1e-9):
+        raise ValueError(f"pressure must be sampled at {lowest:.6g} Hz or more for {what}, got {rate:.6g} Hz")

@@ -1,0 +1,205 @@
+"""The sound pressure of a track under the forces of a record."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..bodies import ModalBeam, ModalPlate, Rectangle
+from ..bodies.modes import Array
+from ..checks import instance
+from .air import Air
+from .convolution import Convolution
+from .delays import Interpolation, Response, interpolation
+from .dipoles import dipole_response, moved_area
+from .driven import FASTEST, accelerations, first_time
+from .listeners import check_in_front, check_off_beam, ears, listeners_of
+from .panels import Panel, line_of, panel_of
+from .rayleigh import baffled_response
+from .recorded import Pressing, pressing
+from .resampling import bandwidth_of, ratio_of, resample
+from .surfaces import surface_of
+
+# Bytes of modal motion held at once.
+MEMORY = 64e6
+
+
+def radiate(
+    run: xr.Dataset,
+    track: ModalBeam | ModalPlate,
+    listener: Any = None,
+    *,
+    baffled: bool = True,
+    air: Air | None = None,
+    sample_rate: float | None = None,
+) -> xr.DataArray:
+    """Return the sound pressure of a track in time.
+
+    The track is driven again by the normal forces of the record where they pressed, with all its bending modes, and
+    is heard through Rayleigh's integral with exact travel times (in a rigid baffle) or as a line of dipoles (a beam in
+    free air). It is at rest before the record, and the air does not act back on it.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A record, with or without probes. All its contacts press on the track: choose with ``run.sel(contact=[...])``.
+    track : ModalBeam or ModalPlate
+        What is heard; it need not be the body of the run, but must be as long as where it is pressed.
+    listener : tuple of float, or sequence of tuples, optional
+        Where one listens, x, y, z [m]: x along the track from its left end, y across it in its surface, from the axis
+        of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above the
+        middle of the track if left out.
+    baffled : bool, optional
+        Whether the surface is flush with an endless rigid wall; else it is a slim beam in free air.
+    air : Air, optional
+        The air, `Air()` if left out.
+    sample_rate : float, optional
+        Samples per second of the sound [Hz], at most the record's, which it is if left out.
+
+    Returns
+    -------
+    xarray.DataArray, shape (time, listener)
+        Pressure [Pa]. Time starts where the record starts, when the first sound is sent; before it can arrive the
+        pressure is zero. ``attrs`` have the bandwidth [Hz], up to which the sound is whole and above which it is cut
+        off, the air, the distances [m] to the nearest point of the track, and notes on what is missing.
+
+    Raises
+    ------
+    ValueError
+        If the record diverged, holds NaN or fewer than 2 samples, or presses beyond the track; if a listener is in the
+        surface, behind the baffle or on the beam; if the sample rate is more than the record supports, or too low.
+    """
+    air = Air() if air is None else air
+    instance("air", air, Air)
+    instance("baffled", baffled, bool)
+    surface: Callable[[Any], Panel] = panel_of if baffled else line_of
+    panel = surface(track)
+    listeners = listeners_of(ears(track) if listener is None else listener)
+    _check_listeners(listeners, track, baffled)
+    pressed = pressing(run, panel)
+    recorded = 1.0 / pressed.interval
+    ratio = ratio_of(sample_rate, recorded, pressed.samples)
+    bandwidth = bandwidth_of(ratio, recorded)
+    kept = np.flatnonzero(panel.angular_frequency * pressed.interval < FASTEST)
+    # Modes that share a sine stand together.
+    kept = kept[np.argsort(panel.wavenumbers[kept, 0], kind="stable")]
+    heard = panel.only(kept)
+    responses = _responses(heard, track, baffled, listeners, air, pressed, bandwidth)
+    pressure = resample(_sum(heard, pressed, responses), ratio)
+    time = np.arange(pressure.shape[1]) * pressed.interval / float(ratio)
+    distances = _distances(listeners, panel)
+    pressure[time < distances[:, None] / air.speed] = 0.0
+    notes = _notes(pressed, len(kept), len(panel.wavenumbers), time[-1], distances / air.speed)
+    if not baffled:
+        notes.append(f"a line of dipoles: the beam is slim below {_slim_below(track, air):.4g} Hz")
+    attributes = {
+        "units": "Pa",
+        "long_name": "sound pressure",
+        "bandwidth": bandwidth,
+        "modes": len(kept),
+        "baffled": int(baffled),
+        "distance": distances.tolist(),
+        **{f"air_{name}": value for name, value in asdict(air).items()},
+        "air_speed": air.speed,
+        "air_density": air.density,
+        "notes": "; ".join(notes),
+    }
+    return _labelled(pressure, pressed.start + time, listeners, attributes)
+
+
+def _check_listeners(listeners: Array, track: ModalBeam | ModalPlate, baffled: bool) -> None:
+    if baffled:
+        check_in_front(listeners)
+        return
+    section: Any = track.section  # type: ignore[union-attr]
+    moved_area(section)
+    size = np.hypot(section.width, section.height) if isinstance(section, Rectangle) else section.diameter
+    check_off_beam(listeners, track.length, float(size) / 2.0)
+
+
+def _responses(
+    panel: Panel,
+    track: Any,
+    baffled: bool,
+    listeners: Array,
+    air: Air,
+    pressed: Pressing,
+    bandwidth: float,
+) -> list[Response]:
+    """Return the impulse responses of the modes at every listener."""
+    kernel = interpolation(bandwidth * pressed.interval)
+    shift = (first_time(pressed) - pressed.start) / pressed.interval
+    if baffled:
+        return [_of_panel(panel, listener, air, pressed.interval, kernel, shift, bandwidth) for listener in listeners]
+    area = moved_area(track.section)
+    return [dipole_response(panel, area, listener, air, pressed.interval, kernel, shift) for listener in listeners]
+
+
+def _of_panel(
+    panel: Panel,
+    listener: Array,
+    air: Air,
+    interval: float,
+    kernel: Interpolation,
+    shift: float,
+    bandwidth: float,
+) -> Response:
+    surface = surface_of(panel, listener, 2.0 * np.pi * bandwidth / air.speed)
+    return baffled_response(surface, listener, air, interval, kernel, shift)
+
+
+def _sum(panel: Panel, pressed: Pressing, responses: list[Response]) -> Array:
+    """Return the pressures at the samples of the record, shape (listeners, samples)."""
+    modes = len(panel.wavenumbers)
+    if not modes or not pressed.force.any():
+        return np.zeros((len(responses), pressed.samples))
+    several = max(1, int(MEMORY / 8 / (3 * pressed.samples)))
+    first = accelerations(panel.only(slice(0, several)), pressed)
+    sound = Convolution(responses, first.shape[1])
+    sound.add(first, slice(0, several))
+    for begin in range(several, modes, several):
+        part = slice(begin, begin + several)
+        sound.add(accelerations(panel.only(part), pressed), part)
+    return sound.signals()[:, : pressed.samples]
+
+
+def _distances(listeners: Array, panel: Panel) -> Array:
+    """Return the distances [m] of the listeners to the nearest points of the panel."""
+    low = np.array([0.0, panel.edge])
+    away = listeners[:, :2] - np.clip(listeners[:, :2], low, low + np.array([panel.length, panel.width]))
+    return np.asarray(np.hypot(np.hypot(away[:, 0], away[:, 1]), listeners[:, 2]))
+
+
+def _slim_below(track: Any, air: Air) -> float:
+    """Return the frequency [Hz] below which a beam is slim: its width is a sixth of the wavelength."""
+    section = track.section
+    width = max(section.width, section.height) if isinstance(section, Rectangle) else section.diameter
+    return float(air.speed / (6.0 * width))
+
+
+def _notes(pressed: Pressing, kept: int, modes: int, duration: float, travel: Array) -> list[str]:
+    """Return what is to be said of a sound, in words."""
+    notes = []
+    if not pressed.force.any():
+        notes.append("silence: the contact never presses")
+    elif (travel > duration).any():
+        notes.append("silence: the sound does not arrive within the record")
+    if kept < modes:
+        notes.append(f"{modes - kept} modes above what the record's sample rate carries are left out")
+    if pressed.start > 0.5 * pressed.interval:
+        notes.append("the record goes on from another: what it left moving is not heard")
+    return notes
+
+
+def _labelled(pressure: Array, time: Array, listeners: Array, attributes: dict[str, Any]) -> xr.DataArray:
+    coordinates: dict[str, Any] = {
+        "time": ("time", time, {"units": "s", "long_name": "time since the start of the march"}),
+    }
+    for name, values in zip("xyz", listeners.T, strict=True):
+        coordinates[name] = ("listener", values, {"units": "m"})
+    coordinates["listener"] = ("listener", np.arange(len(listeners)))
+    return xr.DataArray(pressure.T, coordinates, ("time", "listener"), "pressure", attributes)

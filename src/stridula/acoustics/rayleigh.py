@@ -1,0 +1,85 @@
+"""Surfaces in a rigid baffle: the integral of Rayleigh with the exact travel time from every point."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..bodies.modes import Array
+from .air import Air
+from .convolution import Convolution
+from .delays import Interpolation, Response, add, interpolation, response, span
+from .surfaces import Surface
+
+# Points whose strengths are held at once.
+POINTS_AT_ONCE = 4096
+
+
+def baffled_response(
+    surface: Surface, listener: Array, air: Air, interval: float, kernel: Interpolation, shift: float = 0.0
+) -> Response:
+    """Return the impulse responses from the acceleration of each mode to the pressure at a listener.
+
+    ``p(r, t) = rho / (2 pi) integral of w''(x', t - R / c) / R dS`` (Rayleigh 1896, Theory of Sound, section 278; in
+    time: Stepanishen 1971, J. Acoust. Soc. Am. 49, 1629-1638), w positive towards the listener, who is in front.
+
+    Parameters
+    ----------
+    surface : Surface
+        The surface.
+    listener : ndarray, shape (3,)
+        Its x, y, z [m].
+    air : Air
+        The air.
+    interval : float
+        Time between samples [s].
+    kernel : Interpolation
+        How delays are put on the samples.
+    shift : float, optional
+        What is added to every delay, in samples.
+
+    Returns
+    -------
+    Response
+        In Pa for an acceleration of one unit of the shapes [m/s²].
+    """
+    away = np.sqrt(np.sum((surface.points - listener[:2]) ** 2, axis=1) + listener[2] ** 2)
+    delays = away / (air.speed * interval) + shift
+    modes = surface.shapes(surface.points[:1]).shape[1]
+    found = response(*span(float(delays.min()), float(delays.max()), kernel), modes)
+    weights = air.density / (2.0 * np.pi) * surface.areas / away
+    for first in range(0, len(away), POINTS_AT_ONCE):
+        part = slice(first, first + POINTS_AT_ONCE)
+        add(found, delays[part], weights[part, None] * surface.shapes(surface.points[part]), kernel)
+    return found
+
+
+def baffled_pressure(
+    surface: Surface, acceleration: Array, interval: float, listeners: Array, air: Air, bandwidth: float
+) -> Array:
+    """Return the pressure of a surface whose modes move as given.
+
+    Parameters
+    ----------
+    surface : Surface
+        The surface, fine enough for the bandwidth and the listeners.
+    acceleration : ndarray, shape (modes, samples)
+        Accelerations of the modes.
+    interval : float
+        Time between samples [s].
+    listeners : ndarray, shape (listeners, 3)
+        Their x, y, z [m].
+    air : Air
+        The air.
+    bandwidth : float
+        Frequency [Hz] up to which it is right, below half the sample rate.
+
+    Returns
+    -------
+    ndarray, shape (listeners, samples)
+        Pressure [Pa] at the times of the accelerations.
+    """
+    kernel = interpolation(bandwidth * interval)
+    heard = [baffled_response(surface, listener, air, interval, kernel) for listener in listeners]
+    sound = Convolution(heard, acceleration.shape[1])
+    sound.add(acceleration, slice(None))
+    return sound.signals()

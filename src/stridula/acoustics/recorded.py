@@ -1,0 +1,92 @@
+"""What a record says of the forces on a track."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..bodies.modes import Array
+from .panels import Panel
+
+DIVERGED = ("not finite", "contact unsolved", "energy created")
+
+
+@dataclass(frozen=True)
+class Pressing:
+    """Normal forces on a track and where they press.
+
+    Attributes
+    ----------
+    start : float
+        Time at which the first sample interval begins [s].
+    interval : float
+        Sample interval [s].
+    steps : int
+        Steps of the march in a sample interval.
+    force : ndarray, shape (contacts, samples)
+        Means over the sample intervals [N], compressive.
+    position : ndarray, shape (contacts, samples)
+        Abscissas in the middle of the intervals [m].
+    """
+
+    start: float
+    interval: float
+    steps: int
+    force: Array
+    position: Array
+
+    @property
+    def samples(self) -> int:
+        """Number of samples."""
+        return self.force.shape[1]
+
+
+def pressing(run: xr.Dataset, panel: Panel) -> Pressing:
+    """Return the normal forces in a record.
+
+    Raises
+    ------
+    ValueError
+        If it is no record, has one sample, is not evenly sampled, diverged, holds NaN, or presses beyond the track.
+    """
+    if not isinstance(run, xr.Dataset) or not {"normal_force", "contact_position", "time"} <= set(run.variables):
+        raise ValueError(
+            f"run must be a record with normal_force and contact_position, got {type(run).__name__} without"
+        )
+    if run.attrs.get("ended") in DIVERGED:
+        raise ValueError(f"run must be one that can be believed, got one that ended {run.attrs['ended']!r}")
+    time = run["time"].values
+    if time.size < 2:
+        raise ValueError(f"run must have at least 2 samples, got {time.size}")
+    interval = float((time[-1] - time[0]) / (time.size - 1))
+    if not (interval > 0.0 and np.allclose(np.diff(time), interval, rtol=1e-3, atol=0.0)):
+        raise ValueError("run must be evenly sampled in rising time, got uneven times")
+    force, position = (_by_contact(run[name]) for name in ("normal_force", "contact_position"))
+    for name, values in (("normal_force", force), ("contact_position", position)):
+        if not np.isfinite(values).all():
+            bad = time[np.flatnonzero(~np.isfinite(values).all(axis=0))[0]]
+            raise ValueError(f"{name} must be finite, got {values[~np.isfinite(values)][0]} at {bad:.6g} s")
+    _check_on_track(position, panel)
+    before = np.concatenate([position[:, :1], position[:, :-1]], axis=1)
+    steps = int(run.attrs.get("steps_per_sample", 1_000_000))
+    return Pressing(float(time[0]) - interval, interval, steps, force, (before + position) / 2.0)
+
+
+def _by_contact(signal: xr.DataArray) -> Array:
+    values: Any = signal.values if "contact" not in signal.dims else signal.transpose("contact", "time").values
+    return np.atleast_2d(np.asarray(values, dtype=float))
+
+
+def _check_on_track(position: Array, panel: Panel) -> None:
+    # The tip of a run that left the track stands at most a step beyond its end.
+    slack = 1e-3 * (panel.ends[1] - panel.ends[0])
+    low, high = float(position.min()), float(position.max())
+    if low < panel.ends[0] - slack or high > panel.ends[1] + slack:
+        worst = low if low < panel.ends[0] - slack else high
+        raise ValueError(
+            f"track must be the one the run presses on, here from {panel.ends[0]:g} to {panel.ends[1]:g} m, got a "
+            f"contact_position of {worst:.6g} m"
+        )

@@ -1,0 +1,74 @@
+"""From the record's samples to those of a sound, with nothing above the bandwidth."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+from scipy.signal import upfirdn
+
+from ..bodies.modes import Array
+from ..checks import positive
+
+# Share of the lower of both sample rates up to which sound is kept whole.
+BANDWIDTH = 5.0 / 12.0
+LOWEST = 1000.0
+# What is left of frequencies above half the lower sample rate [dB].
+ATTENUATION = 80.0
+# Largest numerator and denominator of the ratio of sample rates, largest drift over a signal in samples.
+LARGEST = 4000
+DRIFT = 0.01
+
+
+def ratio_of(sample_rate: float | None, recorded: float, samples: int) -> Fraction:
+    """Return the wanted sample rate over that of the record.
+
+    Raises
+    ------
+    ValueError
+        If the record does not support it, if it is below 1000 Hz, or if it is in no ratio of whole numbers up to 4000.
+    """
+    if sample_rate is None:
+        return Fraction(1)
+    wanted = positive("sample_rate", sample_rate)
+    if wanted > recorded * (1.0 + 1e-9):
+        raise ValueError(f"sample_rate must be at most the record's {recorded:.8g} Hz, got {sample_rate!r}")
+    if wanted < min(LOWEST, recorded):
+        raise ValueError(f"sample_rate must be at least {min(LOWEST, recorded):g} Hz, got {sample_rate!r}")
+    found = Fraction(wanted / recorded).limit_denominator(LARGEST)
+    if found == 0 or abs(float(found) * recorded / wanted - 1.0) * samples > DRIFT:
+        raise ValueError(
+            f"sample_rate must be to the record's {recorded:.8g} Hz as whole numbers up to {LARGEST}, "
+            f"got {sample_rate!r}"
+        )
+    return found
+
+
+def bandwidth_of(ratio: Fraction, recorded: float) -> float:
+    """Return the frequency [Hz] up to which sound is kept whole."""
+    return BANDWIDTH * recorded * min(1.0, float(ratio))
+
+
+def resample(signals: Array, ratio: Fraction) -> Array:
+    """Return signals at `ratio` times their sample rate, without delay, low-passed.
+
+    A sinc under a Kaiser window: flat to 0.01 % up to 5/12 of the lower rate, 80 dB down from half of it on.
+
+    Parameters
+    ----------
+    signals : ndarray, shape (signals, samples)
+        The signals, zero before their start and after their end.
+    ratio : Fraction
+        New over old sample rate, at most 1.
+    """
+    up, down = ratio.numerator, ratio.denominator
+    # In cycles per sample of the common multiple of both rates.
+    low, high = BANDWIDTH / down, 0.5 / down
+    half = int(np.ceil((ATTENUATION - 8.0) / (2.285 * 2.0 * np.pi * (high - low)) / 2.0))
+    half += -half % down
+    steps = np.arange(-half, half + 1)
+    cut = low + high
+    taps = up * cut * np.sinc(cut * steps) * np.kaiser(2 * half + 1, 0.1102 * (ATTENUATION - 8.7))
+    count = -(-signals.shape[1] * up // down)
+    first = half // down
+    return np.stack([upfirdn(taps, signal, up, down)[first : first + count] for signal in signals])

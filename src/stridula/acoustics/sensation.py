@@ -1,0 +1,183 @@
+"""What a sound feels like: loudness, sharpness, roughness, computed by MoSQITo (imported here and nowhere else)."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..bodies.modes import Array
+from ..checks import choice
+from .pressures import channels, check_length, check_rate, of_listeners, over_time
+from .sample_rates import resampled
+
+RATE = 48000
+FIELDS = ("free", "diffuse")
+# What sounds must last [s]: for the filters of the lowest bands to settle, for the temporal weighting, for one frame.
+SHORTEST_STEADY, SHORTEST_VARYING, FRAME = 0.5, 0.25, 0.2
+# Lowest rate [Hz] of sounds in which no band of the models is left empty: their highest ends at 14.1 kHz.
+LOWEST_RATE = 28.3e3
+# Loudness [sone] below which sharpness says nothing.
+FAINTEST = 0.1
+
+
+def is_available() -> bool:
+    """Return whether MoSQITo is installed."""
+    return find_spec("mosqito") is not None
+
+
+def loudness(pressure: xr.DataArray, field: str = "free") -> xr.DataArray:
+    """Return the loudness of a steady sound (ISO 532-1:2017, method for stationary sounds).
+
+    The bands are filtered from silence, so that a sound that starts at once is a little louder than one that goes on:
+    2 s of 1 kHz at 40, 60 and 80 dB have 1.006, 4.067 and 16.84 sone, 0.5 s have 1.005, 4.14 and 17.5, where the
+    definition has 1, 4 and 16. For sounds that come and go take `loudness_over_time`.
+
+    Parameters
+    ----------
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        Sound pressure [Pa], at 28.3 kHz or more; at least 0.5 s.
+    field : {"free", "diffuse"}, optional
+        Sound field: from the front, or from everywhere.
+
+    Returns
+    -------
+    xarray.DataArray, shape () or (listener,)
+        Loudness [sone].
+
+    Raises
+    ------
+    ValueError
+        If the sound is too short or sampled too slowly, an argument is out of its range, or MoSQITo is missing.
+    """
+    choice("field", field, FIELDS)
+    metrics = _metrics()
+    sounds = _sounds(pressure, SHORTEST_STEADY, "the loudness of a steady sound")
+    values = _each(sounds, lambda sound: float(metrics.loudness_zwst(sound, RATE, field_type=field)[0]))
+    return of_listeners(pressure, np.array(values), "loudness", "sone", "loudness, ISO 532-1, stationary")
+
+
+def loudness_over_time(pressure: xr.DataArray, field: str = "free") -> xr.DataArray:
+    """Return the loudness of a sound that varies (ISO 532-1:2017, method for time-varying sounds).
+
+    Its largest value is Nmax; N5, exceeded in 5 % of the time, is what listeners take for the loudness of the whole:
+    ``loudness_over_time(pressure).quantile(0.95, "time")``. It rises from silence in some 0.1 s.
+
+    Parameters
+    ----------
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        Sound pressure [Pa], at 28.3 kHz or more; at least 0.25 s.
+    field : {"free", "diffuse"}, optional
+        Sound field: from the front, or from everywhere.
+
+    Returns
+    -------
+    xarray.DataArray, shape (times,) or (times, listener)
+        Loudness [sone] every 2 ms.
+
+    Raises
+    ------
+    ValueError
+        If the sound is too short or sampled too slowly, an argument is out of its range, or MoSQITo is missing.
+    """
+    choice("field", field, FIELDS)
+    metrics = _metrics()
+    sounds = _sounds(pressure, SHORTEST_VARYING, "loudness over time")
+    values = _each(sounds, lambda sound: metrics.loudness_zwtv(sound, RATE, field_type=field)[0])
+    # MoSQITo spreads the times to the last sample; its values are 2 ms apart.
+    time = 2e-3 * np.arange(len(values[0]))
+    return over_time(pressure, time, np.stack(values, axis=1), "loudness", "sone", "loudness, ISO 532-1, time-varying")
+
+
+def sharpness(pressure: xr.DataArray, field: str = "free") -> xr.DataArray:
+    """Return the sharpness of a steady sound (DIN 45692:2009).
+
+    Parameters
+    ----------
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        Sound pressure [Pa], at 28.3 kHz or more; at least 0.5 s.
+    field : {"free", "diffuse"}, optional
+        Sound field: from the front, or from everywhere.
+
+    Returns
+    -------
+    xarray.DataArray, shape () or (listener,)
+        Sharpness [acum]; NaN for what is fainter than 0.1 sone.
+
+    Raises
+    ------
+    ValueError
+        If the sound is too short or sampled too slowly, an argument is out of its range, or MoSQITo is missing.
+    """
+    choice("field", field, FIELDS)
+    metrics = _metrics()
+    sounds = _sounds(pressure, SHORTEST_STEADY, "sharpness")
+
+    def of_one(sound: Array) -> float:
+        total, specific, _ = metrics.loudness_zwst(sound, RATE, field_type=field)
+        if total < FAINTEST:
+            return float("nan")
+        return float(metrics.sharpness_din_from_loudness(total, specific, weighting="din"))
+
+    return of_listeners(pressure, np.array(_each(sounds, of_one)), "sharpness", "acum", "sharpness, DIN 45692")
+
+
+def roughness(pressure: xr.DataArray) -> xr.DataArray:
+    """Return the roughness of a sound over time (Daniel & Weber 1997, Acustica 83, 113-123).
+
+    A tone of 1 kHz at 60 dB, fully modulated at 70 Hz, defines 1 asper; it comes to 1.019.
+
+    Parameters
+    ----------
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        Sound pressure [Pa], at 28.3 kHz or more; at least 0.2 s.
+
+    Returns
+    -------
+    xarray.DataArray, shape (frames,) or (frames, listener)
+        Roughness [asper] of frames of 0.2 s, every 0.1 s, at their middles.
+
+    Raises
+    ------
+    ValueError
+        If the sound is too short or sampled too slowly, or MoSQITo is missing.
+    """
+    metrics = _metrics()
+    sounds = _sounds(pressure, FRAME, "roughness")
+    values = _each(sounds, lambda sound: np.atleast_1d(metrics.roughness_dw(sound, RATE, overlap=0.5)[0]))
+    time = 0.5 * FRAME + 0.5 * FRAME * np.arange(len(values[0]))
+    return over_time(pressure, time, np.stack(values, axis=1), "roughness", "asper", "roughness, Daniel & Weber")
+
+
+def _metrics() -> Any:
+    if not is_available():
+        raise ValueError("sensation must have the package mosqito, got none: pip install stridula[psycho]")
+    with _quiet():
+        import mosqito.sq_metrics
+    return mosqito.sq_metrics
+
+
+def _sounds(pressure: xr.DataArray, shortest: float, what: str) -> Array:
+    """Return the sounds of all listeners at 48 kHz, shape (samples, listeners)."""
+    values, rate = channels(pressure)
+    check_length(pressure, shortest, what)
+    check_rate(rate, LOWEST_RATE, what)
+    return resampled(values, rate, RATE)
+
+
+def _each(sounds: Array, of_one: Callable[[Array], Any]) -> list[Any]:
+    with _quiet():
+        return [of_one(np.ascontiguousarray(sound)) for sound in sounds.T]
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep to ourselves what NumPy warns of inside, such as the logarithm of silence."""
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        yield

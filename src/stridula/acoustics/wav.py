@@ -1,0 +1,181 @@
+"""Sound files that know how many pascals they hold."""
+
+from __future__ import annotations
+
+import io
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from ..bodies.modes import Array
+from ..checks import choice, positive
+from ..disk import check_writable, read, write
+from .pressures import channels
+from .sample_rates import resampled
+
+RATES = (44100, 48000, 96000)
+SUBTYPES = ("PCM_24", "FLOAT")
+NORMALISED = "normalised"
+# Peak of a normalised file below full scale [dB]: what players make between the samples may rise above them.
+HEADROOM = 1.0
+# Full scale of 24 bits, one step beyond the largest value.
+STEPS = 2**23
+SCALE = re.compile(r"stridula: full_scale_pascal=(\S+) start_second=(\S+)")
+
+
+@dataclass(frozen=True)
+class SoundFile:
+    """A sound file that was written; in print, one line that says it all.
+
+    Attributes
+    ----------
+    path : str
+        The file.
+    channels : int
+        Number of channels, one for each listener in their order.
+    sample_rate : int
+        Sample rate [Hz].
+    duration : float
+        How long it lasts [s].
+    peak : float
+        Largest sound pressure of its samples [Pa].
+    full_scale : float
+        Sound pressure of a sample of 1 [Pa]; the gain is one over it.
+    normalised : bool
+        Whether the full scale was chosen by the peak.
+    """
+
+    path: str
+    channels: int
+    sample_rate: int
+    duration: float
+    peak: float
+    full_scale: float
+    normalised: bool
+
+    def __str__(self) -> str:
+        plural = "" if self.channels == 1 else "s"
+        form = f"{self.path}: {self.channels} channel{plural}, {self.sample_rate / 1000:g} kHz, {self.duration:.4g} s"
+        if self.peak == 0.0:
+            return f"{form}, silence (full scale {self.full_scale:.4g} Pa)"
+        kind = f"normalised by a gain of {1.0 / self.full_scale:.4g} /Pa" if self.normalised else "calibrated"
+        return f"{form}, peak {self.peak:.4g} Pa, full scale {self.full_scale:.4g} Pa, {kind}"
+
+
+def write_wav(
+    path: str | Path,
+    pressure: xr.DataArray,
+    *,
+    sample_rate: int = 48000,
+    full_scale: float | str = NORMALISED,
+    subtype: str = "PCM_24",
+) -> SoundFile:
+    """Write sound pressures to a WAV file, one channel for each listener, the pressure of full scale inside.
+
+    Two listeners, the left ear first, make a binaural file. Nothing is ever clipped. The pressure of full scale stands
+    in the file's comment (RIFF INFO ICMT), so that `read_wav` gives pascals back.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, written whole or not at all.
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        Sound pressure [Pa], at any sample rate.
+    sample_rate : {48000, 44100, 96000}, optional
+        Sample rate of the file [Hz]; see `resampled` for the low-pass.
+    full_scale : float or "normalised", optional
+        Pressure of full scale [Pa], for a calibrated file: files of the same full scale are as loud, one against the
+        other, as what they hold. Or ``"normalised"``: the peak over all channels comes to 1 dB below full scale, and
+        silence, which stays silence, has a full scale of 1 Pa.
+    subtype : {"PCM_24", "FLOAT"}, optional
+        24-bit integers, or 32-bit floats of pressure over full scale, which also hold what is beyond it.
+
+    Returns
+    -------
+    SoundFile
+        What was written, the pressure of full scale among it.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or the pressure would be clipped at this full scale.
+    OSError
+        If the file cannot be written.
+    """
+    if sample_rate not in RATES:
+        raise ValueError(f"sample_rate must be one of {', '.join(map(str, RATES))} Hz, got {sample_rate!r}")
+    choice("subtype", subtype, SUBTYPES)
+    scale = full_scale if isinstance(full_scale, str) else positive("full_scale", full_scale)
+    if isinstance(scale, str):
+        choice("full_scale", scale, (NORMALISED,))
+    values, rate = channels(pressure)
+    check_writable(path)
+    sound = resampled(values, rate, float(sample_rate))
+    peak = float(np.abs(sound).max())
+    if isinstance(scale, str):
+        scale = peak * 10.0 ** (HEADROOM / 20.0) or 1.0
+    largest = scale * (1.0 - 1.0 / STEPS)
+    if subtype == "PCM_24" and peak > largest:
+        raise ValueError(f"full_scale must be above the peak of {peak:.6g} Pa, got {scale!r} Pa: it would be clipped")
+    write(path, _encoded(sound / scale, sample_rate, subtype, scale, float(pressure["time"][0])))
+    duration = sound.shape[0] / sample_rate
+    return SoundFile(str(path), sound.shape[1], sample_rate, duration, peak, scale, full_scale == NORMALISED)
+
+
+def _encoded(samples: Array, rate: int, subtype: str, scale: float, start: float) -> memoryview:
+    import soundfile
+
+    content = io.BytesIO()
+    options = {"samplerate": rate, "channels": samples.shape[1], "format": "WAV", "subtype": subtype}
+    with soundfile.SoundFile(content, "w", **options) as file:
+        file.comment = f"stridula: full_scale_pascal={scale!r} start_second={start!r}"
+        # Whole numbers of our own rounding: 24 bits lie in the upper three bytes.
+        file.write(np.rint(samples * STEPS).astype(np.int32) * 256 if subtype == "PCM_24" else samples)
+    return content.getbuffer()
+
+
+def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
+    """Read a sound file back in pascals.
+
+    Parameters
+    ----------
+    path : str or Path
+        A WAV file.
+    full_scale : float, optional
+        Pressure of full scale [Pa]; what the file says, if left out.
+
+    Returns
+    -------
+    xarray.DataArray, shape (time, listener)
+        Sound pressure [Pa]; its attribute ``full_scale`` is the pressure of full scale.
+
+    Raises
+    ------
+    ValueError
+        If it is no sound file, or neither the file nor you say what its full scale is.
+    OSError
+        If the file cannot be read.
+    """
+    import soundfile
+
+    content = read(path)
+    try:
+        with soundfile.SoundFile(io.BytesIO(content)) as file:
+            comment, rate, samples = file.comment, file.samplerate, file.read(dtype="float64", always_2d=True)
+    except (soundfile.SoundFileError, TypeError) as error:
+        raise ValueError(f"path must be a sound file, got {str(path)!r}: {error}") from error
+    found = SCALE.search(comment)
+    if full_scale is None and found is None:
+        raise ValueError(f"full_scale must be given for a file that does not say its own, got {str(path)!r} alone")
+    scale = float(found[1]) if full_scale is None and found else positive("full_scale", full_scale)
+    start = float(found[2]) if found else 0.0
+    return xr.DataArray(
+        samples * scale,
+        dims=("time", "listener"),
+        coords={"time": ("time", start + np.arange(len(samples)) / rate, {"units": "s"})},
+        name="pressure",
+        attrs={"units": "Pa", "long_name": "sound pressure", "full_scale": scale},
+    )

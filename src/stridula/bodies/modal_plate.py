@@ -1,0 +1,289 @@
+"""A rectangular plate given by its exact modes: simply supported along its four edges, rigid in its plane."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from ..checks import count, finite, instance, positive, within
+from .damping import check_damping_count, checked_damping, damping_of_modes
+from .modes import Array, BodyPoint, Modes
+from .sections import Material
+
+# Sine or cosine that rounding leaves of a right angle.
+ALONG_AN_EDGE = 1e-15
+
+
+@dataclass(frozen=True)
+class Line:
+    """A straight line on a plate, along which a contact slides: abscissa s is ``origin + s (cos, sin)``.
+
+    Parameters
+    ----------
+    origin : tuple of float
+        The point of abscissa 0, its distances along length and width from the plate's corner [m].
+    direction : float, optional
+        Angle from the plate's length to the line [rad], towards its width.
+    """
+
+    origin: tuple[float, float]
+    direction: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "origin", _pair("origin", self.origin))
+        if abs(finite("direction", self.direction)) > 2.0 * math.pi:
+            raise ValueError(f"direction must be from -2 pi to 2 pi rad, got {self.direction!r}")
+
+    @property
+    def tangent(self) -> tuple[float, float]:
+        """Unit vector along the line, along length and width of the plate."""
+        cosine, sine = math.cos(self.direction), math.sin(self.direction)
+        # Exact zeros where the line lies along an edge.
+        return (0.0 if abs(cosine) < ALONG_AN_EDGE else cosine), (0.0 if abs(sine) < ALONG_AN_EDGE else sine)
+
+    def point(self, abscissa: float | Array) -> tuple[Any, Any]:
+        """Return the point of the plate at an abscissa [m], along length and width."""
+        (x, y), (cosine, sine) = self.origin, self.tangent
+        return x + abscissa * cosine, y + abscissa * sine
+
+
+@dataclass(frozen=True)
+class ModalPlate:
+    """A thin rectangular plate in its exact modes ``sin(m pi x / length) sin(n pi y / width)``, by rising frequency.
+
+    Kirchhoff, simply supported along its edges, bending only: in its own plane it does not move.
+    ``w_mn = pi² ((m / length)² + (n / width)²) sqrt(D / rho h)`` with ``D = E h³ / 12 (1 - nu²)``; modal mass
+    ``rho h length width / 4`` (Leissa 1969, Vibration of Plates). Bodies slide on it along a line: world x is along the
+    line, world y along the plate's normal, towards the slider.
+
+    Parameters
+    ----------
+    material : Material
+        What it is made of; its Poisson's ratio counts.
+    thickness, length, width : float
+        Thickness and sides [m].
+    bending_modes : tuple of int, optional
+        Numbers of half-waves kept along the length and along the width; each pair of them is a mode.
+    damping : float or sequence of float, optional
+        Modal damping ratio of every mode [1], from 0 to 1 (1 excluded), or one for each mode in their order.
+    cutoff : float, optional
+        Keep all the modes up to this frequency [Hz] instead of the numbers above.
+    line : Line, optional
+        Where bodies slide on it; along its length through the middle of its width, from the edge, if left out.
+    name : str, optional
+        What it is called in records; tells equal bodies apart.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, if no mode lies below `cutoff`, or if the line does not cross the plate.
+    """
+
+    material: Material
+    thickness: float
+    length: float
+    width: float
+    bending_modes: tuple[int, int] = (12, 12)
+    damping: float | Sequence[float] = 0.0
+    cutoff: float | None = None
+    line: Line | None = None
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        instance("material", self.material, Material)
+        for side in ("thickness", "length", "width"):
+            positive(side, getattr(self, side))
+        words = "two whole numbers of at least 1, along length and width"
+        object.__setattr__(self, "bending_modes", _pair("bending_modes", self.bending_modes, count, words))
+        object.__setattr__(self, "damping", checked_damping(self.damping))
+        instance("name", self.name, str)
+        if self.cutoff is not None and positive("cutoff", self.cutoff) * (1.0 + 1e-12) < self._frequency(1, 1):
+            raise ValueError(
+                f"cutoff must leave at least one mode (first at {self._frequency(1, 1):.6g} Hz), got {self.cutoff!r} Hz"
+            )
+        check_damping_count(self.damping, len(self.numbers))  # type: ignore[arg-type]
+        if self.line is not None:
+            instance("line", self.line, Line)
+            self._check_line(self.line)
+
+    @property
+    def centre(self) -> BodyPoint:
+        """The point in the middle of the plate."""
+        return BodyPoint(self, (self.length / 2.0, self.width / 2.0))
+
+    def at(self, position: float | tuple[float, float]) -> BodyPoint:
+        """Return the point at an abscissa of the line [m], or at a distance along length and one along width [m]."""
+        return BodyPoint(self, position if isinstance(position, (int, float)) else _pair("position", position))
+
+    def check_position(self, position: Any) -> None:
+        """Raise ValueError if `position`, an abscissa or a pair [m], is not on the plate."""
+        if not isinstance(position, tuple):
+            within("position", position, *self.ends)
+        elif not self._holds(*_pair("position", position)):
+            raise ValueError(
+                f"position must be on the plate, from (0, 0) to ({self.length:g}, {self.width:g}), got {position!r}"
+            )
+
+    @property
+    def track_line(self) -> Line:
+        """The line along which bodies slide on it."""
+        return self.line or Line((0.0, self.width / 2.0))
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Abscissas at which the line enters and leaves the plate [m]."""
+        return _ends(self, self.track_line)
+
+    @property
+    def axes(self) -> Array:
+        """Unit vectors of the line and of the plate's normal in the world frame, shape (2, 2)."""
+        return np.eye(2)
+
+    @property
+    def rigidity(self) -> float:
+        """Bending stiffness ``D = E h³ / 12 (1 - nu²)`` [N m]."""
+        return self.material.young * self.thickness**3 / (12.0 * (1.0 - self.material.poisson**2))
+
+    @property
+    def surface_density(self) -> float:
+        """Mass per area ``rho h`` [kg/m²]."""
+        return self.material.density * self.thickness
+
+    @property
+    def total_mass(self) -> float:
+        """Mass [kg]."""
+        return self.surface_density * self.length * self.width
+
+    @property
+    def amplitude(self) -> float:
+        """Largest value of a mass-normalised mode shape [kg^(-1/2)], ``sqrt(4 / rho h length width)``."""
+        return float(np.sqrt(4.0 / self.total_mass))
+
+    @property
+    def harmonics(self) -> tuple[int, int]:
+        """Numbers of bending and of axial modes kept; there are no axial ones."""
+        return len(self.numbers), 0
+
+    @property
+    def numbers(self) -> Array:
+        """Numbers (m, n) of half-waves of each mode along length and width, shape (modes, 2)."""
+        return _numbers(self)
+
+    @property
+    def wavenumbers(self) -> Array:
+        """Wavenumbers (m pi / length, n pi / width) of each mode [rad/m], shape (modes, 2)."""
+        return np.asarray(self.numbers * (np.pi / np.array([self.length, self.width])))
+
+    def modes(self, held_x: bool = False) -> Modes:
+        """Return the modes; `held_x` is for bodies whose root is driven and must be false."""
+        if held_x:
+            raise ValueError("held_x must be False for a ModalPlate: its edges are fixed, got True")
+        return _modes(self)
+
+    def shapes(self, x: Any, y: Any) -> Array:
+        """Return the mass-normalised mode shapes at points of the plate.
+
+        Parameters
+        ----------
+        x, y : array_like, shape (...)
+            Distances along length and width from the corner [m].
+
+        Returns
+        -------
+        ndarray, shape (..., modes)
+            Displacement along the normal for unit modes [kg^(-1/2)].
+        """
+        along, across = self.wavenumbers.T
+        x, y = np.asarray(x, dtype=float)[..., None], np.asarray(y, dtype=float)[..., None]
+        return np.asarray(self.amplitude * np.sin(along * x) * np.sin(across * y))
+
+    def trace(self, position: Any, held_x: bool = False) -> Array:
+        """Return the rows that give the displacement (0, w) at `position` from the modes, shape (2, modes)."""
+        shapes = self.shapes(*self._point(position))
+        return np.stack([np.zeros_like(shapes), shapes])
+
+    def trace_slope(self, position: Any) -> Array:
+        """Return the derivative of `trace` along the line [1/m], shape (2, modes)."""
+        x, y = self._point(position)
+        along, across = self.wavenumbers.T
+        cosine, sine = self.track_line.tangent
+        rows = np.zeros((2, len(along)))
+        rows[1] = cosine * along * np.cos(along * x) * np.sin(across * y)
+        rows[1] += sine * across * np.sin(along * x) * np.cos(across * y)
+        return np.asarray(self.amplitude * rows)
+
+    def _point(self, position: Any) -> tuple[float, float]:
+        """Return the distances along length and width [m] of an abscissa or a pair."""
+        self.check_position(position)
+        return position if isinstance(position, tuple) else self.track_line.point(position)
+
+    def _frequency(self, m: Any, n: Any) -> Any:
+        squared = (m / self.length) ** 2 + (n / self.width) ** 2
+        return 0.5 * np.pi * squared * math.sqrt(self.rigidity / self.surface_density)
+
+    def _holds(self, x: float, y: float) -> bool:
+        return 0.0 <= x <= self.length and 0.0 <= y <= self.width
+
+    def _check_line(self, line: Line) -> None:
+        if not self._holds(*line.origin):
+            raise ValueError(f"line must have its origin on the plate, got {line!r}")
+        low, high = _ends(self, line)
+        x, y = line.point((low + high) / 2.0)
+        if not (high > low and 0.0 < x < self.length and 0.0 < y < self.width):
+            raise ValueError(f"line must cross the plate inside its edges, got {line!r}")
+
+
+def _pair(
+    name: str,
+    values: Any,
+    check: Callable[[str, Any], Any] = finite,
+    words: str = "two finite distances, along length and width",
+) -> tuple[Any, Any]:
+    try:
+        first, second = values if isinstance(values, (tuple, list)) else ()
+        return check(name, first), check(name, second)
+    except ValueError:
+        raise ValueError(f"{name} must be {words}, got {values!r}") from None
+
+
+def _ends(plate: ModalPlate, line: Line) -> tuple[float, float]:
+    low, high = -math.inf, math.inf
+    for start, rate, side in zip(line.origin, line.tangent, (plate.length, plate.width), strict=True):
+        if rate:
+            first, second = sorted((-start / rate, (side - start) / rate))
+            low, high = max(low, first), min(high, second)
+    # No minus zero.
+    return low + 0.0, high + 0.0
+
+
+@lru_cache(maxsize=16)
+def _numbers(plate: ModalPlate) -> Array:
+    if plate.cutoff is None:
+        most = plate.bending_modes
+    else:
+        # Half-waves that one side alone would have at the cut-off.
+        waves = math.sqrt(2.0 * plate.cutoff / (math.pi * math.sqrt(plate.rigidity / plate.surface_density)))
+        most = (int(waves * plate.length) + 1, int(waves * plate.width) + 1)
+    m, n = (numbers.ravel() for numbers in np.meshgrid(*(np.arange(1, k + 1) for k in most), indexing="ij"))
+    frequency = plate._frequency(m, n)
+    order = np.argsort(frequency, kind="stable")
+    if plate.cutoff is not None:
+        order = order[frequency[order] <= plate.cutoff * (1.0 + 1e-12)]
+    numbers = np.stack([m[order], n[order]], axis=1)
+    numbers.flags.writeable = False
+    return numbers
+
+
+@lru_cache(maxsize=16)
+def _modes(plate: ModalPlate) -> Modes:
+    m, n = plate.numbers.T
+    # The integral of rho h sin sin over the plate: only odd half-waves move on average.
+    mean = (1.0 - (-1.0) ** m) / (m * np.pi) * (1.0 - (-1.0) ** n) / (n * np.pi)
+    translation = np.zeros((2, len(m)))
+    translation[1] = plate.total_mass * plate.amplitude * mean
+    return Modes(2.0 * np.pi * plate._frequency(m, n), damping_of_modes(plate.damping, len(m)), translation)

@@ -1,0 +1,93 @@
+"""`stridula animate`: a film of a scenario or of a record in slow motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import Progress
+
+from ..disk import check_writable
+from ..integration import Diverged, Interrupted
+from ..plot.films import animate
+from ..records.files import is_record, load
+from ..scenarios.load import load_scenario
+from ..scenarios.quantities import quantity
+from .exits import FAILED, INTERRUPTED, Stopped
+
+
+def film_scenario(name: str, out: str, start: str, duration: str, slowdown: float, exaggeration: float | None) -> str:
+    """Film a scenario or a record, and return what was written in one line.
+
+    Parameters
+    ----------
+    name : str
+        Name of a shipped scenario, a TOML file or a record.
+    out : str
+        The file.
+    start, duration : str
+        The window, in s or with a unit.
+    slowdown : float
+        How much slower than life.
+    exaggeration : float or None
+        How many times larger than life the vibration is drawn.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or the record goes on from another one.
+    OSError
+        If the file cannot be written.
+    """
+    check_writable(out)
+    _check_beginning(name)
+    scenario = load_scenario(name)
+    console = Console(stderr=True)
+    with _stopped(), Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task(scenario.title or name, total=None)
+        film = animate(
+            scenario.system,
+            out,
+            start=_seconds("--from", start),
+            duration=_seconds("--duration", duration),
+            slowdown=slowdown,
+            exaggeration=exaggeration,
+            scheme=scenario.scheme,
+            step=scenario.step,
+            sample_rate=scenario.sample_rate,
+            title=scenario.title or name,
+            progress=lambda frame, frames: bar.update(task, completed=frame, total=frames),
+        )
+    return str(film)
+
+
+def _check_beginning(name: str) -> None:
+    """Raise ValueError for a record that goes on from another one: from its start the film would be of another run."""
+    if not Path(name).is_file() or not is_record(name):
+        return
+    run = load(name)
+    interval, first = float(run.attrs["sample_interval"]), float(run["time"][0])
+    if first > 1.5 * interval:
+        raise ValueError(
+            f"name must be a record from its start, got {name!r}, which goes on from {first - interval:g} s"
+        )
+
+
+@contextmanager
+def _stopped() -> Iterator[None]:
+    """Say in one line how a run ended that was not finished."""
+    try:
+        yield
+    except Diverged as error:
+        raise Stopped(f"{str(error).replace('; see .record', '')}; no film was written", FAILED) from None
+    except (Interrupted, KeyboardInterrupt):
+        raise Stopped("interrupted; no film was written", INTERRUPTED) from None
+
+
+def _seconds(option: str, text: str) -> float:
+    try:
+        return quantity(text, "s")
+    except ValueError as error:
+        raise ValueError(f"{option} {error}, got {text!r}") from None

@@ -1,0 +1,155 @@
+"""`stridula sound` and `stridula run --wav`: what one hears of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from ..acoustics.listeners import FARTHEST
+from ..acoustics.panels import panel_of
+from ..acoustics.radiate import radiate
+from ..acoustics.wav import NORMALISED, RATES, SUBTYPES, write_wav
+from ..bodies import ModalBeam, ModalPlate
+from ..checks import suggestion
+from ..records.files import load
+from ..scenarios.load import load_scenario
+from ..scenarios.quantities import quantity
+from .hearing import print_levels
+from .running import check_outputs
+
+# Window of a spectrogram [s].
+SHORTEST_FIGURE = 0.02
+
+
+def sound_of_record(
+    name: str,
+    listeners: Sequence[str],
+    wav: str | None,
+    plot: str | None,
+    sample_rate: str,
+    full_scale: str,
+    subtype: str,
+    baffled: bool,
+) -> None:
+    """Print what is heard of a record, and write it as a sound file and as a spectrogram if asked to.
+
+    Raises
+    ------
+    ValueError
+        If the record, a listener or an output is not usable; nothing is written then.
+    OSError
+        If an output cannot be written.
+    """
+    check_outputs(wav, plot, "--wav")
+    for option, path in (("--wav", wav), ("--plot", plot)):
+        if path is not None and Path(path).resolve() == Path(name).resolve():
+            raise ValueError(f"{option} must be another file than the record, got {path!r} for both")
+    options = wav_options(sample_rate, full_scale, subtype)
+    places: Any = [place_of(text) for text in listeners] or None
+    record = load(name)
+    scenario = load_scenario(name)
+    pressure = _heard(record, scenario.system, places, baffled)
+    figure = None if plot is None else _figure(pressure, record, scenario.title or Path(name).stem)
+    if wav is not None:
+        print(_written(wav, pressure, options))
+    if plot is not None:
+        from ..plot import save
+
+        save(figure, plot)
+    if pressure.attrs["notes"]:
+        print(pressure.attrs["notes"])
+    print_levels(pressure)
+
+
+def write_sound(record: xr.Dataset, system: Any, wav: str) -> str:
+    """Write what a pair of ears a metre above the track hears of a record, and return what was written, in words."""
+    pressure = _heard(record, system, None, True)
+    words = [str(write_wav(wav, pressure)), pressure.attrs["notes"]]
+    return "\n".join(word for word in words if word)
+
+
+def track_of(system: Any) -> ModalBeam | ModalPlate:
+    """Return the first track of a system that can be heard.
+
+    Raises
+    ------
+    ValueError
+        If there is no beam and no plate among its tracks.
+    """
+    tracks = [contact.track for contact in system.contacts]
+    for track in tracks:
+        if isinstance(track, (ModalBeam, ModalPlate)):
+            return track
+    raise ValueError(f"track must be a modal beam or a modal plate to be heard, got a {type(tracks[0]).__name__}")
+
+
+def check_baffled(system: Any) -> None:
+    """Raise ValueError if no track of a system can be heard in a baffle."""
+    panel_of(track_of(system))
+
+
+def _heard(record: xr.Dataset, system: Any, places: Any, baffled: bool) -> xr.DataArray:
+    """Return the sound of the first track that can be heard, under the contacts that press on it."""
+    track = track_of(system)
+    on_it = [number for number, contact in enumerate(system.contacts) if contact.track == track]
+    several = "contact" in record.dims
+    pressure = radiate(record.isel(contact=on_it) if several else record, track, places, baffled=baffled)
+    if several and len(on_it) < record.sizes["contact"]:
+        others = record.sizes["contact"] - len(on_it)
+        notes = [pressure.attrs["notes"], f"{others} of {record.sizes['contact']} contacts press on other tracks"]
+        pressure.attrs["notes"] = "; ".join(note for note in notes if note)
+    return pressure
+
+
+def _written(wav: str, pressure: xr.DataArray, options: dict[str, Any]) -> str:
+    """Write the sound file; errors name the option."""
+    try:
+        return str(write_wav(wav, pressure, **options))
+    except ValueError as error:
+        raise ValueError(str(error).replace("full_scale", "--full-scale", 1)) from None
+
+
+def place_of(text: str) -> tuple[float, ...]:
+    """Return the place that ``X,Y,Z`` says, in metres or with a unit each."""
+    try:
+        place = tuple(quantity(part.strip(), "m") for part in text.split(","))
+    except ValueError:
+        place = ()
+    if len(place) != 3 or max(map(abs, place)) > FARTHEST:
+        raise ValueError(f"--listener must be X,Y,Z in m, each within {FARTHEST:g} m, got {text!r}")
+    return place
+
+
+def wav_options(sample_rate: str, full_scale: str, subtype: str) -> dict[str, Any]:
+    """Return the arguments of `write_wav` that options ask for."""
+    try:
+        rate = quantity(sample_rate, "Hz")
+    except ValueError:
+        raise ValueError(f"--sample-rate must be a number in Hz or kHz, got {sample_rate!r}") from None
+    if rate not in RATES:
+        raise ValueError(f"--sample-rate must be one of {', '.join(map(str, RATES))} Hz, got {sample_rate!r}")
+    scale: float | str = full_scale
+    if full_scale != NORMALISED:
+        try:
+            scale = quantity(full_scale, "Pa")
+        except ValueError:
+            raise ValueError(f"--full-scale must be a pressure in Pa or {NORMALISED}, got {full_scale!r}") from None
+        if scale <= 0.0:
+            raise ValueError(f"--full-scale must be above 0 Pa, got {full_scale!r}")
+    if subtype not in SUBTYPES:
+        raise ValueError(
+            f"--subtype must be one of {', '.join(SUBTYPES)}, got {subtype!r}{suggestion(subtype, SUBTYPES)}"
+        )
+    return {"sample_rate": int(rate), "full_scale": scale, "subtype": subtype}
+
+
+def _figure(pressure: xr.DataArray, record: xr.Dataset, title: str) -> Any:
+    from ..plot import spectrogram
+
+    lasts = pressure.sizes["time"] * float(record.attrs["sample_interval"])
+    if lasts < SHORTEST_FIGURE:
+        raise ValueError(f"--plot must have a sound of at least {SHORTEST_FIGURE:g} s, got {lasts:.3g} s")
+    return spectrogram(pressure.isel(listener=0), record if "contact" not in record.dims else None, title=title)

@@ -1,0 +1,288 @@
+"""Films of two beams and their contact, in slow motion."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..bodies.modes import Array
+from ..checks import positive
+from ..disk import check_writable, read, write
+from ..integration.schemes import Scheme
+from ..records.variables import STATUS_WORDS
+from ..system import System
+from .colours import LINE, STATUS_COLOURS
+from .motion import SAMPLE_RATE, Motion, motion_of
+from .timelines import draw_line, draw_status
+
+FRAMES_PER_SECOND = 25
+DURATION, SLOWDOWN = 0.01, 1000.0
+# Without a number, the largest vibration is drawn as this share of the beams' extent.
+SHARE = 0.1
+KINDS = (".mp4", ".gif")
+# Pixels of the picture, both even as encoders want them.
+WIDTH, HEIGHT, DPI = 960, 600, 100
+# Thickness of the beams' lines [points].
+THICK = 2.5
+
+
+@dataclass(frozen=True)
+class Film:
+    """A film that was written; in print, one line that says it all.
+
+    Attributes
+    ----------
+    path : str
+        The file.
+    frames : int
+        Number of frames, 25 a second.
+    start, duration : float
+        The window of time shown [s].
+    slowdown : float
+        How much slower than life it is.
+    exaggeration : float
+        How much larger than life the vibration is drawn.
+    """
+
+    path: str
+    frames: int
+    start: float
+    duration: float
+    slowdown: float
+    exaggeration: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.path}: {self.frames} frames, {1e3 * self.duration:.4g} ms from {self.start:.6g} s, "
+            f"slowed down {self.slowdown:.6g} times, vibration drawn {self.exaggeration:.6g} times"
+        )
+
+
+def animate(
+    system: System,
+    out: str | Path,
+    *,
+    start: float = 0.0,
+    duration: float = DURATION,
+    slowdown: float = SLOWDOWN,
+    exaggeration: float | None = None,
+    scheme: Scheme | None = None,
+    step: float | None = None,
+    sample_rate: float = SAMPLE_RATE,
+    title: str = "",
+    progress: Callable[[int, int], None] = lambda frame, frames: None,
+) -> Film:
+    """Film a slider and its track in slow motion, the contact point coloured by its status.
+
+    The system is simulated from its start to the end of the window, with displacement probes along both beams. With the
+    scheme and the step of a record the film shows that very run. What is faster than the frames is smoothed away, and
+    never seen as something slower. The mean shape of the track, the slide of the tip and the mean bend of the slider
+    are to scale; the vibration about them is exaggerated, the gap with it. Motion of the track along itself is not
+    drawn.
+
+    Parameters
+    ----------
+    system : System
+        One contact between a finite-element beam and a modal beam or a rigid track.
+    out : str or Path
+        The file, ``.mp4`` or ``.gif``, written whole or not at all. MP4 takes an encoder: ``pip install
+        stridula[video]``, or an ffmpeg on the path.
+    start, duration : float, optional
+        The window of time [s].
+    slowdown : float, optional
+        How much slower than life; made a whole number of steps for each frame.
+    exaggeration : float, optional
+        How many times larger than life the vibration is drawn; what brings it near 10 % of the beams' extent if left
+        out.
+    scheme : ExactModal or CentralDifference, optional
+        Time scheme, the exact modal one if left out.
+    step : float, optional
+        Time step [s], that of `simulate` at `sample_rate` if left out.
+    sample_rate : float, optional
+        Sample rate [Hz] of the run that is shown, of no effect where a step is given.
+    title : str, optional
+        Title of the film.
+    progress : callable, optional
+        Told the number of each frame drawn, and of how many.
+
+    Returns
+    -------
+    Film
+        What was written, with the slowdown and the exaggeration.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, the system is of another kind, the run ends before the window, or there is
+        no encoder for the file.
+    OSError
+        If the file cannot be written.
+    """
+    positive("slowdown", slowdown)
+    if exaggeration is not None:
+        positive("exaggeration", exaggeration)
+    writer = _writer(out)
+    check_writable(out)
+    frame = 1.0 / (FRAMES_PER_SECOND * slowdown)
+    motion = motion_of(system, start, duration, frame, scheme, step, sample_rate)
+    times = _round(SHARE * motion.extent / motion.largest) if exaggeration is None else exaggeration
+    interval = float(motion.run.attrs["sample_interval"])
+    slowed = 1.0 / (FRAMES_PER_SECOND * interval)
+    picture = Picture(motion, times, slowed, title)
+    content = _filmed(picture, writer, Path(out).suffix.lower(), progress)
+    write(out, content)
+    return Film(str(out), picture.frames, start, picture.frames * interval, slowed, times)
+
+
+class Picture:
+    """The picture, to be drawn frame by frame.
+
+    Parameters
+    ----------
+    motion : Motion
+        What to draw.
+    exaggeration, slowdown : float
+        What is said of them, and done with the first.
+    title : str
+        Title.
+
+    Attributes
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    frames : int
+        Number of frames.
+    """
+
+    def __init__(self, motion: Motion, exaggeration: float, slowdown: float, title: str) -> None:
+        self.run, self.slowdown, self.exaggeration = motion.run, slowdown, exaggeration
+        self.slider, self.track = motion.drawn(exaggeration)
+        self.frames = len(self.slider)
+        self.figure = Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI, layout="constrained")
+        beams, force, status = self.figure.subplots(3, 1, height_ratios=[4.2, 1.0, 0.35])
+        self._draw_beams(beams)
+        self._draw_contact(force, status)
+        self.figure.suptitle(title, fontsize=11)
+        self.show(0)
+        # Laid out once: the axes must not move from frame to frame.
+        self.figure.draw_without_rendering()
+        self.figure.set_layout_engine("none")
+
+    def show(self, frame: int) -> None:
+        """Draw one frame."""
+        self.lines[0].set_data(*self.track[frame].T)
+        self.lines[1].set_data(*self.slider[frame].T)
+        word = STATUS_WORDS[int(self.run["status"].values[frame])]
+        self.point.set_data(*self.slider[frame, :1].T)
+        self.point.set_markerfacecolor(STATUS_COLOURS[word])
+        time = float(self.run["time"].values[frame])
+        for cursor in self.cursors:
+            cursor.set_xdata([time, time])
+        self.words.set_text(f"t = {1e3 * time:.3f} ms, {word}")
+
+    def _draw_beams(self, axes: Axes) -> None:
+        self.lines = [
+            axes.plot([], [], color=colour, linewidth=THICK, solid_capstyle="round", zorder=zorder)[0]
+            for colour, zorder in (("0.45", 1), (LINE, 2))
+        ]
+        self.point = axes.plot(
+            [], [], marker="o", markersize=8, markeredgecolor="black", markeredgewidth=0.8, zorder=3
+        )[0]
+        low, high = _limits([self.slider, self.track])
+        axes.set_xlim(low[0], high[0])
+        axes.set_ylim(low[1], high[1])
+        axes.set_aspect("equal")
+        axes.set_xlabel("x [m]", fontsize=8)
+        axes.set_ylabel("y [m]", fontsize=8)
+        axes.tick_params(labelsize=8)
+        self.words = axes.set_title("t", fontsize=9, loc="left")
+        scales = f"slowed down {self.slowdown:.6g} times, vibration drawn {self.exaggeration:.6g} times"
+        axes.set_title(scales, fontsize=9, loc="right")
+
+    def _draw_contact(self, above: Axes, below: Axes) -> None:
+        draw_line(above, self.run, "normal_force")
+        draw_status(below, self.run, "status")
+        first, last = self.run["time"].values[[0, -1]]
+        self.cursors: list[Any] = []
+        for axes in (above, below):
+            axes.set_xlim(first, last)
+            axes.tick_params(labelsize=8)
+            axes.yaxis.label.set_fontsize(8)
+            self.cursors.append(axes.axvline(first, color="black", linewidth=1.0))
+        above.tick_params(labelbottom=False)
+        below.set_xlabel("time [s]", fontsize=8)
+
+
+def _limits(places: list[Array]) -> tuple[Array, Array]:
+    """Return the least and the largest x and y of what is drawn, with a margin."""
+    low = np.min([place.min(axis=(0, 1)) for place in places], axis=0)
+    high = np.max([place.max(axis=(0, 1)) for place in places], axis=0)
+    margin = 0.04 * float((high - low).max())
+    return low - margin, high + margin
+
+
+def _round(number: float) -> float:
+    """Return the largest of 1, 2 and 5 times a power of ten that is not above a number; 1 for what does not move."""
+    if not np.isfinite(number):
+        return 1.0
+    power = 10.0 ** np.floor(np.log10(number))
+    return float(power * max(factor for factor in (1.0, 2.0, 5.0) if factor <= number / power * (1.0 + 1e-9)))
+
+
+def _encoder() -> str | None:
+    """Return the path of ffmpeg: the one that comes as a package, or the one on the path."""
+    if find_spec("imageio_ffmpeg") is None:
+        return shutil.which("ffmpeg")
+    import imageio_ffmpeg
+
+    return str(imageio_ffmpeg.get_ffmpeg_exe())
+
+
+def _writer(out: str | Path) -> AbstractMovieWriter:
+    kind = Path(out).suffix.lower()
+    if kind not in KINDS:
+        raise ValueError(f"out must end in one of {', '.join(KINDS)}, got {str(out)!r}")
+    if kind == ".gif":
+        return PillowWriter(fps=FRAMES_PER_SECOND)
+    encoder = _encoder()
+    if encoder is None:
+        raise ValueError(f"out must end in .gif without an encoder (pip install stridula[video]), got {str(out)!r}")
+    return FFMpegWriter(
+        fps=FRAMES_PER_SECOND, codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-crf", "20", "-threads", "1"]
+    )
+
+
+@contextmanager
+def _encoding() -> Iterator[None]:
+    """Let matplotlib find the encoder."""
+    with matplotlib.rc_context():
+        matplotlib.rcParams["animation.ffmpeg_path"] = _encoder() or "ffmpeg"
+        yield
+
+
+def _filmed(picture: Picture, writer: AbstractMovieWriter, kind: str, progress: Callable[[int, int], None]) -> bytes:
+    """Return the film as it will be in its file."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"film{kind}"
+        try:
+            with _encoding(), writer.saving(picture.figure, str(path), DPI):
+                for frame in range(picture.frames):
+                    picture.show(frame)
+                    writer.grab_frame()
+                    progress(frame + 1, picture.frames)
+        except subprocess.CalledProcessError as error:
+            raise OSError(f"the encoder failed: {str(error.stderr or error).strip().splitlines()[-1]}") from error
+        return read(path)

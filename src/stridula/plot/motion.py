@@ -1,0 +1,180 @@
+"""Motion of two beams and their contact over a window of time, as it is to be drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..assembly import assemble
+from ..bodies import FiniteElementBeam, ModalBeam
+from ..bodies.modes import Array
+from ..checks import instance, non_negative, positive
+from ..contact import RigidTrack
+from ..integration import simulate
+from ..integration.schemes import ExactModal, Scheme
+from ..integration.simulate import choose_timing
+from ..records import Displacement
+from ..system import System
+
+FEWEST_FRAMES, MOST_FRAMES = 2, 5000
+# Points drawn of a beam: enough for each half wave of its highest mode.
+MOST_POINTS = 161
+# Length of a rigid track on both sides of what is seen of it, as a share of the slider's length.
+BEYOND = 0.3
+SAMPLE_RATE = 100e3
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Two beams over a window of time, in frames.
+
+    Attributes
+    ----------
+    run : xarray.Dataset
+        Record over the window, a sample for each frame.
+    slider : ndarray, shape (frames, points, 2)
+        World places of the slider, its tip first [m], departures from rest as they are.
+    track : ndarray, shape (frames, points, 2)
+        The same of the track.
+    slide : ndarray, shape (frames, 2)
+        Place of the track below the tip where the track has its mean shape [m]: what the slider rides on.
+    """
+
+    run: xr.Dataset
+    slider: Array
+    track: Array
+    slide: Array
+
+    def drawn(self, exaggeration: float) -> tuple[Array, Array]:
+        """Return the places of slider and track with their vibration drawn `exaggeration` times.
+
+        The mean shape of the track, the slide of the tip along it and the mean bend of the slider are to scale; what
+        departs from them is exaggerated. So a closed contact is closed in the picture, and a gap is as large as the
+        vibration beside it.
+        """
+        mean = self.track.mean(axis=0)
+        track = mean + exaggeration * (self.track - mean)
+        shape = self.slider - self.slide[:, None]
+        bend = shape.mean(axis=0) - shape[:, 0].mean(axis=0)
+        slider = self.slide[:, None] + bend + exaggeration * (shape - bend)
+        return slider, track
+
+    @property
+    def largest(self) -> float:
+        """Largest departure that is exaggerated [m]."""
+        slider, track = self.drawn(2.0)
+        still_slider, still_track = self.drawn(1.0)
+        return max(float(np.abs(slider - still_slider).max()), float(np.abs(track - still_track).max()))
+
+    @property
+    def extent(self) -> float:
+        """Largest extent of both beams [m]."""
+        places = np.concatenate([self.slider[0], self.track[0]])
+        return float(np.ptp(places, axis=0).max())
+
+
+def motion_of(
+    system: System,
+    start: float,
+    duration: float,
+    frame: float,
+    scheme: Scheme | None = None,
+    step: float | None = None,
+    sample_rate: float = SAMPLE_RATE,
+) -> Motion:
+    """Simulate a system up to the end of a window with displacement probes along both beams.
+
+    With the scheme and the step of a record it is the motion of that record, to the last bit.
+
+    Parameters
+    ----------
+    system : System
+        One contact between a finite-element beam and a modal beam or a rigid track.
+    start, duration : float
+        The window [s].
+    frame : float
+        Time between frames [s]; the nearest whole number of steps is taken.
+    scheme : ExactModal or CentralDifference, optional
+        Time scheme, the exact modal one if left out.
+    step : float, optional
+        Time step [s], that of `simulate` at `sample_rate` if left out.
+    sample_rate : float, optional
+        Sample rate [Hz] of the run that is shown, of no effect where a step is given.
+
+    Raises
+    ------
+    ValueError
+        If the system is of another kind, an argument is out of its range, or the run ends before the window does.
+    """
+    slider, track = _pair(system)
+    positive("duration", duration)
+    frames = duration / frame
+    if not FEWEST_FRAMES <= round(frames) <= MOST_FRAMES:
+        raise ValueError(
+            f"duration must give from {FEWEST_FRAMES} to {MOST_FRAMES} frames of {frame:.3g} s, got {duration!r} s "
+            f"({frames:.0f} frames): change the slowdown"
+        )
+    end = non_negative("start", start) + duration
+    chosen: Scheme = ExactModal() if scheme is None else scheme
+    if step is None:
+        step = choose_timing(assemble(system, ()), chosen, end, None, sample_rate).step
+    places = {body: _places(body) for body in (slider, track) if not isinstance(body, RigidTrack)}
+    probes = [Displacement(body.at(s), axis) for body, along in places.items() for s in along for axis in "xy"]
+    run = simulate(system, end, scheme=chosen, step=step, sample_rate=1.0 / frame, probes=probes)
+    window = run.isel(time=run["time"].values > start + 0.5 * float(run.attrs["sample_interval"]))
+    if window.sizes["time"] < FEWEST_FRAMES:
+        raise ValueError(
+            f"start must be before the run ends ({run.attrs['ended']} at {float(run['time'][-1]):.4g} s), got {start!r}"
+        )
+    return _motion(system, window, list(places.values()))
+
+
+def _pair(system: System) -> tuple[FiniteElementBeam, ModalBeam | RigidTrack]:
+    instance("system", system, System)
+    slider: Any = system.slider
+    track: Any = system.contacts[0].track
+    kinds = (isinstance(slider, FiniteElementBeam), isinstance(track, (ModalBeam, RigidTrack)))
+    if len(system.contacts) != 1 or not all(kinds):
+        words = ", ".join(f"{system.body_name(body)}: a {type(body).__name__}" for body in system.bodies)
+        raise ValueError(
+            "system must be one contact between a finite-element beam and a modal beam or a rigid track, "
+            f"got {len(system.contacts)} ({words})"
+        )
+    return slider, track
+
+
+def _places(body: FiniteElementBeam | ModalBeam) -> Array:
+    highest = 2 * body.elements if isinstance(body, FiniteElementBeam) else 4 * body.harmonics[0]
+    return np.linspace(0.0, body.length, min(max(highest, 20) + 1, MOST_POINTS))
+
+
+def _motion(system: System, run: xr.Dataset, along: list[Array]) -> Motion:
+    contact = system.contacts[0]
+    slider: Any = system.slider
+    moved = run["displacement"].values.reshape(run.sizes["time"], -1, 2)
+    first = along[0].size
+    normal, tangent = contact.frame
+    # The abscissa counts along the track, whose world place is known for a beam and chosen for a rigid track.
+    tip = contact.at * tangent + contact.gap * normal
+    slider_places = tip + along[0][:, None] * slider.axes[0] + moved[:, :first]
+    # That of the probes, whose low-pass the contact's own record does not have.
+    abscissa = contact.at + moved[:, 0] @ tangent
+    if isinstance(contact.track, RigidTrack):
+        length = BEYOND * slider.length
+        ends = np.array([abscissa.min() - length, abscissa.max() + length])
+        raised = _raised(contact.track, run["time"].values)
+        track_places = ends[:, None] * tangent + raised[:, None, None] * normal
+        return Motion(run, slider_places, track_places, abscissa[:, None] * tangent + raised.mean() * normal)
+    rest = np.stack([along[1], np.zeros_like(along[1])], axis=1)
+    # Motion along the track is left out: the tip is where it is along it, whatever the track below does.
+    track_places = rest + moved[:, first:] * [0.0, 1.0]
+    below = np.interp(abscissa, along[1], track_places[:, :, 1].mean(axis=0))
+    return Motion(run, slider_places, track_places, np.stack([abscissa, below], axis=1))
+
+
+def _raised(track: RigidTrack, time: Array) -> Array:
+    """Return how far a rigid track has moved along its normal [m]."""
+    return np.asarray(track.normal_velocity * track.normal_history.integral(time))

@@ -1,0 +1,216 @@
+"""Films: the motion is that of the record, a closed contact is closed in the picture, which says its scales."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import stridula as st
+from stridula import plot
+from stridula.cli import main
+from stridula.plot import films
+from stridula.plot.colours import STATUS_COLOURS
+from stridula.plot.films import Picture
+from stridula.plot.motion import motion_of
+from stridula.records.variables import STATUS_WORDS
+
+FRAME = 4e-5
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """Return the squealing pair."""
+    return st.load_scenario("squeal")
+
+
+@pytest.fixture(scope="module")
+def motion(pair):
+    """Return its motion over 4 ms that hold every status."""
+    return motion_of(pair.system, 0.102, 0.004, FRAME, pair.scheme)
+
+
+def on_track(track, x):
+    """Return the height of a drawn track at an abscissa."""
+    return np.interp(x, track[:, 0], track[:, 1])
+
+
+def test_the_motion_is_that_of_the_record(pair, motion):
+    run = pair.simulate(duration=0.106, probes=[st.Displacement(pair.system.slider.root, "y")])
+    per = round(FRAME / run.attrs["sample_interval"])
+    forces = run.normal_force.values.reshape(-1, per).mean(axis=1)[-100:]
+    np.testing.assert_allclose(motion.run.normal_force, forces, rtol=1e-12, atol=1e-15)
+    assert motion.run.attrs["step"] == run.attrs["step"]
+    assert motion.run.sizes["time"] == 100
+    assert float(motion.run.time[0]) == pytest.approx(0.102 + FRAME)
+    root = motion.slider[:, -1, 1] - motion.slider[0, -1, 1]
+    moved = run.displacement.values[per - 1 :: per, 0][-100:]
+    # Two low-passes, of one frame and of one sample, of a root that moves slowly.
+    np.testing.assert_allclose(root, moved - moved[0], atol=2e-6)
+
+
+@pytest.mark.parametrize("exaggeration", [1.0, 30.0, 1000.0])
+def test_a_closed_contact_is_closed_in_the_picture_and_a_gap_is_drawn(motion, exaggeration):
+    slider, track = motion.drawn(exaggeration)
+    gaps = np.array([tip[0, 1] - on_track(line, tip[0, 0]) for tip, line in zip(slider, track, strict=True)])
+    status = motion.run.status.values
+    assert set(status) == {0, 1, 2}
+    recorded = motion.run.gap.values
+    # The record's gap is not low-passed, and the track is drawn by straight pieces.
+    open_for_long = recorded > 0.5 * recorded.max()
+    np.testing.assert_allclose(gaps[open_for_long], exaggeration * recorded[open_for_long], rtol=0.05)
+    closed = motion.run.status_share.sel(contact_status="separated").values == 0.0
+    assert np.abs(gaps[closed]).max() < 0.05 * exaggeration * recorded.max()
+
+
+def test_slide_and_mean_shape_stay_to_scale(motion):
+    once, track_once = motion.drawn(1.0)
+    more, track_more = motion.drawn(500.0)
+    np.testing.assert_allclose(once, motion.slider, atol=1e-15)
+    np.testing.assert_allclose(track_once, motion.track, atol=1e-15)
+    np.testing.assert_allclose(more[:, 0, 0], once[:, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(track_more.mean(axis=0), track_once.mean(axis=0), atol=1e-12)
+
+
+def test_the_picture_says_time_status_and_scales(motion):
+    picture = Picture(motion, 200.0, 1000.0, "Squeal")
+    beams = picture.figure.axes[0]
+    for frame in (0, 50, 99):
+        picture.show(frame)
+        word = STATUS_WORDS[int(motion.run.status[frame])]
+        assert beams.get_title(loc="left") == f"t = {1e3 * float(motion.run.time[frame]):.3f} ms, {word}"
+        assert picture.point.get_markerfacecolor() == STATUS_COLOURS[word]
+        assert all(cursor.get_xdata()[0] == motion.run.time[frame] for cursor in picture.cursors)
+    assert beams.get_title(loc="right") == "slowed down 1000 times, vibration drawn 200 times"
+
+
+def test_a_gif_has_every_frame(pair, tmp_path):
+    told = []
+    film = plot.animate(
+        pair.system,
+        tmp_path / "a.gif",
+        duration=4e-4,
+        slowdown=990.0,
+        title="Squeal",
+        progress=lambda *words: told.append(words),
+    )
+    with Image.open(tmp_path / "a.gif") as image:
+        assert (image.n_frames, image.size) == (10, (films.WIDTH, films.HEIGHT))
+        assert image.info["duration"] == 40
+    assert film.frames == 10
+    assert told == [(n, 10) for n in range(1, 11)]
+    # A whole number of steps for each frame.
+    assert film.slowdown == pytest.approx(1000.0)
+    assert f"slowed down 1000 times, vibration drawn {film.exaggeration:g} times" in str(film)
+    assert film.exaggeration in {factor * 10.0**power for factor in (1.0, 2.0, 5.0) for power in range(8)}
+
+
+def test_an_mp4_can_be_played(pair, tmp_path):
+    if films._encoder() is None:
+        pytest.skip("takes an encoder")
+    plot.animate(pair.system, tmp_path / "a.mp4", duration=4e-4)
+    words = [films._encoder(), "-i", str(tmp_path / "a.mp4"), "-f", "null", "-"]
+    said = subprocess.run(words, capture_output=True, text=True, check=True).stderr
+    assert "960x600" in said
+    assert "25 fps" in said
+    assert [path.name for path in tmp_path.iterdir()] == ["a.mp4"]
+
+
+def test_without_an_encoder_it_says_what_to_do(pair, monkeypatch, tmp_path):
+    monkeypatch.setattr(films, "_encoder", lambda: None)
+    with pytest.raises(ValueError, match=r"out must end in \.gif without an encoder \(pip install stridula\[video\]\)"):
+        plot.animate(pair.system, tmp_path / "a.mp4")
+
+
+def test_an_encoder_that_fails_leaves_nothing(pair, monkeypatch, tmp_path):
+    monkeypatch.setattr(films, "_encoder", lambda: "/bin/false")
+    with pytest.raises(OSError, match="encoder"):
+        plot.animate(pair.system, tmp_path / "a.mp4", duration=1.2e-4)
+    assert not any(tmp_path.iterdir())
+
+
+def test_a_beam_on_a_rigid_track_that_moves():
+    rod = st.FiniteElementBeam(st.Material(2.1e11, 7800.0), st.Rectangle(0.01, 0.01), 0.3, angle=0.5, elements=4)
+    shaken = st.RigidTrack(velocity=0.1, normal_velocity=1e-3, normal_history=st.Harmonic(500.0))
+    contact = st.PointContact(rod.tip, shaken, friction=st.Coulomb(0.5), inclination=0.3)
+    motion = motion_of(st.System(contact, [st.Force(rod.root, y=-20.0)]), 0.0, 4e-3, FRAME)
+    normal, _ = contact.frame
+    raised = shaken.normal_velocity * shaken.normal_history.integral(motion.run.time.values)
+    np.testing.assert_allclose(motion.track @ normal, np.stack([raised, raised], axis=1), atol=1e-12)
+    gaps = (motion.slider[:, 0] - motion.track[:, 0]) @ normal
+    np.testing.assert_allclose(gaps, motion.run.gap, atol=0.05 * float(motion.run.gap.max()))
+
+
+@pytest.fixture
+def stridula(monkeypatch, capsys, tmp_path):
+    """Run the command line in an empty folder; return exit code, output and error."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["stridula", *arguments])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        captured = capsys.readouterr()
+        return stop.value.code, captured.out, captured.err
+
+    return run
+
+
+def test_the_verb_films_a_scenario_and_its_record_alike(stridula, tmp_path):
+    assert stridula("run", "squeal", "--duration", "2 ms", "--out", "run.nc")[0] == 0
+    window = ("--from", "1.6 ms", "--duration", "0.4 ms", "--exaggeration", "100")
+    code, out, err = stridula("animate", "squeal", "--out", "a.gif", *window)
+    assert (code, err) == (0, "")
+    assert out == "a.gif: 10 frames, 0.4 ms from 0.0016 s, slowed down 1000 times, vibration drawn 100 times\n"
+    assert stridula("animate", "run.nc", "--out", "b.gif", *window)[0] == 0
+    with Image.open(tmp_path / "a.gif") as one, Image.open(tmp_path / "b.gif") as other:
+        # A record's title is the scenario's.
+        for frame in range(10):
+            one.seek(frame)
+            other.seek(frame)
+            np.testing.assert_array_equal(np.asarray(one.convert("RGB")), np.asarray(other.convert("RGB")))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("nothing",), "scenario must be a file or one of"),
+        (
+            ("squeal", "--duration", "1"),
+            "duration must give from 2 to 5000 frames of 4e-05 s, got 1.0 s (25000 frames)",
+        ),
+        (("squeal", "--duration", "1 us"), "duration must give from 2 to 5000 frames"),
+        (("squeal", "--duration", "5 kHz"), "--duration must be a number in s, ms or us, got '5 kHz'"),
+        (("squeal", "--from", "soon"), "--from must be a number in s, ms or us, got 'soon'"),
+        (("squeal", "--from", "-1"), "start must be 0 or above, got -1.0"),
+        (("squeal", "--slowdown", "0"), "slowdown must be above 0, got 0.0"),
+        (("squeal", "--exaggeration", "-2"), "exaggeration must be above 0, got -2.0"),
+        (("belt",), "system must be one contact between a finite-element beam and a modal beam or a rigid track"),
+        (("stable-sliding", "--from", "3"), "start must be before the run ends (off the track at 1.061 s), got 3.0"),
+    ],
+)
+def test_bad_input_is_one_line_and_2(stridula, tmp_path, arguments, message):
+    code, out, err = stridula("animate", *arguments, "--out", "a.gif")
+    assert (code, out) == (2, "")
+    assert err.startswith(f"stridula: {message}")
+    assert err.count("\n") == 1
+    assert not any(tmp_path.iterdir())
+
+
+def test_places_and_formats_that_cannot_be(stridula):
+    assert (
+        stridula("animate", "squeal", "--out", "a.avi")[2]
+        == "stridula: out must end in one of .mp4, .gif, got 'a.avi'\n"
+    )
+    assert stridula("animate", "squeal", "--out", "no/a.gif")[0] == 2
+
+
+def test_a_record_that_goes_on_from_another_is_refused(stridula, pair):
+    first = pair.simulate(duration=1e-3)
+    st.save(pair.simulate(duration=1e-3, start=first), "on.nc")
+    code, _, err = stridula("animate", "on.nc", "--out", "a.gif")
+    assert code == 2
+    assert err == "stridula: name must be a record from its start, got 'on.nc', which goes on from 0.001 s\n"

@@ -1,0 +1,247 @@
+"""What is heard, from the command line: `stridula sound` and `stridula run --wav`."""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+import pytest
+import soundfile
+
+import stridula as st
+from stridula.cli import main, running
+
+
+@pytest.fixture
+def stridula(monkeypatch, capsys, tmp_path):
+    """Run the command line in an empty folder; return exit code, output and error."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["stridula", *arguments])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        captured = capsys.readouterr()
+        return stop.value.code, captured.out, captured.err
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def records():
+    """Return records of a squeal, of a tip that does not land, of a rigid track and of a failed run."""
+    failed = st.load_scenario("squeal", {"duration": "2 ms"}).simulate()
+    failed.attrs["ended"] = "not finite"
+    return {
+        "run.nc": st.load_scenario("squeal", {"duration": "60 ms"}).simulate(),
+        "open.nc": st.load_scenario("squeal", {"duration": "5 ms"}).simulate(),
+        "coarse.nc": st.load_scenario("squeal", {"duration": "60 ms", "sample_rate": "2 kHz"}).simulate(),
+        "belt.nc": st.load_scenario("belt", {"duration": "60 ms"}).simulate(),
+        "failed.nc": failed,
+    }
+
+
+@pytest.fixture
+def kept(records, tmp_path):
+    """Write the records."""
+    for name, record in records.items():
+        st.save(record, tmp_path / name)
+    (tmp_path / "none.toml").write_text("a = 1\n")
+
+
+def written(tmp_path):
+    return {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
+
+
+def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
+    code, out, err = stridula("run", "squeal", "--duration", "60 ms", "--wav", "run.wav", "--out", "run.nc")
+    assert (code, err) == (0, "")
+    assert "\nrun.wav: 2 channels, 48 kHz, 0.06 s, peak " in out
+    track = st.load_scenario("squeal").system.track
+    pressure = st.radiate(st.load("run.nc"), track)
+    st.write_wav("same.wav", pressure)
+    assert (tmp_path / "run.wav").read_bytes() == (tmp_path / "same.wav").read_bytes()
+    np.testing.assert_allclose(pressure["x"], track.length / 2 + np.array([-0.09, 0.09]))
+    assert stridula("sound", "run.nc", "--wav", "again.wav")[0] == 0
+    assert (tmp_path / "run.wav").read_bytes() == (tmp_path / "again.wav").read_bytes()
+
+
+@pytest.mark.usefixtures("kept")
+def test_levels_of_a_pair_of_ears_are_printed_and_nothing_is_written(stridula, tmp_path):
+    before = written(tmp_path)
+    code, out, err = stridula("sound", "run.nc")
+    assert (code, err) == (0, "")
+    assert "Leq [dB]" in out
+    assert "at (0.59, 0, 1) m" in out
+    assert "at (0.77, 0, 1) m" in out
+    assert written(tmp_path) == before
+
+
+@pytest.mark.usefixtures("kept")
+@pytest.mark.parametrize(("rate", "hertz"), [("44.1 kHz", 44100), ("96000", 96000), ("48 kHz", 48000)])
+@pytest.mark.parametrize("subtype", ["PCM_24", "FLOAT"])
+def test_several_listeners_calibrated(stridula, rate, hertz, subtype):
+    ears = ("--listener", "30 cm, 0, 0.5", "--listener", "0.3,0.1,0.5", "--listener", "0.9,-0.2,1")
+    asked = ("--full-scale", "2", "--sample-rate", rate, "--subtype", subtype, "--wav", "a.wav")
+    code, out, err = stridula("sound", "run.nc", *ears, *asked)
+    assert (code, err) == (0, "")
+    assert out.startswith(f"a.wav: 3 channels, {hertz / 1000:g} kHz, 0.06 s, peak ")
+    assert "full scale 2 Pa, calibrated\n" in out
+    assert (soundfile.info("a.wav").samplerate, soundfile.info("a.wav").subtype) == (hertz, subtype)
+    back = st.read_wav("a.wav")
+    assert back.attrs["full_scale"] == 2.0
+    assert back.sizes["listener"] == 3
+    track = st.load_scenario("squeal").system.track
+    true = st.radiate(st.load("run.nc"), track, [(0.3, 0, 0.5), (0.3, 0.1, 0.5), (0.9, -0.2, 1)])
+    # Below 20 kHz, which all of these rates hold, there is nearly all of the sound.
+    ratio = np.sqrt(np.mean(back.values**2, axis=0) / np.mean(true.values**2, axis=0))
+    np.testing.assert_allclose(ratio, 1.0, atol=0.02)
+
+
+@pytest.mark.usefixtures("kept")
+def test_a_float_file_holds_what_is_beyond_full_scale(stridula):
+    asked = ("--wav", "a.wav", "--full-scale", "0.001", "--subtype", "FLOAT")
+    assert stridula("sound", "run.nc", *asked)[0] == 0
+    assert float(np.abs(st.read_wav("a.wav")).max()) > 0.01
+
+
+@pytest.mark.usefixtures("kept")
+def test_without_a_baffle_one_hears_less_and_from_below_too(stridula):
+    places = ("--listener", "0.6,0,0.5", "--listener", "0.6,0,-0.5")
+    code, out, err = stridula("sound", "run.nc", "--unbaffled", *places, "--wav", "free.wav")
+    assert (code, err) == (0, "")
+    assert "a line of dipoles" in out
+    above, below = st.read_wav("free.wav").values.T
+    np.testing.assert_allclose(above, -below, atol=1e-6 * np.abs(above).max())
+    assert stridula("sound", "run.nc", "--listener", "0.6,0,0.5", "--wav", "wall.wav")[0] == 0
+    assert np.mean(above**2) < np.mean(st.read_wav("wall.wav").values ** 2)
+
+
+@pytest.mark.usefixtures("kept")
+def test_a_spectrogram_is_drawn_and_named_after_the_case(stridula, tmp_path, monkeypatch):
+    from stridula import plot
+
+    titles = []
+    draw = plot.spectrogram
+    monkeypatch.setattr(plot, "spectrogram", lambda *args, title: titles.append(title) or draw(*args, title=title))
+    assert stridula("sound", "run.nc", "--plot", "a.png")[0] == 0
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert titles == ["Squeal"]
+
+
+@pytest.mark.usefixtures("kept")
+def test_silence_is_said(stridula):
+    code, out, err = stridula("sound", "open.nc", "--wav", "a.wav")
+    assert (code, err) == (0, "")
+    assert out.startswith("a.wav: 2 channels, 48 kHz, 0.005 s, silence (full scale 1 Pa)\nsilence: the contact never")
+    assert not st.read_wav("a.wav").any()
+    code, out, err = stridula("run", "squeal", "--duration", "30 ms", "--set", "gap=10", "--wav", "b.wav")
+    assert (code, err) == (0, "")
+    assert out.endswith("silence (full scale 1 Pa)\nsilence: the contact never presses\n")
+
+
+@pytest.mark.usefixtures("kept")
+def test_a_silent_spectrogram_is_drawn(stridula):
+    assert stridula("run", "squeal", "--duration", "30 ms", "--set", "gap=10", "--out", "still.nc")[0] == 0
+    assert stridula("sound", "still.nc", "--plot", "still.png")[::2] == (0, "")
+
+
+@pytest.mark.usefixtures("kept")
+def test_what_a_coarse_record_misses_is_said(stridula):
+    code, out, err = stridula("sound", "coarse.nc")
+    assert (code, err) == (0, "")
+    assert "modes above what the record's sample rate carries are left out" in out
+
+
+IN = ("sound", "run.nc")
+WAV = ("--wav", "a.wav")
+BAD = [
+    ((*IN, "--listener", "0.3,0,-1"), "behind the baffle"),
+    ((*IN, "--listener", "0.3,0,0"), "in the surface"),
+    ((*IN, "--listener", "0.3,0"), "--listener must be X,Y,Z in m"),
+    ((*IN, "--listener", "a,0,1"), "--listener must be X,Y,Z in m"),
+    ((*IN, "--listener", "nan,0,1"), "--listener must be X,Y,Z in m"),
+    ((*IN, "--listener", "0,0,1e9"), "within 1000 m, got '0,0,1e9'"),
+    ((*IN, "--unbaffled", "--listener", "0.3,0,0"), "from the beam's axis"),
+    ((*IN, "--wav", "none/a.wav"), "there is no folder 'none'"),
+    ((*IN, "--wav", "."), "it is a directory"),
+    ((*IN, "--wav", "run.nc"), "--wav must be another file than the record"),
+    ((*IN, "--wav", "a.png", "--plot", "a.png"), "--plot must be another file than --wav"),
+    ((*IN, *WAV, "--plot", "a.xyz"), "--plot must end in one of"),
+    (("sound", "open.nc", *WAV, "--plot", "a.png"), "--plot must have a sound of at least 0.02 s, got 0.005 s"),
+    ((*IN, *WAV, "--full-scale", "1e-6"), "--full-scale must be above the peak of "),
+    ((*IN, *WAV, "--full-scale", "0"), "--full-scale must be above 0 Pa, got '0'"),
+    ((*IN, *WAV, "--full-scale", "nan"), "--full-scale must be a pressure in Pa or normalised, got 'nan'"),
+    ((*IN, *WAV, "--full-scale", "1 m"), "--full-scale must be a pressure in Pa or normalised, got '1 m'"),
+    ((*IN, *WAV, "--sample-rate", "22050"), "--sample-rate must be one of 44100, 48000, 96000 Hz, got '22050'"),
+    ((*IN, *WAV, "--sample-rate", "1 s"), "--sample-rate must be a number in Hz or kHz"),
+    ((*IN, *WAV, "--subtype", "PCM_16"), "did you mean 'PCM_24'?"),
+    (("sound", "none.nc", *WAV), "cannot read 'none.nc'"),
+    (("sound", "none.toml", *WAV), "must be a record"),
+    (("sound", "belt.nc", *WAV), "track must be a modal beam or a modal plate to be heard, got a RigidTrack"),
+    (("sound", "failed.nc", *WAV), "one that can be believed, got one that ended 'not finite'"),
+    (("sound", *WAV), "Missing argument"),
+    (("run", "squeal", "--wav", "none/a.wav"), "there is no folder 'none'"),
+    (("run", "squeal", "--wav", "."), "it is a directory"),
+    (("run", "squeal", "--wav", "a.nc", "--out", "a.nc"), "--wav must be another file than --out"),
+    (("run", "squeal", "--wav", "a.png", "--plot", "a.png"), "--wav must be another file than --plot"),
+    (("run", "run.nc", "--wav", "run.nc"), "--wav must be another file than what is run"),
+    (("run", "belt", "--wav", "a.wav"), "track must be a modal beam or a modal plate to be heard"),
+]
+
+
+@pytest.mark.usefixtures("kept")
+@pytest.mark.parametrize(("arguments", "message"), BAD, ids=[" ".join(words) for words, _ in BAD])
+def test_bad_input_is_one_line_and_writes_nothing(stridula, tmp_path, monkeypatch, arguments, message):
+    if arguments[0] == "run":
+        monkeypatch.setattr(st.Scenario, "simulate", lambda self, **kwargs: pytest.fail("it ran"))
+    before = written(tmp_path)
+    code, out, err = stridula(*arguments)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith("stridula: ")
+    assert message in err
+    assert written(tmp_path) == before
+
+
+def test_an_interrupted_run_says_that_no_sound_was_written(stridula, monkeypatch, tmp_path):
+    def interrupt(*arguments, **fields):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(running.Progress, "update", interrupt)
+    code, _, err = stridula("run", "squeal", "--duration", "0.25", "--wav", "part.wav")
+    assert (code, err.endswith("; no sound was written\n")) == (130, True)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_plate_is_heard_from_above_its_middle(stridula):
+    code, out, err = stridula("run", "squeal-on-plate", "--duration", "20 ms", "--out", "run.nc", "--wav", "run.wav")
+    assert (code, err) == (0, "")
+    assert "run.wav: 2 channels" in out
+    track = st.load_scenario("run.nc").system.track
+    code, out, _ = stridula("sound", "run.nc")
+    assert f"at ({track.length / 2 - 0.09:.4g}, {track.width / 2:.4g}, 1) m" in out
+    code, _, err = stridula("sound", "run.nc", "--unbaffled")
+    assert (code, err.count("\n")) == (2, 1)
+    assert "must be a ModalBeam to radiate without a baffle" in err
+
+
+@pytest.mark.parametrize("floor", [False, True])
+def test_of_several_contacts_those_on_the_track_are_heard(stridula, tmp_path, floor):
+    """Two feet of one body: one on a floor and one on a beam, or both on the beam."""
+    feet = st.ReducedBody(
+        np.eye(4) * 0.1, np.eye(4) * 1e5, {"left": (0, 1), "right": (2, 3)}, damping=st.Rayleigh(1.0, 1e-6)
+    )
+    track = st.load_scenario("squeal").system.track
+    under = (st.RigidTrack(), 0.0) if floor else (track, 0.8)
+    left = st.PointContact(feet.at("left"), *under, st.Coulomb(0.2), name="left foot")
+    right = st.PointContact(feet.at("right"), track, 0.4, st.Coulomb(0.2), name="right foot")
+    pushes = [st.Force(feet.at(foot), y=-20.0) for foot in ("left", "right")]
+    run = st.simulate(st.System([left, right], pushes), duration=0.06)
+    st.save(run, "feet.nc")
+    code, out, err = stridula("sound", "feet.nc", "--wav", "feet.wav", "--plot", "feet.png")
+    assert (code, err) == (0, "")
+    assert ("1 of 2 contacts press on other tracks" in out) is floor
+    pressure = st.radiate(run.isel(contact=[1]) if floor else run, track)
+    assert float(np.abs(pressure).max()) > 0.0
+    st.write_wav("same.wav", pressure)
+    assert (tmp_path / "feet.wav").read_bytes() == (tmp_path / "same.wav").read_bytes()
