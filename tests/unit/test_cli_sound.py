@@ -245,3 +245,26 @@ def test_of_several_contacts_those_on_the_track_are_heard(stridula, tmp_path, fl
     assert float(np.abs(pressure).max()) > 0.0
     st.write_wav("same.wav", pressure)
     assert (tmp_path / "feet.wav").read_bytes() == (tmp_path / "same.wav").read_bytes()
+
+
+def test_what_has_not_arrived_is_silence(stridula):
+    code, out, _ = stridula("run", "judder", "--duration", "3 ms", "--wav", "early.wav")
+    assert code == 0
+    assert "silence: the sound does not arrive within the record" in out
+    assert not soundfile.read("early.wav")[0].any()
+
+
+@pytest.mark.usefixtures("kept")
+def test_a_coarse_record_says_up_to_where_its_sound_is_whole(stridula):
+    code, out, _ = stridula("sound", "coarse.nc")
+    assert code == 0
+    assert "whole up to 833.3 Hz only" in out
+
+
+@pytest.mark.usefixtures("kept")
+@pytest.mark.parametrize("verb", [("sound", "run.nc"), ("run", "squeal")])
+def test_a_sound_file_ends_as_its_format(stridula, tmp_path, verb):
+    before = sorted(tmp_path.iterdir())
+    code, _, error = stridula(*verb, "--wav", "sound.mp3")
+    assert (code, error) == (2, "stridula: --wav must end in .wav, got 'sound.mp3'\n")
+    assert sorted(tmp_path.iterdir()) == before

@@ -26,6 +26,10 @@ from .surfaces import surface_of
 
 # Bytes of modal motion held at once.
 MEMORY = 64e6
+# Samples by which the low-pass is ahead.
+REACH = 40.0
+# Bandwidth [Hz] below which a sound lacks what can be heard, which is said.
+AUDIBLE = 16e3
 
 
 def radiate(
@@ -92,8 +96,13 @@ def radiate(
     pressure = resample(_sum(heard, pressed, responses), ratio)
     time = np.arange(pressure.shape[1]) * pressed.interval / float(ratio)
     distances = _distances(listeners, panel)
-    pressure[time < distances[:, None] / air.speed] = 0.0
-    notes = _notes(pressed, len(kept), len(panel.wavenumbers), time[-1], distances / air.speed)
+    arrival = _first_press(pressed) + distances / air.speed
+    # Beyond the reach of the low-pass, what comes before the first force can be heard is rounding.
+    early = np.maximum(arrival - REACH * pressed.interval / float(ratio), distances / air.speed)
+    pressure[time < early[:, None]] = 0.0
+    notes = _notes(pressed, len(kept), len(panel.wavenumbers), time[-1], arrival)
+    if bandwidth < AUDIBLE:
+        notes.append(f"whole up to {bandwidth:.4g} Hz only, for the record's sample rate")
     if not baffled:
         notes.append(f"a line of dipoles: the beam is slim below {_slim_below(track, air):.4g} Hz")
     attributes = {
@@ -181,12 +190,18 @@ def _slim_below(track: Any, air: Air) -> float:
     return float(air.speed / (6.0 * width))
 
 
-def _notes(pressed: Pressing, kept: int, modes: int, duration: float, travel: Array) -> list[str]:
+def _first_press(pressed: Pressing) -> float:
+    """Return when the sample interval begins in which a contact first presses [s from the start], 0 if none does."""
+    presses = np.flatnonzero(pressed.force.any(axis=0))
+    return float(presses[0]) * pressed.interval if presses.size else 0.0
+
+
+def _notes(pressed: Pressing, kept: int, modes: int, duration: float, arrival: Array) -> list[str]:
     """Return what is to be said of a sound, in words."""
     notes = []
     if not pressed.force.any():
         notes.append("silence: the contact never presses")
-    elif (travel > duration).any():
+    elif (arrival > duration).any():
         notes.append("silence: the sound does not arrive within the record")
     if kept < modes:
         notes.append(f"{modes - kept} modes above what the record's sample rate carries are left out")

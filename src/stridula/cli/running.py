@@ -60,15 +60,16 @@ def run_scenario(
 
 
 def _check_wav(wav: str, name: str, out: str | None, plot: str | None, system: Any) -> None:
-    from .sounding import check_baffled
+    from .sounding import check_baffled, check_ending
 
     for option, other in (("--out", out), ("--plot", plot)):
         if other is not None and Path(other).resolve() == Path(wav).resolve():
             raise ValueError(f"--wav must be another file than {option}, got {wav!r} for both")
     if Path(name).is_file() and Path(name).resolve() == Path(wav).resolve():
         raise ValueError(f"--wav must be another file than what is run, got {wav!r} for both")
-    check_baffled(system)
     check_writable(wav)
+    check_ending(wav)
+    check_baffled(system)
 
 
 def check_outputs(out: str | None, plot: str | None, word: str = "--out") -> None:

@@ -47,6 +47,8 @@ def sound_of_record(
     for option, path in (("--wav", wav), ("--plot", plot)):
         if path is not None and Path(path).resolve() == Path(name).resolve():
             raise ValueError(f"{option} must be another file than the record, got {path!r} for both")
+    if wav is not None:
+        check_ending(wav)
     options = wav_options(sample_rate, full_scale, subtype)
     places: Any = [place_of(text) for text in listeners] or None
     record = load(name)
@@ -69,6 +71,12 @@ def write_sound(record: xr.Dataset, system: Any, wav: str) -> str:
     pressure = _heard(record, system, None, True)
     words = [str(write_wav(wav, pressure)), pressure.attrs["notes"]]
     return "\n".join(word for word in words if word)
+
+
+def check_ending(wav: str) -> None:
+    """Raise ValueError unless the name of a sound file ends as its format."""
+    if not wav.lower().endswith(".wav"):
+        raise ValueError(f"--wav must end in .wav, got {wav!r}")
 
 
 def track_of(system: Any) -> ModalBeam | ModalPlate:
