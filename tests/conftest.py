@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import signal
+import sys
 from pathlib import Path
 
+import pytest
 from hypothesis import settings
 
 import stridula
+from stridula.cli import main
 
 # The same examples in every run: a test that fails must fail again.
 settings.register_profile("repeatable", derandomize=True, database=None)
@@ -27,3 +30,18 @@ def pytest_configure(config):
 # A runner in the background starts with Ctrl-C ignored: tests of Ctrl-C need Python's own handler.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(name="stridula")
+def stridula_(monkeypatch, capsys, tmp_path):
+    """Run the command line in an empty folder; return exit code, output and error."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["stridula", *arguments])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        captured = capsys.readouterr()
+        return stop.value.code, captured.out, captured.err
+
+    return run

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from PIL import Image
 
 import stridula as st
 from stridula import plot
-from stridula.cli import main
 from stridula.plot import films
 from stridula.plot.colours import STATUS_COLOURS
 from stridula.plot.films import Picture
@@ -142,21 +140,6 @@ def test_a_beam_on_a_rigid_track_that_moves():
     np.testing.assert_allclose(motion.track @ normal, np.stack([raised, raised], axis=1), atol=1e-12)
     gaps = (motion.slider[:, 0] - motion.track[:, 0]) @ normal
     np.testing.assert_allclose(gaps, motion.run.gap, atol=0.05 * float(motion.run.gap.max()))
-
-
-@pytest.fixture
-def stridula(monkeypatch, capsys, tmp_path):
-    """Run the command line in an empty folder; return exit code, output and error."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["stridula", *arguments])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        captured = capsys.readouterr()
-        return stop.value.code, captured.out, captured.err
-
-    return run
 
 
 def test_the_verb_films_a_scenario_and_its_record_alike(stridula, tmp_path):

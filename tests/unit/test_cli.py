@@ -16,26 +16,11 @@ import pytest
 import scipy.io
 
 import stridula as st
-from stridula.cli import main, running, sweeping
+from stridula.cli import running, sweeping
 from stridula.plot.colours import REGIME_COLOURS
 from stridula.studies.measures import MEASURES, Column, Measure
 
 SHORT = ("--duration", "2 ms")
-
-
-@pytest.fixture
-def stridula(monkeypatch, capsys, tmp_path):
-    """Run the command line in an empty folder; return exit code, output and error."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["stridula", *arguments])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        captured = capsys.readouterr()
-        return stop.value.code, captured.out, captured.err
-
-    return run
 
 
 def test_version_and_help(stridula):

@@ -2,29 +2,12 @@
 
 from __future__ import annotations
 
-import sys
-
 import numpy as np
 import pytest
 import soundfile
 
 import stridula as st
-from stridula.cli import main, running
-
-
-@pytest.fixture
-def stridula(monkeypatch, capsys, tmp_path):
-    """Run the command line in an empty folder; return exit code, output and error."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["stridula", *arguments])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        captured = capsys.readouterr()
-        return stop.value.code, captured.out, captured.err
-
-    return run
+from stridula.cli import running
 
 
 @pytest.fixture(scope="module")

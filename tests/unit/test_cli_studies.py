@@ -3,32 +3,16 @@
 from __future__ import annotations
 
 import re
-import sys
 import tomllib
 
 import numpy as np
 import pytest
 
 import stridula as st
-from stridula.cli import main, searching
+from stridula.cli import searching
 from stridula.studies.measures import MEASURES
 
 SHORT = ("--duration", "2 ms")
-
-
-@pytest.fixture
-def stridula(monkeypatch, capsys, tmp_path):
-    """Run the command line in an empty folder; return exit code, output and error."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["stridula", *arguments])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        captured = capsys.readouterr()
-        return stop.value.code, captured.out, captured.err
-
-    return run
 
 
 def test_stability_says_equilibrium_and_modes(stridula):

@@ -10,6 +10,7 @@ import xarray as xr
 
 import stridula as st
 from stridula import analysis
+from stridula.analysis.heard import frames, strongest_tone
 from stridula.analysis.status_changes import (
     MIXED,
     between_stops,
@@ -19,7 +20,6 @@ from stridula.analysis.status_changes import (
     regularity,
     stick_onsets,
 )
-from stridula.analysis.tones import frames, strongest_tone
 
 RATE = 20e3
 SEPARATED, STICKING, SLIDING = range(3)

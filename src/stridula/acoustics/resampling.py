@@ -5,10 +5,11 @@ from __future__ import annotations
 from fractions import Fraction
 
 import numpy as np
-from scipy.signal import upfirdn
+from scipy.signal import oaconvolve, resample_poly
 
 from ..bodies.modes import Array
 from ..checks import positive
+from .sample_rates import low_pass
 
 # Share of the lower of both sample rates up to which sound is kept whole.
 BANDWIDTH = 5.0 / 12.0
@@ -61,14 +62,7 @@ def resample(signals: Array, ratio: Fraction) -> Array:
     ratio : Fraction
         New over old sample rate, at most 1.
     """
-    up, down = ratio.numerator, ratio.denominator
-    # In cycles per sample of the common multiple of both rates.
-    low, high = BANDWIDTH / down, 0.5 / down
-    half = int(np.ceil((ATTENUATION - 8.0) / (2.285 * 2.0 * np.pi * (high - low)) / 2.0))
-    half += -half % down
-    steps = np.arange(-half, half + 1)
-    cut = low + high
-    taps = up * cut * np.sinc(cut * steps) * np.kaiser(2 * half + 1, 0.1102 * (ATTENUATION - 8.7))
-    count = -(-signals.shape[1] * up // down)
-    first = half // down
-    return np.stack([upfirdn(taps, signal, up, down)[first : first + count] for signal in signals])
+    taps = low_pass(ratio, 2.0 * BANDWIDTH, ATTENUATION)
+    if ratio == 1:
+        return np.asarray(oaconvolve(signals, taps[None, :], mode="same", axes=1))
+    return np.asarray(resample_poly(signals, ratio.numerator, ratio.denominator, axis=1, window=taps))

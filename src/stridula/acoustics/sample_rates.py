@@ -42,11 +42,22 @@ def resampled(values: Array, rate: float, wanted: float) -> Array:
     by = ratio(rate, wanted)
     if by == 1:
         return values
-    return np.asarray(resample_poly(values, by.numerator, by.denominator, axis=0, window=_low_pass(by)))
+    return np.asarray(resample_poly(values, by.numerator, by.denominator, axis=0, window=low_pass(by)))
 
 
-def _low_pass(by: Fraction) -> Array:
-    # In units of half of the rate at which it works, the least common multiple of both.
+def low_pass(by: Fraction, pass_band: float = PASS_BAND, stop_band: float = STOP_BAND) -> Array:
+    """Return the taps of a Kaiser-windowed sinc at the least common multiple of two sample rates.
+
+    Parameters
+    ----------
+    by : Fraction
+        New over old sample rate.
+    pass_band : float, optional
+        Share of half of the lower rate up to which it is flat [1].
+    stop_band : float, optional
+        Attenuation from that half on [dB].
+    """
+    # In units of half of the rate at which it works.
     stop = 1.0 / max(by.numerator, by.denominator)
-    size, beta = kaiserord(STOP_BAND, (1.0 - PASS_BAND) * stop)
-    return np.asarray(firwin(size | 1, 0.5 * (1.0 + PASS_BAND) * stop, window=("kaiser", beta)))
+    size, beta = kaiserord(stop_band, (1.0 - pass_band) * stop)
+    return np.asarray(firwin(size | 1, 0.5 * (1.0 + pass_band) * stop, window=("kaiser", beta)))

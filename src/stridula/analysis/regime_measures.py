@@ -9,6 +9,7 @@ import numpy as np
 
 from ..bodies.modes import Array
 from ..checks import positive, within
+from .heard import Frames, frames, strongest_tone
 from .phases import SMOOTHING
 from .status_changes import (
     MIXED,
@@ -20,7 +21,6 @@ from .status_changes import (
     stick_onsets,
     whole_status,
 )
-from .tones import Frames, frames, strongest_tone
 
 STICKING = 1
 # Samples within which the status changes, from which the cycle lies inside the samples: one sampled eight times a

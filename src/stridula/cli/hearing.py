@@ -7,13 +7,13 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 from rich import box
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from ..acoustics.levels import equivalent_level, sound_level
 from ..acoustics.pressures import positions
 from ..acoustics.sensation import is_available, loudness_over_time, roughness, sharpness
+from .consoles import wide_console
 
 Measure = Callable[[xr.DataArray], xr.DataArray]
 # Heads, digits after the point, and what stands below; those of the second group take MoSQITo.
@@ -27,8 +27,6 @@ SENSATIONS: tuple[tuple[str, int, Measure], ...] = (
     ("sharpness [acum]", 2, sharpness),
     ("roughness [asper]", 2, lambda pressure: roughness(pressure).mean("time")),
 )
-# Of a file or a pipe; a terminal has its own.
-WIDTH = 150
 
 
 def print_levels(pressure: xr.DataArray) -> None:
@@ -57,9 +55,7 @@ def print_levels(pressure: xr.DataArray) -> None:
         reasons.append("no loudness, sharpness and roughness: they take mosqito (pip install stridula[psycho])")
     for row in zip(*columns, strict=True):
         table.add_row(*row)
-    console = Console()
-    if not console.is_terminal:
-        console = Console(width=WIDTH)
+    console = wide_console()
     console.print(table)
     for reason in reasons:
         console.print(reason, markup=False, highlight=False)

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import xarray as xr
 from rich import box
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from ..studies.verdicts import agreement
-
-# Of a file or a pipe; a terminal has its own.
-WIDTH = 150
+from .consoles import wide_console
 
 
 def print_agreement(found: xr.Dataset) -> None:
@@ -28,9 +25,7 @@ def print_agreement(found: xr.Dataset) -> None:
         row = counts["runs"].sel(verdict=verdict)
         if int(row.sum()):
             table.add_row(escape(str(verdict)), *(str(int(row.sel(regime=word))) for word in seen))
-    console = Console()
-    if not console.is_terminal:
-        console = Console(width=WIDTH)
+    console = wide_console()
     # A title of the table would be folded to its width.
     console.print("Runs by linear theory and regime")
     console.print(table)

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from rich import box
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
@@ -22,10 +21,8 @@ from ..scenarios.show import text_of
 from ..studies.calibration import CalibrationProgress, Target, calibrate
 from ..studies.points import Range
 from ..studies.sobol import FEWEST, sensitivity
+from .consoles import wide_console
 from .exits import INTERRUPTED, Stopped
-
-# Of a file or a pipe; a terminal has its own.
-WIDTH = 150
 
 
 def calibrate_scenario(
@@ -106,7 +103,7 @@ def _written(number: float, unit: str) -> float | str:
 
 
 def _print_calibration(found: xr.Dataset, ranges: dict[str, Range], targets: dict[str, Target | str]) -> None:
-    console = _console()
+    console = wide_console()
     table = _table("key", "value", "searched")
     for key, one in ranges.items():
         searched = f"{one.number(0.0):.6g} to {one.number(1.0):.6g} {one.unit}".strip()
@@ -128,7 +125,7 @@ def sensitivity_of_scenario(
     if out is not None:
         check_writable(out)
     found = sensitivity(name, ranges, measures or ["regime"], overrides=overrides, **options)
-    console = _console()
+    console = wide_console()
     if "probability" in found and np.isfinite(found["probability"].values).all():
         console.print("How likely each regime is")
         console.print(_probabilities(found))
@@ -189,8 +186,3 @@ def _table(*heads: str) -> Table:
     for head in heads:
         table.add_column(head, overflow="fold")
     return table
-
-
-def _console() -> Console:
-    console = Console()
-    return console if console.is_terminal else Console(width=WIDTH)

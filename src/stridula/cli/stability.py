@@ -7,15 +7,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from rich import box
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from ..analysis.stability import sliding_stability
 from ..scenarios.load import load_scenario
+from .consoles import wide_console
 
-# Of a file or a pipe; a terminal has its own.
-WIDTH = 150
 # Modes shown where none grows.
 FEWEST = 5
 KINDS = {
@@ -31,9 +29,7 @@ def print_stability(name: str, overrides: dict[str, Any], status: str | None, ve
     scenario = load_scenario(name, overrides)
     given = statuses(status)
     modes = sliding_stability(scenario.system, status=given, velocity=velocity)
-    console = Console()
-    if not console.is_terminal:
-        console = Console(width=WIDTH)
+    console = wide_console()
     console.print(_table(modes, scenario.title or name))
     for line in _closing(modes, given is not None):
         console.print(escape(line), highlight=False)

@@ -10,14 +10,11 @@ from types import FrameType
 from typing import Any
 
 from rich import box
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from ..verification.report import figure
-
-# Of a file or a pipe; a terminal has its own.
-WIDTH = 150
+from .consoles import wide_console
 
 
 @contextmanager
@@ -40,9 +37,7 @@ def interrupted_at_once() -> Iterator[None]:
 
 def print_rows(rows: Sequence[dict[str, Any]]) -> None:
     """Print the rows of a verification on standard output, a table for each case with its source below."""
-    console = Console()
-    if not console.is_terminal:
-        console = Console(width=WIDTH)
+    console = wide_console()
     for case, group in groupby(rows, key=lambda row: row["case"]):
         console.print(_table(case, list(group)))
 
