@@ -14,15 +14,13 @@ from ..bodies.modes import Array
 from ..checks import instance
 from .air import Air
 from .convolution import Convolution
-from .delays import Interpolation, Response, interpolation
-from .dipoles import dipole_response, moved_area
+from .delays import Response
 from .driven import FASTEST, accelerations, first_time
-from .listeners import check_in_front, check_off_beam, ears, listeners_of
+from .listeners import ears, listeners_of
 from .panels import Panel, line_of, panel_of
-from .rayleigh import baffled_response
 from .recorded import Pressing, pressing
 from .resampling import bandwidth_of, ratio_of, resample
-from .surfaces import surface_of
+from .responses import check_listeners, responses
 
 # Bytes of modal motion held at once.
 MEMORY = 64e6
@@ -83,7 +81,7 @@ def radiate(
     surface: Callable[[Any], Panel] = panel_of if baffled else line_of
     panel = surface(track)
     listeners = listeners_of(ears(track) if listener is None else listener)
-    _check_listeners(listeners, track, baffled)
+    check_listeners(listeners, track, baffled)
     pressed = pressing(run, panel)
     recorded = 1.0 / pressed.interval
     ratio = ratio_of(sample_rate, recorded, pressed.samples)
@@ -92,8 +90,9 @@ def radiate(
     # Modes that share a sine stand together.
     kept = kept[np.argsort(panel.wavenumbers[kept, 0], kind="stable")]
     heard = panel.only(kept)
-    responses = _responses(heard, track, baffled, listeners, air, pressed, bandwidth)
-    pressure = resample(_sum(heard, pressed, responses), ratio)
+    shift = (first_time(pressed) - pressed.start) / pressed.interval
+    paths = responses(heard, track, baffled, listeners, air, pressed.interval, shift, bandwidth)
+    pressure = resample(_sum(heard, pressed, paths), ratio)
     time = np.arange(pressure.shape[1]) * pressed.interval / float(ratio)
     distances = _distances(listeners, panel)
     arrival = _first_press(pressed) + distances / air.speed
@@ -118,47 +117,6 @@ def radiate(
         "notes": "; ".join(notes),
     }
     return _labelled(pressure, pressed.start + time, listeners, attributes)
-
-
-def _check_listeners(listeners: Array, track: ModalBeam | ModalPlate, baffled: bool) -> None:
-    if baffled:
-        check_in_front(listeners)
-        return
-    section: Any = track.section  # type: ignore[union-attr]
-    moved_area(section)
-    size = np.hypot(section.width, section.height) if isinstance(section, Rectangle) else section.diameter
-    check_off_beam(listeners, track.length, float(size) / 2.0)
-
-
-def _responses(
-    panel: Panel,
-    track: Any,
-    baffled: bool,
-    listeners: Array,
-    air: Air,
-    pressed: Pressing,
-    bandwidth: float,
-) -> list[Response]:
-    """Return the impulse responses of the modes at every listener."""
-    kernel = interpolation(bandwidth * pressed.interval)
-    shift = (first_time(pressed) - pressed.start) / pressed.interval
-    if baffled:
-        return [_of_panel(panel, listener, air, pressed.interval, kernel, shift, bandwidth) for listener in listeners]
-    area = moved_area(track.section)
-    return [dipole_response(panel, area, listener, air, pressed.interval, kernel, shift) for listener in listeners]
-
-
-def _of_panel(
-    panel: Panel,
-    listener: Array,
-    air: Air,
-    interval: float,
-    kernel: Interpolation,
-    shift: float,
-    bandwidth: float,
-) -> Response:
-    surface = surface_of(panel, listener, 2.0 * np.pi * bandwidth / air.speed)
-    return baffled_response(surface, listener, air, interval, kernel, shift)
 
 
 def _sum(panel: Panel, pressed: Pressing, responses: list[Response]) -> Array:

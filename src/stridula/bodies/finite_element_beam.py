@@ -132,6 +132,15 @@ class FiniteElementBeam:
         row = displacement_row(position, self.length, self.angle, self.elements)
         return row @ _reduced(self, held_x).shapes
 
+    def node_traces(self, held_x: bool = False) -> Array:
+        """Return the rows that give x, y and slope of every node, tip first, from the modes, shape (3 nodes, modes)."""
+        return _reduced(self, held_x).shapes
+
+    def modal_coordinates(self, nodal: Array, held_x: bool = False) -> Array:
+        """Return ``Phi^T M x`` of the displacements or velocities x of the nodes, shape (modes,)."""
+        reduced = _reduced(self, held_x)
+        return np.asarray(reduced.shapes.T @ (reduced.mass @ nodal))
+
     def root_reaction(self, held_x: bool = False) -> RootReaction:
         """Return what gives the force that the root's support exerts, from the balance of the whole beam."""
         reduced = _reduced(self, held_x)

@@ -75,7 +75,7 @@ class _Start:
         self.before, self.after = np.diff(arrays.motion(times, step), axis=0)
         self.factors = np.array([signal(times[1:2], step)[0] for signal in arrays.signals[: len(arrays.loads)]])
         self.fixed = np.array([one.fixed for one in arrays.contacts])
-        self.rows = np.array([_rows(one) for one in arrays.contacts])
+        self.rows = np.array([rows_where_it_starts(one) for one in arrays.contacts])
         self.gaps = np.array(
             [_gap(one, row, arrays.position) for one, row in zip(arrays.contacts, self.rows, strict=True)]
         )
@@ -134,7 +134,7 @@ class _Start:
         return np.ascontiguousarray(0.5 * (moved + moved.T))
 
 
-def _rows(one: ContactRows) -> Array:
+def rows_where_it_starts(one: ContactRows) -> Array:
     """Return the rows of a contact along normal and tangent, those of a track's modes at its first abscissa."""
     if not isinstance(one.contact.track, Track):
         return one.fixed

@@ -1,0 +1,120 @@
+"""Sound pressure of a track while it is being played: the sum of `radiate`, part by part."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.lib.stride_tricks import as_strided
+from scipy.signal import lfilter
+
+from ..bodies import ModalBeam, ModalPlate
+from ..bodies.modes import Array
+from .air import Air
+from .driven import DEGREE, FASTEST, LEAD, numerator, undo_mean
+from .listeners import listeners_of
+from .panels import panel_of
+from .resampling import ATTENUATION, BANDWIDTH, bandwidth_of
+from .responses import check_listeners, responses
+from .sample_rates import low_pass
+
+# Samples by which the first acceleration comes before the middle of the first interval.
+EARLY = 0.5 - LEAD
+
+
+class StreamedSound:
+    """The pressure of a baffled track at one listener, from forces that come part by part.
+
+    What `radiate` makes of the same forces, to rounding.
+
+    Parameters
+    ----------
+    track : ModalBeam or ModalPlate
+        What is heard.
+    listener : tuple of float
+        Where one listens, as in `radiate` [m].
+    interval : float
+        Time between samples [s].
+    steps : int
+        Steps of the march in it.
+    air : Air, optional
+        The air, `Air()` if left out.
+
+    Attributes
+    ----------
+    delay : int
+        Samples by which the sound comes later than it is heard; zero beyond some 0.2 m.
+
+    Raises
+    ------
+    ValueError
+        As `radiate`.
+    """
+
+    def __init__(
+        self,
+        track: ModalBeam | ModalPlate,
+        listener: tuple[float, float, float],
+        interval: float,
+        steps: int,
+        air: Air | None = None,
+    ) -> None:
+        panel, air = panel_of(track), Air() if air is None else air
+        listeners = listeners_of(listener)
+        check_listeners(listeners, track, True)
+        kept = np.flatnonzero(panel.angular_frequency * interval < FASTEST)
+        self.panel = panel = panel.only(kept)
+        self.taps = undo_mean(steps)
+        bandwidth = bandwidth_of(Fraction(1), 1.0 / interval)
+        (path,) = responses(panel, track, True, listeners, air, interval, EARLY - 0.5 / steps, bandwidth)
+        taps = low_pass(Fraction(1), 2.0 * BANDWIDTH, ATTENUATION)
+        first = path.first - len(taps) // 2
+        # An acceleration is known DEGREE samples after its force.
+        self.delay = max(0, DEGREE - first)
+        self.path = np.apply_along_axis(np.convolve, 0, path.taps, taps)
+        decay = np.exp(-panel.damping * panel.angular_frequency * interval)
+        phase = panel.angular_frequency * np.sqrt(1.0 - panel.damping**2) * interval
+        self.numerators = [k * numerator(float(one)) for k, one in zip(decay, phase, strict=True)]
+        self.poles = [[1.0, -2.0 * k * np.cos(one), k**2] for k, one in zip(decay, phase, strict=True)]
+        self.memory = [np.zeros(len(one) - 1) for one in self.numerators]
+        self.force, self.position = np.zeros(2 * LEAD), np.zeros(LEAD)
+        self.moved = np.zeros((len(kept), len(self.path) - 1 + first + self.delay - DEGREE))
+        self.has_begun = False
+
+    def feed(self, force: Array, position: Array) -> Array:
+        """Take the normal forces and the places of the next samples and return the pressure at them.
+
+        Parameters
+        ----------
+        force : ndarray, shape (samples,)
+            Means over the sample intervals [N], compressive.
+        position : ndarray, shape (samples,)
+            Abscissas in the middle of the intervals [m].
+
+        Returns
+        -------
+        ndarray, shape (samples,)
+            Pressure [Pa], `delay` samples late.
+        """
+        if len(position) and not self.has_begun:
+            self.position[:], self.has_begun = position[0], True
+        force, self.force = np.concatenate([self.force, force]), np.concatenate([self.force, force])[-2 * LEAD :]
+        places = np.concatenate([self.position, position])
+        self.position = places[-LEAD:]
+        pressing = np.convolve(force, self.taps, mode="valid")
+        shapes = self.panel.shapes(*self.panel.place(places[: len(position)]))
+        modal = -(shapes * pressing[:, None]).T
+        moved = np.empty_like(modal)
+        for k, row in enumerate(modal):
+            moved[k], self.memory[k] = lfilter(self.numerators[k], self.poles[k], row, zi=self.memory[k])
+        return self._heard(moved)
+
+    def _heard(self, moved: Array) -> Array:
+        count, taps = moved.shape[1], len(self.path)
+        whole = np.concatenate([self.moved, moved], axis=1)
+        self.moved = whole[:, count:]
+        sent: Any = self.path[::-1] @ whole[:, : count + taps - 1]
+        rows, columns = sent.strides
+        # Sent through tap t at sample i - t: the sum along a diagonal.
+        return np.asarray(as_strided(sent, (count, taps), (columns, rows + columns)).sum(axis=1))

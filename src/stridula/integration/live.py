@@ -1,0 +1,330 @@
+"""A march without end, of a system that may be changed on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .._kernels import layout as at
+from .._kernels.contact import SEPARATED
+from .._kernels.march import stored_energy
+from ..assembly import Assembly, Signal, assemble
+from ..bodies import Track
+from ..bodies.modes import Array
+from ..checks import instance, positive
+from ..records import Probe
+from ..records.state import State
+from ..system import System
+from .blocks import blocks_of
+from .carry_over import carried_over, carries_over
+from .contact_solve import GaussSeidel
+from .decimation import Decimator
+from .marches import Imposed, imposed_on, march_of
+from .schemes import ExactModal, Scheme
+from .simulate import choose_timing
+from .start import rows_where_it_starts, state_at_start
+from .stops import ENDED
+
+# Share of the lowest frequency of vibration below which a mode yields as a free one does.
+SOFT = 0.3
+ON_THE_TRACK = (at.MATERIAL, at.ANCHOR, at.ABSCISSA, at.ABSCISSA_BEFORE)
+
+
+@dataclass(frozen=True)
+class LiveChunk:
+    """What a part of a live march left.
+
+    Attributes
+    ----------
+    time : ndarray, shape (samples,)
+        Time since the start of the stroke at the end of every sample interval [s].
+    contacts : ndarray, shape (samples, columns)
+        Record of the contact.
+    energies : ndarray, shape (samples, energies)
+        Record of the energies.
+    probes : ndarray, shape (samples, probes)
+        Probes, later than the rest by `LiveMarch.delay` samples.
+    """
+
+    time: Array
+    contacts: Array
+    energies: Array
+    probes: Array
+
+
+class LiveMarch:
+    """A system of one contact on the march, sample by sample, for as long as one likes.
+
+    What it is may change on the way: its motion goes on from where it is. Friction and forces change at once; bodies
+    that change keep their deflections, the contact its opening and its place on the track.
+
+    Parameters
+    ----------
+    system : System
+        What marches: one contact on a beam or a plate.
+    probes : sequence of Displacement, Velocity, Acceleration or Reaction
+        What is recorded beside the contact.
+    scheme : CentralDifference or ExactModal, optional
+        Time scheme, the exact modal one if left out.
+    sample_rate : float, optional
+        Samples per second [Hz].
+
+    Raises
+    ------
+    ValueError
+        If the system has several contacts, or one that does not move along a beam or a plate.
+    """
+
+    def __init__(
+        self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None, sample_rate: float = 48e3
+    ) -> None:
+        self.interval = 1.0 / positive("sample_rate", sample_rate)
+        self._take(system, probes, ExactModal() if scheme is None else scheme, assembled(system, probes))
+        self.restart()
+
+    @property
+    def time(self) -> float:
+        """Time since the start of the stroke [s]."""
+        return self._sample * self.interval
+
+    @property
+    def delay(self) -> int:
+        """Samples by which probes come later than the rest."""
+        return -(-self._decimator.lookahead // self.ratio)
+
+    @property
+    def position(self) -> Array:
+        """Modal positions now, shape (modes,); those of the slider and of the track lie where `spans` says."""
+        return np.asarray(self._march.states[0].modal[at.Q])
+
+    @property
+    def spans(self) -> dict[str, tuple[int, int]]:
+        """First mode of each body, and the one after its last."""
+        return self._arrays.spans
+
+    def restart(self) -> None:
+        """Put everything back to the start."""
+        self._sample, self._gap = 0, self.system.contacts[0].gap
+        self._arrays = self._described
+        blocks = blocks_of(self._arrays, self.scheme, self.step)
+        self._go(state_at_start(self._arrays, self.scheme, self.step, blocks, GaussSeidel()))
+        self._begin_probes()
+
+    def advance(self, samples: int) -> tuple[LiveChunk, str]:
+        """March on and return what was recorded, and how it ended.
+
+        Parameters
+        ----------
+        samples : int
+            Samples to march.
+
+        Returns
+        -------
+        chunk : LiveChunk
+            Fewer samples where the march ended.
+        ended : str
+            ``finished``, ``off the track``, ``not finite`` or ``contact unsolved``; after the last three only
+            `restart` helps.
+        """
+        imposed = self._imposed(samples)
+        (chunk,) = self._march.advance([imposed], samples)
+        finite = np.isfinite(chunk.energies[: chunk.completed]).all(axis=1)
+        done = chunk.completed if finite.all() else int(np.argmin(finite))
+        ended = chunk.ended if done == chunk.completed else at.NOT_FINITE
+        time = (self._sample + np.arange(1, done + 1)) * self.interval
+        self._sample += done
+        contacts, energies = chunk.contacts[:done, 0].copy(), chunk.energies[:done].copy()
+        self._gap = float(contacts[-1, at.CONTACT_GAP]) if done else self._gap
+        return LiveChunk(time, contacts, energies, self._low_passed(chunk.raw, done)), ENDED[ended]
+
+    def change(self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None) -> bool:
+        """Go on as another system.
+
+        Parameters
+        ----------
+        system : System
+            What it becomes.
+        probes : sequence of probe
+            What is recorded beside the contact from now on.
+        scheme : CentralDifference or ExactModal, optional
+            Time scheme, as it was if left out.
+
+        Returns
+        -------
+        bool
+            Whether the motion went on; else it starts anew, for it means nothing for the other system, or its tip would
+            not be on the track.
+
+        Raises
+        ------
+        ValueError
+            As at the start; then all goes on as it was.
+        """
+        before, state = _Before(self.system, self.scheme, self.spans, self.step), self._march.states[0]
+        arrays = assembled(system, probes)
+        self._take(system, probes, before.scheme if scheme is None else scheme, arrays)
+        self._begin_probes()
+        place = float(state.carried[0, at.ABSCISSA] + system.contacts[0].at - before.system.contacts[0].at)
+        low, high = system.track.ends
+        if not (before.goes_on_as(system) and low < place < high):
+            self.restart()
+            return False
+        position, velocity = before.motion_as(system, arrays, state, self.time)
+        if system.bodies == before.system.bodies and self.step == before.step and self.scheme == before.scheme:
+            self._go_on(state, place, position, velocity, before.system)
+        else:
+            is_closed = state.carried[0, at.STATUS] != SEPARATED
+            self._start_from(position, velocity, place, 0.0 if is_closed else self._gap)
+        return True
+
+    def _take(self, system: System, probes: Sequence[Probe], scheme: Scheme, arrays: Assembly) -> None:
+        timing = choose_timing(arrays, scheme, self.interval, None, 1.0 / self.interval)
+        self.system, self.probes, self.scheme = system, tuple(probes), scheme
+        self._described: Assembly = arrays
+        self.step: float = timing.step
+        self.ratio: int = timing.ratio
+
+    def _begin_probes(self) -> None:
+        self._decimator, self._waiting = Decimator(self.ratio), np.zeros((0, len(self.probes)))
+
+    def _go(self, state: State) -> None:
+        """March on from a state."""
+        self._blocks = blocks_of(self._arrays, self.scheme, self.step)
+        state.energies[:] = 0.0
+        state.energies[at.STORED] = stored_energy(self._blocks.modes.block, self._blocks.modes.matrices, state.modal)
+        self._march = march_of(self._blocks, state, self.step, self.ratio, GaussSeidel())
+        self._steady: Imposed | None = None
+
+    def _imposed(self, samples: int) -> Imposed:
+        if not (self._blocks.is_simple and self._arrays.prescribed.is_steady):
+            first = self._sample * self.ratio
+            return imposed_on(self._arrays, self._blocks.heard, first, samples * self.ratio, self.step)
+        if self._steady is None:
+            whole = imposed_on(self._arrays, self._blocks.heard, 0, 1, self.step)
+            self._steady = Imposed(whole.signals, whole.motion[:1])
+        return self._steady
+
+    def _low_passed(self, raw: Array, samples: int) -> Array:
+        """Return as many samples of the probes as of the rest: while they wait for the low-pass, the first or zero."""
+        waiting = np.concatenate([self._waiting, self._decimator.feed(raw[: samples * self.ratio])])
+        missing = max(0, samples - len(waiting))
+        first = waiting[:1] if len(waiting) else np.zeros((1, len(self.probes)))
+        waiting = np.concatenate([np.repeat(first, missing, axis=0), waiting])
+        self._waiting = waiting[samples:]
+        return waiting[:samples]
+
+    def _shift(self, place: float, position: Array) -> None:
+        """Let the tip be at a place now: the sum of its start, its own displacement and what is imposed."""
+        described, (contact,) = self._described.motion, self._described.contacts
+        imposed = described(np.array([self.time]), self.step)[0, 0, at.TIP_MOTION]
+        offset = np.zeros(at.MOTIONS)
+        offset[at.TIP_MOTION] = -imposed - contact.fixed[1] @ position
+        here = replace(contact, contact=replace(contact.contact, at=place))
+        self._arrays = replace(
+            self._described, contacts=[here], motion=lambda times, step: described(times, step) + offset
+        )
+
+    def _go_on(self, state: State, place: float, position: Array, velocity: Array, before: System) -> None:
+        """March on in the same modes, under other forces and another friction."""
+        self._shift(place, position)
+        state.modal[at.D] += velocity * self.step - state.modal[at.D]
+        law = self.system.contacts[0].friction
+        if type(law) is not type(before.contacts[0].friction):
+            state.carried[0, at.FRICTION_STATE] = law.state_at_start if law.state_units else 0.0
+        self._put(state, place)
+
+    def _start_from(self, position: Array, velocity: Array, place: float, gap: float) -> None:
+        """March on in other modes, the contact opened by a gap."""
+        self._shift(place, position)
+        position = position + self._opening(position, gap)
+        self._shift(place, position)
+        now = self.time
+        arrays = replace(
+            self._arrays,
+            position=position,
+            velocity=velocity,
+            signals=[_later(signal, now) for signal in self._arrays.signals],
+            motion=_later(self._arrays.motion, now),
+        )
+        blocks = blocks_of(arrays, self.scheme, self.step)
+        self._put(state_at_start(arrays, self.scheme, self.step, blocks, GaussSeidel()), place)
+
+    def _put(self, state: State, place: float) -> None:
+        """March on from a state whose tip is at a place on the track."""
+        state.carried[0, list(ON_THE_TRACK)] += place - state.carried[0, at.ABSCISSA]
+        self._go(state)
+
+    def _opening(self, position: Array, gap: float) -> Array:
+        """Return the displacement that opens the contact to a gap as a force on it would, rigid motions first."""
+        arrays = self._arrays
+        row, size = rows_where_it_starts(arrays.contacts[0])[0], arrays.coupled
+        squared = np.diag(arrays.angular_frequency**2)
+        squared[:size, :size] = arrays.stiffness
+        vibrating = np.diag(squared)[np.diag(squared) > 0.0]
+        squared += SOFT**2 * (vibrating.min() if vibrating.size else 1.0) * np.eye(len(row))
+        yielded = np.linalg.solve(squared, row)
+        missing = gap - arrays.contacts[0].contact.gap - row @ position
+        return np.asarray(yielded * missing / (row @ yielded))
+
+
+@dataclass(frozen=True)
+class _Before:
+    """What marched before a change."""
+
+    system: System
+    scheme: Scheme
+    spans: dict[str, tuple[int, int]]
+    step: float
+
+    def goes_on_as(self, system: System) -> bool:
+        """Return whether the motion means something for another system."""
+        before = self.system
+        return (
+            (before.imposed_velocity is None) == (system.imposed_velocity is None)
+            and before.connections == system.connections
+            and before.contacts[0].gap == system.contacts[0].gap
+            and len(before.bodies) == len(system.bodies)
+            and all(carries_over(*pair) for pair in zip(before.bodies, system.bodies, strict=True))
+        )
+
+    def motion_as(self, system: System, arrays: Assembly, state: State, time: float) -> tuple[Array, Array]:
+        """Return modal positions and velocities as those of another system."""
+        position, velocity = np.zeros((2, arrays.mode_count))
+        speed_up = _root_velocity(system, time) - _root_velocity(self.system, time)
+        for before, now in zip(self.system.bodies, system.bodies, strict=True):
+            held = self.system.is_held(before)
+            old, new = slice(*self.spans[self.system.body_name(before)]), slice(*arrays.spans[system.body_name(now)])
+            position[new] = carried_over(before, now, held, state.modal[at.Q, old])
+            velocity[new] = carried_over(before, now, held, state.modal[at.D, old] / self.step)
+            if held:
+                # A root that is made to move faster does not take its body along at once.
+                velocity[new] -= speed_up * now.modes(held).translation[0]
+        return position, velocity
+
+
+def _root_velocity(system: System, time: float) -> float:
+    imposed = system.imposed_velocity
+    return 0.0 if imposed is None else imposed.velocity * float(imposed.history.factor(np.array([time]))[0])
+
+
+def _later(signal: Signal, now: float) -> Signal:
+    return lambda times, step: signal(times + now, step)
+
+
+def assembled(system: System, probes: Sequence[Probe]) -> Assembly:
+    """Return a system of one contact on a track as flat arrays.
+
+    Raises
+    ------
+    ValueError
+        If it is no such system.
+    """
+    instance("system", system, System)
+    if len(system.contacts) != 1:
+        raise ValueError(f"system must have one contact to march without end, got {len(system.contacts)}")
+    if not isinstance(system.contacts[0].track, Track):
+        kind = type(system.contacts[0].track).__name__
+        raise ValueError(f"track must be a ModalBeam or a ModalPlate to march without end, got a {kind}")
+    return assemble(system, probes)
