@@ -367,6 +367,20 @@ def _pair(text: str) -> tuple[str, str]:
     return key.strip(), value.strip()
 
 
+@app.command("app")
+def app_(
+    host: Annotated[str, typer.Option(metavar="H", help="Address to listen on.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(metavar="N", help="Port; 0 for any that is free.")] = 8707,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address only.")] = False,
+    open_: Annotated[bool, typer.Option("--open", help="Let other machines in, where --host is not this one.")] = False,
+) -> None:
+    """Play the contact on a page: turn the friction and hear it squeal."""
+    with _importing():
+        from ..app.serve import serve
+
+    serve(host, port, open_, not no_browser)
+
+
 @contextmanager
 def _importing() -> Iterator[None]:
     """Import without garbage collection, and leave what is there out of later ones: there is nothing to collect."""

@@ -22,6 +22,7 @@ from .carry_over import carried_over, carries_over
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
 from .marches import Imposed, imposed_on, march_of
+from .run import CONTACT_COLUMN, ENERGY_COLUMN
 from .schemes import ExactModal, Scheme
 from .simulate import choose_timing
 from .start import rows_where_it_starts, state_at_start
@@ -40,17 +41,20 @@ class LiveChunk:
     ----------
     time : ndarray, shape (samples,)
         Time since the start of the stroke at the end of every sample interval [s].
-    contacts : ndarray, shape (samples, columns)
-        Record of the contact.
-    energies : ndarray, shape (samples, energies)
-        Record of the energies.
+    contact : dict of ndarray, shape (samples,)
+        Record of the contact, by the names of records.
+    status_share : ndarray, shape (samples, 3)
+        Share of each interval separated, sticking and sliding.
+    energies : dict of ndarray, shape (samples,)
+        Energies since the start or the last change, by the names of records.
     probes : ndarray, shape (samples, probes)
         Probes, later than the rest by `LiveMarch.delay` samples.
     """
 
     time: Array
-    contacts: Array
-    energies: Array
+    contact: dict[str, Array]
+    status_share: Array
+    energies: dict[str, Array]
     probes: Array
 
 
@@ -135,9 +139,12 @@ class LiveMarch:
         ended = chunk.ended if done == chunk.completed else at.NOT_FINITE
         time = (self._sample + np.arange(1, done + 1)) * self.interval
         self._sample += done
-        contacts, energies = chunk.contacts[:done, 0].copy(), chunk.energies[:done].copy()
-        self._gap = float(contacts[-1, at.CONTACT_GAP]) if done else self._gap
-        return LiveChunk(time, contacts, energies, self._low_passed(chunk.raw, done)), ENDED[ended]
+        record, energy = chunk.contacts[:done, 0].T, chunk.energies[:done].T
+        self._gap = float(record[at.CONTACT_GAP, -1]) if done else self._gap
+        contact = {name: record[column].copy() for name, column in CONTACT_COLUMN.items()}
+        energies = {name: energy[column].copy() for name, column in ENERGY_COLUMN.items()}
+        shares = record[at.SEPARATED : at.SLIDING + 1].T.copy()
+        return LiveChunk(time, contact, shares, energies, self._low_passed(chunk.raw, done)), ENDED[ended]
 
     def change(self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None) -> bool:
         """Go on as another system.

@@ -48,6 +48,36 @@ def read_tables(name_or_path: str | Path | xr.Dataset) -> dict[str, Any]:
     return _with_base(_file_tables(path), path.parent, (path.resolve(),))
 
 
+def tables_of_text(text: str, name: str) -> dict[str, Any]:
+    """Return the tables of a scenario that comes as text from elsewhere, with those of a shipped base.
+
+    Parameters
+    ----------
+    text : str
+        The scenario, TOML.
+    name : str
+        What to call it in messages.
+
+    Raises
+    ------
+    ScenarioError
+        If it is not TOML, is empty, or names a file.
+    """
+    tables = _parsed(text, name)
+    if not tables:
+        raise ScenarioError([f"scenario must not be empty, got {name}: `stridula show squeal` prints one to edit"])
+    bases = shipped("bases") | shipped("cases")
+    base = tables.get("base")
+    if base is not None and base not in bases:
+        near = suggestion(base, list(bases))
+        raise ScenarioError([f"base must be one of {', '.join(bases)} in a text, got {base!r}{near}"])
+    named = tables.get("bodies")
+    for body in named.values() if isinstance(named, dict) else ():
+        if names_files(body):
+            raise ScenarioError([f"bodies must not name files in a text, got {', '.join(_files_of(body).values())!r}"])
+    return _with_base(tables, Path(), ())
+
+
 def _record_tables(record: xr.Dataset) -> dict[str, Any]:
     text = record.attrs.get("scenario")
     if not isinstance(text, str):

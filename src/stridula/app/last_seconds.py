@@ -1,0 +1,163 @@
+"""What was played last, to be saved."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections import deque
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..bodies.modes import Array
+from ..records.variables import CONTACT, PROBES, STATUS, STATUS_SHARE, STATUS_WORDS, Variable
+from ..version import __version__
+from .parts import Part
+from .playable import Playable
+from .sources import SOURCES
+
+KEPT = 10.0
+# Peak of a sound file below full scale.
+HEADROOM = 10.0 ** (-1.0 / 20.0)
+
+
+@dataclass(frozen=True)
+class _Kept:
+    """A part, in single precision and without its shapes."""
+
+    source: str
+    clock: float
+    stroke: int
+    sound: Array
+    contact: dict[str, Array]
+    status_share: Array
+    acceleration: Array
+
+
+class LastSeconds:
+    """The last ten seconds that were played.
+
+    Parameters
+    ----------
+    rate : int
+        Samples per second [Hz].
+    """
+
+    def __init__(self, rate: int) -> None:
+        self.rate = rate
+        self._parts: deque[_Kept] = deque()
+        self._samples = 0
+        self._changes: deque[tuple[float, str]] = deque()
+
+    def keep(self, part: Part, source: str) -> None:
+        """Keep a part and let go of what is too old."""
+        small = {variable.name: part.chunk.contact[variable.name].astype("f4") for variable in CONTACT}
+        shares, acceleration = part.chunk.status_share.astype("f4"), part.chunk.probes[:, 0].astype("f4")
+        kept = _Kept(source, part.clock, part.stroke, part.sound.astype("f4"), small, shares, acceleration)
+        self._parts.append(kept)
+        self._samples += len(kept.sound)
+        while self._samples - len(self._parts[0].sound) >= KEPT * self.rate:
+            self._samples -= len(self._parts.popleft().sound)
+        while len(self._changes) > 1 and self._changes[1][0] < self._parts[0].clock:
+            self._changes.popleft()
+
+    def changed(self, clock: float, toml: str) -> None:
+        """Keep what is played from a time on."""
+        self._changes.append((clock, toml))
+
+    def record(self, played: Playable, steps: int) -> bytes:
+        """Return a record of what was played last, as NetCDF.
+
+        Parameters
+        ----------
+        played : Playable
+            What is played now.
+        steps : int
+            Steps of the march in a sample.
+
+        Raises
+        ------
+        ValueError
+            If nothing was played yet.
+        """
+        self._check()
+        parts = self._parts
+        first = round(parts[-1].clock * self.rate) - self._samples
+        time = (first + np.arange(1, self._samples + 1)) / self.rate
+        shares = np.concatenate([part.status_share for part in parts])
+        status = (2 - np.argmax(shares[:, ::-1], axis=1)).astype("i1")
+        flags = {"flag_values": np.arange(3, dtype="i1"), "flag_meanings": " ".join(STATUS_WORDS)}
+        data: dict[str, Any] = {
+            variable.name: ("time", np.concatenate([part.contact[variable.name] for part in parts]), _words(variable))
+            for variable in CONTACT
+        }
+        data[STATUS.name] = ("time", status, {**_words(STATUS), **flags})
+        data[STATUS_SHARE.name] = (("time", "contact_status"), shares, _words(STATUS_SHARE))
+        probe = np.concatenate([part.acceleration for part in parts])[:, None]
+        data["acceleration"] = (("time", "acceleration_probe"), probe, _words(PROBES["acceleration"]))
+        strokes = np.concatenate([np.full(len(part.sound), part.stroke, dtype="i4") for part in parts])
+        data["stroke"] = ("time", strokes, {"units": "1", "long_name": "number of the stroke"})
+        coordinates: dict[str, Any] = {
+            "time": ("time", time, {"units": "s", "long_name": "time played at the end of the sample interval"}),
+            "contact_status": ("contact_status", list(STATUS_WORDS)),
+            "acceleration_probe": ("acceleration_probe", ["track centre y"]),
+        }
+        attributes = {
+            "title": f"played on the page: {played.scenario.title}",
+            "source": f"stridula {__version__}",
+            "stridula_version": __version__,
+            "scenario": played.toml,
+            "changes": json.dumps([{"time": clock, "scenario": toml} for clock, toml in self._changes]),
+            "scheme": played.scenario.scheme.name,
+            "steps_per_sample": steps,
+            "sample_interval": 1.0 / self.rate,
+            "ended": "interrupted",
+        }
+        encoding: Any = {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in data}
+        content = io.BytesIO()
+        xr.Dataset(data, coordinates, attributes).to_netcdf(content, engine="h5netcdf", encoding=encoding)
+        return content.getvalue()
+
+    def wav(self) -> bytes:
+        """Return what was heard last as a sound file of 24 bits, 1 dB below full scale, which its comment states.
+
+        Raises
+        ------
+        ValueError
+            If nothing was played yet.
+        """
+        import soundfile
+
+        self._check()
+        name = self._parts[-1].source
+        heard: list[Array] = []
+        for part in reversed(self._parts):
+            if part.source != name:
+                break
+            heard.append(part.sound)
+        sound = np.concatenate(heard[::-1]).astype(float)
+        sound -= sound.mean() if name == "force" else 0.0
+        scale = float(np.abs(sound).max()) / HEADROOM or 1.0
+        source, content = SOURCES[name], io.BytesIO()
+        with soundfile.SoundFile(content, "w", self.rate, 1, subtype="PCM_24", format="WAV") as file:
+            if name == "pressure":
+                start = self._parts[-1].clock - len(sound) / self.rate
+                file.comment = f"stridula: full_scale_pascal={scale!r} start_second={start!r}"
+            else:
+                file.comment = f"stridula: {source.name.lower()}, full scale is {scale!r} {source.unit}"
+            file.write(sound / scale)
+        return content.getvalue()
+
+    def _check(self) -> None:
+        if not self._parts:
+            raise ValueError("something must have been played before it can be saved, got nothing yet")
+
+
+def _words(variable: Variable) -> dict[str, str]:
+    return {
+        "units": variable.units,
+        "long_name": variable.long_name,
+        "cell_methods": f"time: {variable.cell_methods}",
+    }

@@ -1,0 +1,101 @@
+// The controls: built from what the server says of them, in groups; those that a scenario lacks are hidden.
+export class Controls {
+  constructor(form, hello, scene) {
+    this.scene = scene;
+    this.rows = new Map();
+    form.addEventListener("submit", (event) => event.preventDefault());
+    form.replaceChildren();
+    for (const group of hello.groups) {
+      const field = document.createElement("fieldset");
+      field.append(Object.assign(document.createElement("legend"), { textContent: group }));
+      for (const choice of hello.choices.filter((one) => one.group === group)) field.append(this.#choice(choice));
+      for (const control of hello.controls.filter((one) => one.group === group)) field.append(this.#number(control));
+      form.append(field);
+    }
+  }
+
+  #number(control) {
+    const id = control.key.replaceAll(".", "-");
+    const row = document.createElement("div");
+    row.className = "control";
+    row.innerHTML = `<label for="${id}"></label>
+      <div class="row"><input type="range" id="${id}-slide"><input type="number" id="${id}"><span class="unit"></span></div>
+      <p class="words" id="${id}-words"></p>`;
+    const [label, slide, number, unit, words] = ["label", "[type=range]", "[type=number]", ".unit", ".words"].map((one) => row.querySelector(one));
+    const named = control.unit ? `${control.label} in ${spoken(control.unit)}` : control.label;
+    label.textContent = control.label;
+    unit.textContent = control.unit;
+    words.textContent = control.words;
+    for (const input of [slide, number]) {
+      Object.assign(input, { min: control.low, max: control.high, step: control.step });
+      input.setAttribute("aria-label", input === slide ? `${named}, slider` : named);
+      input.setAttribute("aria-describedby", `${id}-words`);
+      input.dataset.key = control.key;
+    }
+    number.removeAttribute("min");
+    number.removeAttribute("max");
+    number.step = "any";
+    let moving = false;
+    slide.addEventListener("input", () => {
+      number.value = slide.value;
+      this.scene.value(control.key, si(Number(slide.value), control), moving);
+      moving = true;
+    });
+    slide.addEventListener("change", () => (moving = false));
+    number.addEventListener("change", () => {
+      if (number.value.trim() === "" || !Number.isFinite(Number(number.value))) this.show(this.values);
+      else this.scene.value(control.key, si(Number(number.value), control));
+    });
+    this.rows.set(control.key, { row, control, show: (value) => this.#show(value, slide, number, control) });
+    return row;
+  }
+
+  #show(value, slide, number, control) {
+    const shown = Number((value / control.scale).toPrecision(7));
+    slide.min = Math.min(control.low, shown);
+    slide.max = Math.max(control.high, shown);
+    if (document.activeElement !== slide || Math.abs(Number(slide.value) - shown) > control.step) slide.value = shown;
+    if (document.activeElement !== number) number.value = shown;
+    slide.setAttribute("aria-valuetext", `${shown} ${spoken(control.unit)}`.trim());
+  }
+
+  #choice(choice) {
+    const id = choice.key.replaceAll(".", "-");
+    const row = document.createElement("div");
+    row.className = "control";
+    row.innerHTML = `<label class="field" for="${id}"></label><select id="${id}"></select><p class="words" id="${id}-words"></p>`;
+    row.querySelector("label").textContent = choice.label;
+    row.querySelector("p").textContent = choice.words;
+    const select = row.querySelector("select");
+    select.setAttribute("aria-describedby", `${id}-words`);
+    for (const [value, word] of Object.entries(choice.kinds)) select.append(new Option(word, value));
+    select.addEventListener("change", () => this.scene.kind(choice.key, select.value, choice.begins[select.value]));
+    const show = (value) => {
+      if (![...select.options].some((one) => one.value === value)) select.append(new Option(value, value));
+      select.value = value;
+    };
+    this.rows.set(choice.key, { row, show });
+    return row;
+  }
+
+  // Show the values in SI that are played.
+  show(values) {
+    this.values = values;
+    for (const [key, { row, show }] of this.rows) {
+      row.hidden = !(key in values);
+      if (key in values) show(values[key]);
+    }
+  }
+
+  numbers() {
+    return [...this.rows.values()].filter(({ control, row }) => control && !row.hidden).map(({ control }) => control);
+  }
+}
+
+export function si(shown, control) {
+  return Number((shown * control.scale).toPrecision(12));
+}
+
+function spoken(unit) {
+  return { "°": "degrees", mm: "millimetres", N: "newtons", "cm/s": "centimetres a second", "mm/s": "millimetres a second", "%": "percent" }[unit] ?? unit;
+}

@@ -1,0 +1,304 @@
+// The page: what the server says is shown, what one does is said to the server.
+import { Controls } from "./controls.js";
+import { RegimeMap } from "./map.js";
+import { Pictures, short } from "./pictures.js";
+import { Scene } from "./scene.js";
+import { Sound } from "./sound.js";
+
+const $ = (id) => document.getElementById(id);
+const stream = new Worker("stream.js");
+const say = (message) => stream.postMessage({ say: message });
+const pictures = new Pictures();
+const scene = new Scene(changed);
+const sound = new Sound(stream, heard);
+const moves = new Map();
+const stats = { revision: 0, played: 0, samples: 0, frames: 0, fps: 0, dropouts: 0, latency: null, latencies: [], connected: false, level: 0, peak: 0 };
+let hello, controls, map, described;
+let revision = 0;
+let mode = "live";
+
+stream.onmessage = ({ data }) => {
+  if (data.part) part(data.part);
+  else if (data.told) told(data.told);
+  else if (data.file) save(data.file);
+  else if (data.lost) lost(data);
+};
+
+function told(message) {
+  const answers = {
+    hello: () => welcome(message),
+    scene: () => shown(message),
+    refused: () => refused(message),
+    problem: () => problem(message.problems),
+    stroke: () => stroke(message),
+    theory: () => theory(message),
+    "map row": () => map?.take(message),
+    "map done": () => map?.done(),
+  };
+  answers[message.type]?.();
+}
+
+async function welcome(message) {
+  const first = !hello;
+  hello = message;
+  stats.connected = true;
+  $("lost").hidden = true;
+  if (first) {
+    $("version").textContent = hello.version;
+    $("kept").textContent = `the last ${hello.kept} s`;
+    $("case").replaceChildren(...hello.presets.map(({ name, title }) => new Option(title, name)));
+    $("source").replaceChildren(...Object.entries(hello.sources).map(([name, { name: word, unit }]) => new Option(`${word} [${unit}]`, name)));
+    controls = new Controls($("controls"), hello, scene);
+    map = new RegimeMap(scene, controls, say);
+    await readLink();
+  }
+  say({ type: "listen", source: $("source").value });
+  say({ type: "repeat", on: $("repeat").checked });
+  listen();
+  map.again();
+  send();
+}
+
+function send() {
+  revision += 1;
+  moves.set(revision, performance.now());
+  if (moves.size > 200) moves.delete(moves.keys().next().value);
+  say({ type: "scene", revision, ...scene.now, case: scene.now.case || "squeal" });
+}
+
+function changed() {
+  clearTimeout(changed.timer);
+  changed.timer = setTimeout(async () => history.replaceState(null, "", await scene.link()), 150);
+  $("undo").disabled = !scene.canUndo;
+  $("redo").disabled = !scene.canRedo;
+  send();
+}
+
+function shown(message) {
+  described = message;
+  stats.revision = message.revision;
+  $("problem").hidden = true;
+  controls.show(message.values);
+  pictures.describe(message);
+  map.follow();
+  const own = scene.now.text !== null;
+  const preset = hello.presets.find(({ name }) => name === scene.now.case);
+  if (own && ![...$("case").options].some((one) => one.value === "")) $("case").append(new Option("Your own", ""));
+  if (!own) [...$("case").options].filter((one) => one.value === "").forEach((one) => one.remove());
+  $("case").value = own ? "" : scene.now.case;
+  $("case-words").textContent = own ? message.description || message.title : preset.description;
+  if (document.activeElement !== $("toml")) $("toml").value = `# ${scene.command()}\n${message.toml}`;
+  $("numbers").textContent = `${message.modes} modes, ${message.steps} steps of ${short(1e6 * message.step)} µs a sample. `;
+}
+
+function refused(message) {
+  problem(message.problems);
+}
+
+function problem(lines) {
+  $("problem").textContent = lines.join("\n");
+  $("problem").hidden = false;
+}
+
+function stroke({ why, goes_on: goesOn }) {
+  $("said").textContent = `${why}${goesOn ? ", a new stroke begins" : ", the stroke has ended"}`;
+  if (!goesOn) problem([`The stroke has ended: ${why}. Press New stroke, or change something.`]);
+}
+
+function theory({ equilibrium, modes }) {
+  pictures.modes = modes;
+  const words = { sliding: "it slides steadily", held: "friction can hold the tip", "lifted off": "it lifts off", jammed: "it jams: it neither slides on nor opens" };
+  const growing = modes.map(({ frequency, growth_rate: growth }) => `${short(frequency)} Hz (growth ${short(growth)} 1/s)`).join(", ");
+  $("theory").textContent = `Linear theory: ${words[equilibrium] ?? equilibrium}; ${growing ? `vibrations grow at ${growing}.` : "no vibration grows."}`;
+}
+
+function part(data) {
+  const [number, , , samples] = new Float64Array(data, 0, 8);
+  stats.samples += samples;
+  stats.played = Math.max(stats.played, number);
+  pictures.take(data);
+  stats.level = pictures.level;
+}
+
+function lost({ code, reason }) {
+  stats.connected = false;
+  $("lost").textContent = code === 4429 ? `No room: ${reason}.` : code === 4403 ? `Refused: ${reason}.` : "Connection lost. This page comes back by itself when the server does.";
+  $("lost").hidden = false;
+}
+
+// What the player says: meters, drop-outs, and when a change was heard first.
+function heard(data) {
+  if ("revision" in data && moves.has(data.revision)) {
+    stats.latency = performance.now() - moves.get(data.revision) + 1000 * sound.late;
+    stats.latencies.push(stats.latency);
+    for (const one of [...moves.keys()]) if (one <= data.revision) moves.delete(one);
+    $("latency").textContent = `${Math.round(stats.latency)} ms`;
+  }
+  if (!("peak" in data)) return;
+  if (data.dropouts > stats.dropouts) stream.postMessage({ more: true });
+  stats.dropouts = data.dropouts;
+  stats.peak = data.peak;
+  $("dropouts").textContent = data.dropouts;
+  const decibels = (value) => 20 * Math.log10(Math.max(value, 1e-6));
+  $("level").style.width = `${Math.max(0, Math.min(100, 100 + (100 * decibels(data.peak)) / 60))}%`;
+  $("limiter").style.width = `${Math.min(100, (-100 * decibels(data.reduction)) / 30)}%`;
+  if (sound.on) $("level-out").textContent = `${Math.round(decibels(data.peak))} dB, limited by ${Math.round(-decibels(data.reduction))} dB`;
+}
+
+function listen() {
+  const source = hello.sources[$("source").value];
+  $("source-words").textContent = `${source.words} 0 dB: ${source.full_scale} ${source.unit} is full scale.`;
+  $("spectrogram-words").textContent = `of the ${source.name.toLowerCase()}`;
+  $("volume-out").textContent = `${$("volume").value} dB`;
+  sound.volume(Number($("volume").value), source.full_scale);
+}
+
+function pace() {
+  const slow = Number($("speed").value);
+  pictures.pace(slow);
+  stream.postMessage({ pace: { mode: mode === "paused" ? "paused" : slow === 1 ? "live" : "slow", slow } });
+  if (mode === "paused" || slow !== 1) sound.flush();
+  $("play").textContent = mode === "paused" ? "Play" : "Pause";
+  $("step").disabled = mode !== "paused";
+  $("level-out").textContent = sound.on ? (slow === 1 ? "" : "silent in slow motion") : "muted";
+}
+
+function draw() {
+  stats.frames += 1;
+  pictures.draw();
+  map?.draw(pictures.colours);
+  requestAnimationFrame(draw);
+}
+
+function save({ format, data }) {
+  download(new Blob([data]), `stridula.${format}`);
+}
+
+function download(blob, name) {
+  const anchor = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: name });
+  anchor.click();
+  setTimeout(() => URL.revokeObjectURL(anchor.href), 10000);
+}
+
+// All pictures on one sheet.
+function savePictures() {
+  const canvases = [...document.querySelectorAll("canvas")];
+  const width = Math.max(...canvases.map((one) => one.width));
+  const sheet = document.createElement("canvas");
+  sheet.width = width + 40;
+  sheet.height = canvases.reduce((sum, one) => sum + one.height + 50, 60);
+  const paper = sheet.getContext("2d");
+  paper.fillStyle = pictures.colours.panel;
+  paper.fillRect(0, 0, sheet.width, sheet.height);
+  paper.fillStyle = pictures.colours.ink;
+  paper.font = "20px system-ui, sans-serif";
+  paper.fillText(`stridula ${hello.version}: ${scene.command()}`, 20, 32);
+  let y = 60;
+  for (const one of canvases) {
+    paper.fillText(one.closest("figure").querySelector("figcaption").innerText.replaceAll("\n", " "), 20, y + 18);
+    paper.drawImage(one, 20, y + 28);
+    y += one.height + 50;
+  }
+  sheet.toBlob((blob) => download(blob, "stridula.png"));
+}
+
+function theme(name) {
+  document.documentElement.dataset.theme = name;
+  localStorage.setItem("theme", name);
+  $("theme").textContent = name === "dark" ? "Light" : "Dark";
+  pictures.theme();
+}
+
+async function readLink() {
+  try {
+    return await scene.read(location.hash);
+  } catch {
+    problem(["The link cannot be read: it must be one that Copy link made."]);
+    return false;
+  }
+}
+
+$("case").addEventListener("change", () => scene.set({ case: $("case").value, text: null, overrides: {} }));
+$("undo").addEventListener("click", () => scene.undo());
+$("redo").addEventListener("click", () => scene.redo());
+$("link").addEventListener("click", async () => {
+  history.replaceState(null, "", await scene.link());
+  await copied(location.href, "link");
+});
+$("theme").addEventListener("click", () => theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
+$("help").addEventListener("click", () => $("intro").showModal());
+$("play").addEventListener("click", () => {
+  mode = mode === "paused" ? "live" : "paused";
+  pace();
+});
+$("step").addEventListener("click", () => stream.postMessage({ step: true }));
+$("restart").addEventListener("click", () => {
+  $("problem").hidden = true;
+  say({ type: "restart" });
+});
+$("speed").addEventListener("change", pace);
+$("repeat").addEventListener("change", () => say({ type: "repeat", on: $("repeat").checked }));
+$("sound").addEventListener("click", async () => {
+  const on = !sound.on;
+  $("sound").setAttribute("aria-pressed", String(on));
+  $("sound").textContent = on ? "Mute" : "Sound on";
+  await sound.turn(on);
+  pace();
+});
+$("source").addEventListener("change", () => {
+  say({ type: "listen", source: $("source").value });
+  listen();
+});
+$("volume").addEventListener("input", listen);
+$("save-wav").addEventListener("click", () => say({ type: "save", format: "wav" }));
+$("save-nc").addEventListener("click", () => say({ type: "save", format: "nc" }));
+$("save-png").addEventListener("click", savePictures);
+$("toml-apply").addEventListener("click", () => scene.set({ case: "", text: $("toml").value, overrides: {} }));
+$("toml-copy").addEventListener("click", () => copied($("toml").value, "scenario"));
+$("toml-save").addEventListener("click", () => download(new Blob([$("toml").value]), "scenario.toml"));
+$("toml-open").addEventListener("change", async () => {
+  const [file] = $("toml-open").files;
+  if (!file) return;
+  if (file.size > 60000) problem([`scenario must be at most 60 kB, got ${file.name} of ${Math.round(file.size / 1000)} kB`]);
+  else scene.set({ case: "", text: await file.text(), overrides: {} });
+  $("toml-open").value = "";
+});
+window.addEventListener("hashchange", async () => {
+  if (await readLink()) changed();
+});
+document.addEventListener("keydown", (event) => {
+  const writing = event.target.matches("textarea, input[type=number], input[type=text]");
+  if ((event.ctrlKey || event.metaKey) && !writing && ["z", "y"].includes(event.key.toLowerCase())) {
+    event.preventDefault();
+    if (event.key.toLowerCase() === "y" || event.shiftKey) scene.redo();
+    else scene.undo();
+  } else if (event.key === " " && event.target === document.body) {
+    event.preventDefault();
+    $("play").click();
+  }
+});
+$("intro").addEventListener("close", () => localStorage.setItem("visited", "1"));
+
+async function copied(text, what) {
+  try {
+    await navigator.clipboard.writeText(text);
+    $("said").textContent = `${what} copied`;
+  } catch {
+    problem([`The browser does not let this page copy the ${what}: copy it from the ${what === "link" ? "address bar" : "field below"}.`]);
+  }
+}
+
+setInterval(() => {
+  stats.fps = stats.frames;
+  stats.frames = 0;
+  $("fps").textContent = stats.fps;
+}, 1000);
+
+window.stridula = { stats, shares: () => pictures.shares, scene, now: () => described };
+theme(localStorage.getItem("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
+pace();
+$("undo").disabled = $("redo").disabled = true;
+if (!localStorage.getItem("visited")) $("intro").showModal();
+const protocol = location.protocol === "https:" ? "wss" : "ws";
+stream.postMessage({ connect: `${protocol}://${location.host}/socket` });
+requestAnimationFrame(draw);

@@ -1,0 +1,197 @@
+// The map of regimes around what is played, and the cross-hair that goes there.
+import { si } from "./controls.js";
+import { short } from "./pictures.js";
+
+const POINTS = 16;
+const QUIET = 700; // Time without a change after which a map is computed [ms].
+const REGIMES = {
+  "stable sliding": "#cfe8f5",
+  sticking: "#b9b9b9",
+  "stick-slip": "#009e73",
+  squeal: "#d55e00",
+  judder: "#e69f00",
+  "off the track": "#f4f4f4",
+};
+// What tells regimes apart without colours.
+const SIGNS = { "stable sliding": "", sticking: "–", "stick-slip": "/", squeal: "~", judder: "×", "off the track": "·" };
+
+export class RegimeMap {
+  constructor(scene, controls, say) {
+    Object.assign(this, { scene, controls, say });
+    this.canvas = document.getElementById("map");
+    this.x = document.getElementById("map-x");
+    this.y = document.getElementById("map-y");
+    this.on = document.getElementById("map-on");
+    this.words = document.getElementById("map-words");
+    this.cells = new Map();
+    this.known = "";
+    for (const side of [this.x, this.y]) side.addEventListener("change", () => this.follow(true));
+    this.on.addEventListener("change", () => this.follow(true));
+    let moving = false;
+    const go = (event) => {
+      this.#go(event.offsetX, event.offsetY, moving);
+      moving = true;
+    };
+    this.canvas.addEventListener("pointerdown", (event) => {
+      moving = false;
+      this.canvas.setPointerCapture(event.pointerId);
+      go(event);
+    });
+    this.canvas.addEventListener("pointermove", (event) => event.buttons && go(event));
+    this.canvas.addEventListener("pointerup", () => (moving = false));
+    this.canvas.addEventListener("keydown", (event) => this.#key(event));
+    const legend = document.getElementById("map-legend");
+    legend.replaceChildren(
+      ...Object.entries(REGIMES).map(([name, colour]) => {
+        const item = document.createElement("li");
+        const key = Object.assign(document.createElement("span"), { className: "key" });
+        key.style.background = colour;
+        item.append(key, `${name}${SIGNS[name] ? ` (${SIGNS[name]})` : ""}`);
+        return item;
+      }),
+    );
+  }
+
+  // Follow a scenario: what can be varied, and a new map if anything but the cross-hair moved.
+  follow(at_once = false) {
+    const numbers = this.controls.numbers();
+    this.#offer(this.x, numbers, "contact.friction.coefficient", 0);
+    this.#offer(this.y, numbers, "slider.angle", 1);
+    const [a, b] = [this.side("x"), this.side("y")];
+    if (!a || !b) return;
+    const others = Object.entries(this.controls.values).filter(([key]) => key !== a.key && key !== b.key);
+    const wanted = JSON.stringify([a.key, b.key, a.low, a.high, b.low, b.high, others, this.on.checked]);
+    if (wanted === this.known) return;
+    this.known = wanted;
+    this.cells.clear();
+    this.words.textContent = "";
+    this.say({ type: "no map" });
+    clearTimeout(this.timer);
+    if (!this.on.checked) return;
+    this.timer = setTimeout(() => this.#ask(a, b), at_once ? 0 : QUIET);
+  }
+
+  again() {
+    this.known = "";
+  }
+
+  side(name) {
+    const control = this.controls.numbers().find((one) => one.key === this[name].value);
+    if (!control) return null;
+    const value = this.controls.values[control.key] / control.scale;
+    return { key: control.key, control, low: Math.min(control.low, value), high: Math.max(control.high, value) };
+  }
+
+  #offer(select, numbers, first, other) {
+    const keys = numbers.map((one) => one.key);
+    if (JSON.stringify(keys) === select.dataset.keys) return;
+    const chosen = keys.includes(select.value) ? select.value : keys.includes(first) ? first : keys[other];
+    select.replaceChildren(...numbers.map((one) => new Option(one.label, one.key)));
+    select.value = chosen;
+    select.dataset.keys = JSON.stringify(keys);
+  }
+
+  #ask(a, b) {
+    if (a.key === b.key) {
+      this.words.textContent = "choose two different quantities";
+      return;
+    }
+    const axis = ({ key, control, low, high }) => ({ key, low: si(low, control), high: si(high, control) });
+    this.words.textContent = "computing";
+    this.say({ type: "map", x: axis(a), y: axis(b), points: POINTS });
+  }
+
+  take({ row, regimes }) {
+    this.cells.set(row, regimes);
+    this.words.textContent = `${Math.round((100 * this.cells.size) / POINTS)} % computed`;
+  }
+
+  done() {
+    this.words.textContent = "each point marched for up to 1 s from the start";
+  }
+
+  #frame() {
+    return { left: 52, top: 6, width: this.canvas.clientWidth - 60, height: this.canvas.clientHeight - 28 };
+  }
+
+  #go(px, py, moving) {
+    const { left, top, width, height } = this.#frame();
+    const clamp = (value) => Math.max(0, Math.min(1, value));
+    this.#set(clamp((px - left) / width), clamp(1 - (py - top) / height), moving);
+  }
+
+  #set(u, v, moving) {
+    const [a, b] = [this.side("x"), this.side("y")];
+    if (!a || !b || a.key === b.key) return;
+    const at = ({ control, low, high }, share) => si(Number((low + share * (high - low)).toPrecision(4)), control);
+    this.scene.set({ overrides: { ...this.scene.now.overrides, [a.key]: at(a, u), [b.key]: at(b, v) } }, moving);
+  }
+
+  #key(event) {
+    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1] }[event.key];
+    const [a, b] = [this.side("x"), this.side("y")];
+    if (!step || !a || !b) return;
+    event.preventDefault();
+    const share = ({ control, key, low, high }) => (this.controls.values[key] / control.scale - low) / (high - low);
+    const clamp = (value) => Math.max(0, Math.min(1, value));
+    const size = event.shiftKey ? 0.002 : 0.02;
+    this.#set(clamp(share(a) + size * step[0]), clamp(share(b) + size * step[1]), event.repeat);
+  }
+
+  draw(colours) {
+    const scale = Math.min(2, window.devicePixelRatio || 1);
+    const { clientWidth, clientHeight } = this.canvas;
+    if (this.canvas.width !== Math.round(clientWidth * scale) || this.canvas.height !== Math.round(clientHeight * scale)) {
+      this.canvas.width = Math.round(clientWidth * scale);
+      this.canvas.height = Math.round(clientHeight * scale);
+    }
+    const draw = this.canvas.getContext("2d");
+    draw.setTransform(scale, 0, 0, scale, 0, 0);
+    draw.clearRect(0, 0, clientWidth, clientHeight);
+    draw.font = "12px system-ui, sans-serif";
+    const { left, top, width, height } = this.#frame();
+    const [a, b] = [this.side("x"), this.side("y")];
+    if (!a || !b) return;
+    const [w, h] = [width / POINTS, height / POINTS];
+    for (const [row, regimes] of this.cells) {
+      regimes.forEach((name, column) => {
+        const [x, y] = [left + column * w, top + height - (row + 1) * h];
+        draw.fillStyle = REGIMES[name] ?? colours.panel;
+        draw.fillRect(x, y, w + 0.5, h + 0.5);
+        draw.fillStyle = "#1b1f24";
+        draw.textAlign = "center";
+        draw.globalAlpha = 0.55;
+        if (w > 9 && h > 9) draw.fillText(SIGNS[name] ?? "?", x + w / 2, y + h / 2 + 4);
+        draw.globalAlpha = 1;
+      });
+    }
+    draw.strokeStyle = colours.line;
+    draw.strokeRect(left, top, width, height);
+    draw.fillStyle = colours.soft;
+    draw.textAlign = "right";
+    draw.fillText(`${short(b.high)} ${b.control.unit}`, left - 4, top + 10);
+    draw.fillText(`${short(b.low)} ${b.control.unit}`, left - 4, top + height);
+    draw.textAlign = "left";
+    draw.fillText(`${short(a.low)} ${a.control.unit}`, left, top + height + 16);
+    draw.textAlign = "center";
+    draw.fillText(a.control.label, left + width / 2, top + height + 16);
+    draw.textAlign = "right";
+    draw.fillText(`${short(a.high)} ${a.control.unit}`, left + width, top + height + 16);
+    draw.textAlign = "left";
+    const at = ({ control, key, low, high }) => (this.controls.values[key] / control.scale - low) / (high - low);
+    const [x, y] = [left + width * at(a), top + height * (1 - at(b))];
+    for (const [colour, thick] of [["#ffffff", 4], ["#000000", 1.6]]) {
+      draw.strokeStyle = colour;
+      draw.lineWidth = thick;
+      draw.beginPath();
+      draw.moveTo(x - 14, y);
+      draw.lineTo(x + 14, y);
+      draw.moveTo(x, y - 14);
+      draw.lineTo(x, y + 14);
+      draw.stroke();
+      draw.beginPath();
+      draw.arc(x, y, 7, 0, 2 * Math.PI);
+      draw.stroke();
+    }
+  }
+}

@@ -1,0 +1,120 @@
+// What sounds: a queue of samples, a high-pass, a volume and a limiter, in the thread of the sound.
+const CEILING = 0.7; // Never louder than 3 dB below full scale.
+const AHEAD = 0.003; // The limiter sees loud samples so much earlier than they sound [s].
+const RELEASE = 0.15; // It lets go over so much [s].
+const LOWEST = 20; // What is slower cannot be heard [Hz].
+const FADE = 0.005; // Sound goes and comes over so much where samples are missing [s].
+
+class Player extends AudioWorkletProcessor {
+  constructor() {
+    super();
+    this.queue = new Float32Array(1 << 17);
+    this.mask = this.queue.length - 1;
+    this.written = this.read = 0;
+    this.marks = [];
+    this.volume = this.wanted = 0;
+    this.runs = false;
+    this.fade = 0;
+    this.dropouts = 0;
+    this.needed = 0;
+    this.low = this.before = 0;
+    this.keep = Math.exp((-2 * Math.PI * LOWEST) / sampleRate);
+    const ahead = Math.round(AHEAD * sampleRate);
+    this.line = new Float32Array(ahead);
+    this.at = 0;
+    this.hold = ahead;
+    this.peak = 0;
+    this.held = 0;
+    this.gain = 1;
+    this.attack = 1 - Math.exp(-4 / ahead);
+    this.release = 1 - Math.exp(-1 / (RELEASE * sampleRate));
+    this.quanta = 0;
+    this.loudest = this.power = this.least = 0;
+    this.port.onmessage = ({ data }) => this.told(data);
+  }
+
+  told(data) {
+    if (data.stream) {
+      this.stream = data.stream;
+      this.stream.onmessage = ({ data: part }) => this.take(part);
+    }
+    if ("volume" in data) this.wanted = data.volume;
+    if ("needed" in data) this.needed = data.needed;
+    if (data.flush) {
+      this.read = this.written;
+      this.runs = false;
+    }
+  }
+
+  take({ sound, revision }) {
+    if (this.written + sound.length - this.read > this.queue.length) this.read = this.written;
+    this.marks.push({ revision, at: this.written });
+    for (const value of sound) this.queue[this.written++ & this.mask] = value;
+  }
+
+  process(_, [[out]]) {
+    const step = 1 / (FADE * sampleRate);
+    if (!this.runs && this.written - this.read >= this.needed && this.written > this.read) this.runs = true;
+    for (let i = 0; i < out.length; i++) {
+      let value = 0;
+      if (this.runs && this.read < this.written) {
+        value = this.queue[this.read++ & this.mask];
+        this.fade = Math.min(1, this.fade + step);
+        this.last = value;
+      } else {
+        if (this.runs) {
+          this.runs = false;
+          this.dropouts++;
+        }
+        value = this.last ?? 0;
+        this.fade = Math.max(0, this.fade - step);
+      }
+      // A high-pass takes the weight of the slider away.
+      this.low = this.keep * (this.low + value - this.before);
+      this.before = value;
+      this.volume += 0.002 * (this.wanted - this.volume);
+      out[i] = this.limited(this.low * this.fade * this.volume);
+      const size = Math.abs(out[i]);
+      this.loudest = Math.max(this.loudest, size);
+      this.power += size * size;
+    }
+    this.tell(out.length);
+    return true;
+  }
+
+  limited(value) {
+    const size = Math.abs(value);
+    if (size >= this.peak || --this.held < 0) {
+      this.peak = size >= this.peak ? size : Math.max(size, this.peak * 0.999);
+      this.held = size >= this.peak ? this.hold : 0;
+    }
+    const target = this.peak > CEILING ? CEILING / this.peak : 1;
+    this.gain += (target < this.gain ? this.attack : this.release) * (target - this.gain);
+    this.least = Math.min(this.least, this.gain - 1);
+    const late = this.line[this.at];
+    this.line[this.at] = value;
+    this.at = (this.at + 1) % this.line.length;
+    return Math.max(-CEILING, Math.min(CEILING, late * this.gain));
+  }
+
+  tell(samples) {
+    while (this.marks.length && this.marks[0].at <= this.read) {
+      const { revision } = this.marks.shift();
+      if (revision !== this.revision) {
+        this.revision = revision;
+        this.port.postMessage({ revision });
+      }
+    }
+    if (this.stream) this.stream.postMessage({ played: samples, left: this.written - this.read });
+    if (++this.quanta % 16) return;
+    this.port.postMessage({
+      peak: this.loudest,
+      level: Math.sqrt(this.power / (16 * samples)),
+      reduction: 1 + this.least,
+      dropouts: this.dropouts,
+    });
+    this.loudest = this.power = this.least = 0;
+  }
+}
+
+registerProcessor("player", Player);

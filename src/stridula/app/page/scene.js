@@ -1,0 +1,118 @@
+// What is played, as the address bar holds it: a case or a text, and values by key. Undo goes back through them.
+const KEEP = 100;
+
+export class Scene {
+  constructor(onChange) {
+    this.onChange = onChange;
+    this.now = { case: "squeal", text: null, overrides: {} };
+    this.past = [];
+    this.future = [];
+  }
+
+  // Change what is played; a movement that goes on is one step of undo.
+  set(next, goesOn = false) {
+    if (!goesOn) this.#remember();
+    this.now = { ...this.now, ...next };
+    this.onChange();
+  }
+
+  value(key, value, goesOn = false) {
+    this.set({ overrides: { ...this.now.overrides, [key]: value } }, goesOn);
+  }
+
+  // Another kind of table: what belonged to the old one goes.
+  kind(key, value, begins) {
+    const table = key.slice(0, key.lastIndexOf(".") + 1);
+    const kept = Object.entries(this.now.overrides).filter(([name]) => key.startsWith("simulation") || !name.startsWith(table));
+    this.set({ overrides: { ...Object.fromEntries(kept), [key]: value, ...begins } });
+  }
+
+  mark() {
+    this.#remember();
+  }
+
+  #remember() {
+    const last = this.past.at(-1);
+    if (last && same(last, this.now)) return;
+    this.past.push(structuredClone(this.now));
+    this.past = this.past.slice(-KEEP);
+    this.future = [];
+  }
+
+  undo() {
+    while (this.past.length && same(this.past.at(-1), this.now)) this.past.pop();
+    if (this.past.length) this.#go(this.past, this.future);
+  }
+
+  redo() {
+    if (this.future.length) this.#go(this.future, this.past);
+  }
+
+  #go(from, to) {
+    to.push(structuredClone(this.now));
+    this.now = from.pop();
+    this.onChange();
+  }
+
+  get canUndo() {
+    return this.past.some((one) => !same(one, this.now));
+  }
+
+  get canRedo() {
+    return this.future.length > 0;
+  }
+
+  // The command line that runs the same.
+  command() {
+    const words = Object.entries(this.now.overrides).map(([key, value]) => `--set ${quoted(`${key}=${value}`)}`);
+    return ["stridula run", this.now.text === null ? this.now.case : "scenario.toml", ...words].join(" ");
+  }
+
+  async link() {
+    const words = new URLSearchParams();
+    if (this.now.text === null) words.set("case", this.now.case);
+    else words.set("text", await packed(this.now.text));
+    for (const [key, value] of Object.entries(this.now.overrides)) words.set(key, value);
+    return `#${words}`;
+  }
+
+  // Take over what a link says; anything that it does not say is as the case has it.
+  async read(hash) {
+    const words = new URLSearchParams(hash.replace(/^#/, ""));
+    if (![...words].length) return false;
+    const next = { case: words.get("case") ?? "squeal", text: null, overrides: {} };
+    if (words.has("text")) next.text = await unpacked(words.get("text"));
+    for (const [key, value] of words) {
+      if (key === "case" || key === "text") continue;
+      const number = Number(value);
+      next.overrides[key] = value.trim() !== "" && Number.isFinite(number) ? number : value;
+    }
+    if (same(next, this.now)) return false;
+    this.#remember();
+    this.now = next;
+    return true;
+  }
+}
+
+function same(one, other) {
+  return one.case === other.case && one.text === other.text && JSON.stringify(one.overrides) === JSON.stringify(other.overrides);
+}
+
+function quoted(text) {
+  return /^[\w.=+-]+$/.test(text) ? text : `'${text}'`;
+}
+
+async function through(stream, bytes) {
+  const out = new Response(new Blob([bytes]).stream().pipeThrough(stream));
+  return new Uint8Array(await out.arrayBuffer());
+}
+
+async function packed(text) {
+  const bytes = await through(new CompressionStream("deflate-raw"), new TextEncoder().encode(text));
+  return btoa(String.fromCharCode(...bytes)).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+}
+
+async function unpacked(word) {
+  const bytes = Uint8Array.from(atob(word.replaceAll("-", "+").replaceAll("_", "/")), (one) => one.charCodeAt(0));
+  return new TextDecoder().decode(await through(new DecompressionStream("deflate-raw"), bytes));
+}

@@ -1,0 +1,157 @@
+// The thread that speaks with the server: it asks for the next parts in time, hands sound to the player and pictures to
+// the page, so that neither waits for the other.
+const PART = 480; // Samples of a part while live.
+const RATE = 48000;
+const BUFFER = 0.05; // Sound kept ahead [s]; more after a drop-out.
+const MOST_BUFFER = 0.11;
+const RETRY = 1000; // Time between attempts to come back [ms].
+const FRAME = 1000 / 60;
+
+let socket, player, url;
+let buffer = BUFFER;
+let pace = { mode: "live", slow: 1 };
+let asked = 0; // Samples asked for that have not come.
+let left = 0; // Samples the player has.
+let clock = 0; // When time without a player was last counted [ms].
+let owed = 0; // Samples owed to slow motion.
+let file = null;
+let hasScene = false;
+let waiting = null; // A scene to be sent once the last one is answered.
+let answered = true;
+
+self.onmessage = ({ data }) => {
+  if (data.connect) {
+    url = data.connect;
+    connect();
+  } else if (data.player) {
+    player = data.player;
+    left = 0;
+    player.onmessage = ({ data: told }) => {
+      left = told.left;
+      feed();
+    };
+  } else if (data.mute) {
+    player = null;
+    left = 0;
+    clock = performance.now();
+  } else if (data.pace) {
+    pace = data.pace;
+    left = player ? left : 0;
+    clock = performance.now();
+    owed = 0;
+    feed();
+  } else if (data.step) {
+    pull(1, 1);
+  } else if (data.more) {
+    buffer = Math.min(MOST_BUFFER, buffer + 0.02);
+  } else if (data.say) {
+    if (data.say.type === "scene") scene(data.say);
+    else say(data.say);
+  }
+};
+
+function connect() {
+  socket = new WebSocket(url);
+  socket.binaryType = "arraybuffer";
+  socket.onopen = () => {
+    asked = 0;
+    answered = true;
+    waiting = null;
+    file = null;
+    clock = performance.now();
+  };
+  socket.onmessage = ({ data }) => (typeof data === "string" ? told(JSON.parse(data)) : part(data));
+  socket.onclose = ({ code, reason }) => {
+    hasScene = false;
+    postMessage({ lost: true, code, reason });
+    if (code !== 4429 && code !== 4403) setTimeout(connect, RETRY);
+  };
+}
+
+function say(message) {
+  if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+}
+
+function scene(message) {
+  if (!answered) {
+    waiting = message;
+    return;
+  }
+  answered = false;
+  say(message);
+}
+
+function told(message) {
+  if (message.type === "file") {
+    file = message;
+    return;
+  }
+  if (message.type === "pulled") {
+    asked = 0;
+    feed();
+    return;
+  }
+  if (message.type === "scene" || message.type === "refused") {
+    hasScene = hasScene || message.type === "scene";
+    answered = true;
+    if (waiting) {
+      const next = waiting;
+      waiting = null;
+      scene(next);
+    }
+  }
+  postMessage({ told: message });
+  feed();
+}
+
+function part(data) {
+  if (file) {
+    postMessage({ file: { ...file, data } }, [data]);
+    file = null;
+    return;
+  }
+  const head = new Float64Array(data, 0, 8);
+  const [revision, , , samples] = head;
+  const sound = new Float32Array(data, 64, samples);
+  if (player && pace.mode === "live") {
+    const own = sound.slice();
+    player.postMessage({ sound: own, revision }, [own.buffer]);
+    left += samples;
+  }
+  postMessage({ part: data }, [data]);
+}
+
+// Ask for what is missing.
+function feed() {
+  if (!hasScene || asked || pace.mode === "paused") return;
+  if (pace.mode === "live") {
+    const now = performance.now();
+    if (!player) left = Math.max(0, left - ((now - clock) * RATE) / 1000);
+    clock = now;
+    const missing = buffer * RATE - left;
+    if (missing >= PART) {
+      const parts = Math.min(10, Math.floor(missing / PART));
+      if (!player) left += parts * PART;
+      pull(parts, PART);
+    }
+    return;
+  }
+  const now = performance.now();
+  owed = Math.min(owed + ((now - clock) * RATE) / 1000 / pace.slow, (4 * FRAME * RATE) / 1000 / pace.slow + 1);
+  clock = now;
+  const samples = Math.min(PART, owed >= 4 ? 4 * Math.floor(owed / 4) : Math.floor(owed));
+  if (samples >= 1) {
+    owed -= samples;
+    pull(1, samples);
+  }
+}
+
+function pull(parts, samples) {
+  if (asked) return;
+  asked = parts * samples;
+  say({ type: "pull", parts, samples });
+}
+
+setInterval(() => {
+  if (!player || pace.mode !== "live") feed();
+}, 10);

@@ -1,0 +1,103 @@
+"""What is played, part by part, and how a part goes to the page."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..bodies.modes import Array
+from ..integration.live import LiveChunk
+
+# Samples that become one in the pictures of the forces and of the phase portrait.
+THINNED = 4
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """Where the bodies are.
+
+    Attributes
+    ----------
+    place, height : float
+        Where the tip is, along the track and above it where it is straight [m].
+    slider : ndarray, shape (nodes, 2)
+        Displacements of the slider's nodes along x and y less that of its tip [m], tip first.
+    track : ndarray, shape (points,)
+        Deflections at equal distances along the track [m].
+    """
+
+    place: float
+    height: float
+    slider: Array
+    track: Array
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of what is played.
+
+    Attributes
+    ----------
+    revision : int
+        Number of the change that is heard in it.
+    clock : float
+        Time played at its end [s].
+    sound : ndarray, shape (samples,)
+        What is heard, in the unit of the source.
+    chunk : LiveChunk
+        Record of the contact and of the acceleration of the track's middle.
+    shapes : Shapes
+        Where the bodies are at its end.
+    stroke : int
+        Number of the stroke.
+    """
+
+    revision: int
+    clock: float
+    sound: Array
+    chunk: LiveChunk
+    shapes: Shapes
+    stroke: int
+
+
+@dataclass(frozen=True)
+class Stop:
+    """The end of a stroke.
+
+    Attributes
+    ----------
+    why : str
+        What ended it.
+    goes_on : bool
+        Whether another stroke begins.
+    """
+
+    why: str
+    goes_on: bool
+
+
+def packed(part: Part) -> bytes:
+    """Return a part as the page reads it.
+
+    Eight numbers in double precision: revision, clock, stroke, samples, samples of the pictures, nodes of the slider,
+    points of the track, place of the tip. Then in single precision the sound; for the pictures normal force, tangential
+    force, status, place of the tip and its velocity; height of the tip, displacements of the nodes, deflections of the
+    track. All little-endian.
+    """
+    samples = len(part.sound)
+    thinned = THINNED if samples % THINNED == 0 else 1
+    contact, shapes = part.chunk.contact, part.shapes
+    shares = part.chunk.status_share.reshape(-1, thinned, 3).mean(axis=1)
+    # Of equal shares the later state wins, as in records.
+    status = 2 - np.argmax(shares[:, ::-1], axis=1)
+    seen = [_means(contact["normal_force"], thinned), _means(contact["tangential_force"], thinned), status]
+    seen += [contact["contact_position"][thinned - 1 :: thinned] - shapes.place, contact["slip_velocity"][::thinned]]
+    counts = [samples, samples // thinned, len(shapes.slider), len(shapes.track)]
+    head = np.array([part.revision, part.clock, part.stroke, *counts, shapes.place], dtype="<f8")
+    body = [part.sound, *seen, [shapes.height], shapes.slider.ravel(), shapes.track]
+    return head.tobytes() + np.concatenate(body).astype("<f4").tobytes()
+
+
+def _means(values: Array, count: int) -> Array:
+    return np.asarray(values.reshape(-1, count).mean(axis=1))

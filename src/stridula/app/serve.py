@@ -1,0 +1,86 @@
+"""The server on its port, and the browser that opens."""
+
+from __future__ import annotations
+
+import errno
+import ipaddress
+import socket
+import threading
+import webbrowser
+
+import uvicorn
+
+from ..studies.task import use_one_thread
+from .messages import LARGEST
+from .server import create_app
+
+# How long pages are waited for when the server stops [s].
+GRACE = 2
+
+
+def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
+    """Serve the page until Ctrl-C.
+
+    Parameters
+    ----------
+    host : str
+        Address to listen on.
+    port : int
+        Port; 0 for any that is free.
+    is_open : bool
+        Whether the host may be other than this machine's own.
+    opens_browser : bool
+        Whether a browser is opened.
+
+    Raises
+    ------
+    ValueError
+        If the host is not this machine's own and `is_open` does not say that it may be, or the port cannot be had.
+    """
+    if not (is_open or is_loopback(host)):
+        raise ValueError(
+            f"host must be this machine's own, such as 127.0.0.1, unless --open lets other machines in, got {host!r}"
+        )
+    listening = _bound(host, port)
+    shown = f"[{host}]" if ":" in host else host
+    address = f"http://{shown}:{listening.getsockname()[1]}/"
+    print(f"stridula plays at {address} (Ctrl-C stops it)", flush=True)
+    use_one_thread()
+    if opens_browser:
+        threading.Timer(0.5, webbrowser.open, [address]).start()
+    config = uvicorn.Config(
+        create_app(is_open),
+        ws="websockets-sansio",
+        ws_max_size=LARGEST,
+        ws_per_message_deflate=False,
+        log_level="warning",
+        access_log=False,
+        server_header=False,
+        timeout_graceful_shutdown=GRACE,
+        limit_concurrency=200,
+    )
+    uvicorn.Server(config).run(sockets=[listening])
+
+
+def is_loopback(host: str) -> bool:
+    """Return whether an address is this machine's own."""
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def _bound(host: str, port: int) -> socket.socket:
+    if not 0 <= port <= 65535:
+        raise ValueError(f"port must be from 0 to 65535, got {port!r}")
+    try:
+        family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        found = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
+        found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        found.bind(address)
+    except OSError as error:
+        taken = " (another program listens there: choose another --port)" if error.errno == errno.EADDRINUSE else ""
+        raise ValueError(f"host and port must be free, got {host}:{port}: {error.strerror}{taken}") from error
+    return found

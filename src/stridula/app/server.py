@@ -1,0 +1,124 @@
+"""The server of the page: its files, its socket, and who may speak to it."""
+
+from __future__ import annotations
+
+import ipaddress
+import mimetypes
+from contextlib import suppress
+from importlib.resources import files
+
+from starlette.applications import Starlette
+from starlette.requests import HTTPConnection, Request
+from starlette.responses import PlainTextResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from .maps import MapMaker
+from .session import Session
+
+PAGE = files(__package__).joinpath("page")
+MOST_PAGES = 16
+# Codes of a closed socket: a page from elsewhere, one too many.
+FROM_ELSEWHERE, TOO_MANY = 4403, 4429
+LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
+HEADERS = {
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; "
+    "img-src 'self' blob: data:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cache-Control": "no-cache",
+}
+
+
+class Pages:
+    """The pages that are open, and what they share."""
+
+    def __init__(self) -> None:
+        self.open, self.maps = 0, MapMaker()
+
+    async def socket(self, socket: WebSocket) -> None:
+        """Play for a page until it goes."""
+        await socket.accept()
+        if not _is_same_origin(socket):
+            await socket.close(FROM_ELSEWHERE, "the page must come from this server")
+            return
+        if self.open >= MOST_PAGES:
+            await socket.close(TOO_MANY, f"at most {MOST_PAGES} pages can be open")
+            return
+        self.open += 1
+        try:
+            with suppress(WebSocketDisconnect, RuntimeError):
+                await Session(socket, self.maps).run()
+        finally:
+            self.open -= 1
+            if not self.open:
+                self.maps.close()
+
+
+def create_app(is_open: bool = False) -> ASGIApp:
+    """Return the server of the page.
+
+    Parameters
+    ----------
+    is_open : bool, optional
+        Whether other machines may ask; else requests must name this machine by a loopback name, so that no other page
+        in the browser can reach it under a name of its own.
+    """
+    pages = Pages()
+    known = {entry.name: entry for entry in PAGE.iterdir() if entry.is_file()}
+
+    async def page(request: Request) -> Response:
+        name = request.path_params.get("name", "index.html")
+        if name not in known:
+            return PlainTextResponse("not found", 404, HEADERS)
+        kind = mimetypes.guess_type(name)[0] or "application/octet-stream"
+        return Response(known[name].read_bytes(), 200, HEADERS, "text/javascript" if name.endswith(".js") else kind)
+
+    routes = [Route("/", page), Route("/{name}", page), WebSocketRoute("/socket", pages.socket)]
+    app = Starlette(routes=routes)
+    app.state.pages = pages
+    return _named_rightly(app, is_open)
+
+
+def _named_rightly(app: ASGIApp, is_open: bool) -> ASGIApp:
+    """Return an app that answers only requests that name it as it may be named."""
+
+    async def checked(scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] in ("http", "websocket"):
+            host = HTTPConnection(scope).headers.get("host", "")
+            if not _is_right(host, is_open):
+                await _refused(scope, receive, send)
+                return
+        await app(scope, receive, send)
+
+    return checked
+
+
+async def _refused(scope: Scope, receive: Receive, send: Send) -> None:
+    if scope["type"] == "http":
+        await PlainTextResponse("host must be this machine's", 421, HEADERS)(scope, receive, send)
+        return
+    await receive()
+    await send({"type": "websocket.close", "code": FROM_ELSEWHERE})
+
+
+def _is_right(host: str, is_open: bool) -> bool:
+    """Return whether a Host header names this machine: by a loopback name, or where it is open by any address."""
+    name = host.rpartition(":")[0] if host.rpartition(":")[2].isdigit() else host
+    if name in LOOPBACK:
+        return True
+    if not is_open:
+        return False
+    with suppress(ValueError):
+        ipaddress.ip_address(name.strip("[]"))
+        return True
+    return "." not in name or name.endswith((".local", ".lan"))
+
+
+def _is_same_origin(socket: WebSocket) -> bool:
+    """Return whether the page that opens a socket came from this server."""
+    origin = socket.headers.get("origin", "")
+    return origin.partition("://")[2] == socket.headers.get("host") and origin.startswith(("http://", "https://"))

@@ -1,0 +1,194 @@
+"""One page: what it says, what it is told."""
+
+from __future__ import annotations
+
+import asyncio
+import time as clock
+from collections.abc import Coroutine
+from typing import Any
+
+from starlette.websockets import WebSocket
+
+from ..scenarios.errors import ScenarioError
+from ..version import __version__
+from . import controls
+from .instrument import PATIENCE, RATE, Instrument
+from .last_seconds import KEPT
+from .maps import MapMaker
+from .messages import Listen, Map, Message, NoMap, Pull, Repeat, Restart, Save, Scene, message_of
+from .parts import Stop, packed
+from .playable import Playable, playable
+from .presets import presets
+from .sources import SOURCES
+from .theory import theory
+
+# A page may be ahead of time by so much [s], and play at most so much faster than time goes.
+AHEAD, FASTEST = 1.0, 1.5
+# Quiet time after a change before linear theory is asked [s].
+PAUSE = 0.25
+
+
+class Session:
+    """A page that is open.
+
+    Parameters
+    ----------
+    socket : WebSocket
+        Where it speaks.
+    maps : MapMaker
+        Who computes its maps.
+    """
+
+    def __init__(self, socket: WebSocket, maps: MapMaker) -> None:
+        self.socket, self.maps = socket, maps
+        self.instrument: Instrument | None = None
+        self.source, self.repeats = "pressure", True
+        self._tasks: dict[str, asyncio.Task[None]] = {}
+        self._began, self._played = clock.monotonic(), 0
+
+    async def run(self) -> None:
+        """Answer the page until it goes; raises WebSocketDisconnect then."""
+        await self._tell(
+            "hello",
+            version=__version__,
+            rate=RATE,
+            patience=PATIENCE,
+            kept=KEPT,
+            presets=presets(),
+            sources={name: vars(source) for name, source in SOURCES.items()},
+            **controls.described(),
+        )
+        try:
+            while True:
+                text = await self.socket.receive_text()
+                try:
+                    await self._answer(message_of(text))
+                except ScenarioError as error:
+                    await self._tell("problem", problems=list(error.problems))
+                except ValueError as error:
+                    await self._tell("problem", problems=[str(error)])
+        finally:
+            for task in self._tasks.values():
+                task.cancel()
+
+    async def _tell(self, what: str, **words: Any) -> None:
+        await self.socket.send_json({"type": what, **words})
+
+    async def _answer(self, message: Message) -> None:
+        if isinstance(message, Scene):
+            await self._scene(message)
+        elif isinstance(message, Listen):
+            self.source = message.source
+            if self.instrument is not None:
+                self.instrument.listen_to(message.source)
+        elif isinstance(message, Repeat):
+            self.repeats = message.on
+            if self.instrument is not None:
+                self.instrument.repeats = message.on
+        elif self.instrument is None:
+            raise ValueError("scene must be given first")
+        elif isinstance(message, Pull):
+            await self._pull(self.instrument, message)
+        elif isinstance(message, Restart):
+            self.instrument.restart()
+        elif isinstance(message, Save):
+            await self._save(self.instrument, message)
+        else:
+            self._map(self.instrument.played, message)
+
+    async def _scene(self, scene: Scene) -> None:
+        """Play something else, if it can be played."""
+        try:
+            played = await asyncio.to_thread(playable, scene.case, scene.text, scene.overrides)
+            goes_on = await asyncio.to_thread(self._play, played, scene.revision)
+        except MemoryError:
+            problems = ["scenario must fit into memory"]
+        except ScenarioError as error:
+            problems = list(error.problems)
+        except ValueError as error:
+            problems = [str(error)]
+        else:
+            await self._tell("scene", revision=scene.revision, goes_on=goes_on, **_described(played, self.instrument))
+            self._do("theory", self._theory(played, scene.revision))
+            return
+        await self._tell("refused", revision=scene.revision, problems=problems)
+
+    def _play(self, played: Playable, revision: int) -> bool:
+        if self.instrument is None:
+            self.instrument = Instrument(played, self.source)
+            self.instrument.revision, self.instrument.repeats = revision, self.repeats
+            return False
+        return self.instrument.change(played, revision)
+
+    async def _pull(self, instrument: Instrument, pull: Pull) -> None:
+        """Play the next parts; a page that asks for more than time brings waits."""
+        wanted = pull.parts * pull.samples
+        since = clock.monotonic() - self._began
+        early = (self._played + wanted) / RATE - AHEAD - since * FASTEST
+        if early > 0.0:
+            await asyncio.sleep(early / FASTEST)
+        self._played = max(self._played + wanted, round((since - AHEAD) * FASTEST * RATE))
+        for _ in range(pull.parts):
+            for part in await asyncio.to_thread(lambda: list(instrument.play(pull.samples))):
+                if isinstance(part, Stop):
+                    await self._tell("stroke", why=part.why, goes_on=part.goes_on)
+                else:
+                    await self.socket.send_bytes(packed(part))
+        await self._tell("pulled", parts=pull.parts)
+
+    async def _save(self, instrument: Instrument, save: Save) -> None:
+        last, played, steps = instrument.last_seconds, instrument.played, instrument.live.ratio
+        if save.format == "wav":
+            content = await asyncio.to_thread(last.wav)
+        else:
+            content = await asyncio.to_thread(last.record, played, steps)
+        await self._tell("file", format=save.format, size=len(content))
+        await self.socket.send_bytes(content)
+
+    def _map(self, played: Playable, message: Map | NoMap) -> None:
+        if isinstance(message, NoMap):
+            self._stop("map")
+            return
+        known = {control.key for control in controls.CONTROLS} & set(controls.values(played.tables))
+        for side in ("x", "y"):
+            axis = getattr(message, side)
+            if axis.key not in known or not axis.low < axis.high:
+                raise ValueError(f"{side} must be a number of the page that rises from low to high, got {axis.key!r}")
+        self._do("map", self._rows(played, message))
+
+    async def _rows(self, played: Playable, wanted: Map) -> None:
+        async for row, found in self.maps.rows(played, wanted):
+            await self._tell("map row", x=wanted.x.key, y=wanted.y.key, row=row, regimes=found)
+        await self._tell("map done")
+
+    async def _theory(self, played: Playable, revision: int) -> None:
+        await asyncio.sleep(PAUSE)
+        found = await asyncio.to_thread(theory, played.system)
+        await self._tell("theory", revision=revision, **found)
+
+    def _do(self, name: str, what: Coroutine[Any, Any, None]) -> None:
+        """Do something beside what is played, in place of what was done under this name before."""
+        self._stop(name)
+        self._tasks[name] = asyncio.create_task(what)
+
+    def _stop(self, name: str) -> None:
+        before = self._tasks.pop(name, None)
+        if before is not None:
+            before.cancel()
+
+
+def _described(played: Playable, instrument: Instrument | None) -> dict[str, Any]:
+    """Return what the page shows of what is played."""
+    slider, track = played.system.slider, played.system.track
+    live = instrument.live if instrument is not None else None
+    return {
+        "title": played.scenario.title,
+        "description": played.scenario.description,
+        "values": controls.values(played.tables),
+        "toml": played.toml,
+        "slider": {"length": slider.length, "angle": slider.angle},
+        "track": {"length": track.length},
+        "modes": len(live.position) if live else 0,
+        "step": live.step if live else 0.0,
+        "steps": live.ratio if live else 0,
+    }
