@@ -99,4 +99,7 @@ class BodyPoint:
             text = repr(self.body)
             short = text if "\n" not in text else f"a {type(self.body).__name__}"
             raise ValueError(f"body must be a body of stridula, got {short}")
+        if isinstance(self.position, np.generic):
+            # Numbers of NumPy are not equal or unequal to a pair, but an array of both.
+            object.__setattr__(self, "position", self.position.item())
         check(self.position)
