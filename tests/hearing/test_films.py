@@ -176,7 +176,7 @@ def test_words_do_not_run_into_each_other(on_plate):
     places = [text.get_window_extent() for text in (*figure.texts, figure.axes[0]._left_title)]
     assert len(places) == 2
     assert not places[0].overlaps(places[1])
-    assert all(0 <= place.x0 and place.x1 <= films.WIDTH and place.y1 <= films.HEIGHT for place in places)
+    assert all(place.x0 >= 0 and place.x1 <= films.WIDTH and place.y1 <= films.HEIGHT for place in places)
 
 
 def test_the_verb_films_a_scenario_and_its_record_alike(stridula, tmp_path):
@@ -243,5 +243,5 @@ def test_a_record_that_goes_on_from_another_is_refused(stridula, pair):
 def test_several_contacts_are_not_filmed(pair, tmp_path):
     first = pair.system.contacts[0]
     both = [replace(first, name=name, at=at) for name, at in (("one", 0.2), ("other", 0.4))]
-    with pytest.raises(ValueError, match="to be filmed, got 2 contacts$"):
+    with pytest.raises(ValueError, match=r"to be filmed, got 2 contacts$"):
         plot.animate(st.System(both, pair.system.drives), tmp_path / "a.gif")
