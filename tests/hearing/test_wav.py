@@ -163,7 +163,7 @@ def test_files_that_are_no_sound_or_say_no_scale(tmp_path):
     with pytest.raises(FileNotFoundError, match="cannot read"):
         st.read_wav(path)
     path.write_bytes(b"no sound")
-    with pytest.raises(ValueError, match="path must be a sound file, got"):
+    with pytest.raises(ValueError, match=r"^path must be a sound file, got '.*a\.wav': Format not recognised\.$"):
         st.read_wav(path)
     soundfile.write(path, np.array([0.0, 0.5]), 8000, subtype="PCM_16")
     with pytest.raises(ValueError, match="full_scale must be given for a file that does not say its own"):

@@ -166,7 +166,9 @@ def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
         with soundfile.SoundFile(io.BytesIO(content)) as file:
             comment, rate, samples = file.comment, file.samplerate, file.read(dtype="float64", always_2d=True)
     except (soundfile.SoundFileError, TypeError) as error:
-        raise ValueError(f"path must be a sound file, got {str(path)!r}: {error}") from error
+        # The whole of its words names the bytes in memory, too.
+        reason = getattr(error, "error_string", error)
+        raise ValueError(f"path must be a sound file, got {str(path)!r}: {reason}") from error
     found = SCALE.search(comment)
     if full_scale is None and found is None:
         raise ValueError(f"full_scale must be given for a file that does not say its own, got {str(path)!r} alone")

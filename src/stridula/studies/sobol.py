@@ -13,7 +13,7 @@ import xarray as xr
 
 from ..analysis.regimes import REGIMES
 from ..bodies.modes import Array
-from ..checks import count, within
+from ..checks import brief, count, within
 from .points import Range, range_of
 from .sweeps import sweep
 
@@ -99,7 +99,7 @@ def sensitivity(
 
 def _distributions(uncertain: Any) -> dict[str, Any]:
     if not isinstance(uncertain, Mapping) or not uncertain:
-        raise ValueError(f"uncertain must be distributions by key, got {uncertain!r}")
+        raise ValueError(f"uncertain must be distributions by key, got {brief(uncertain)}")
     found: dict[str, Any] = {}
     for key, given in uncertain.items():
         is_distribution = callable(getattr(given, "ppf", None))
