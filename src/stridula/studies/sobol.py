@@ -16,6 +16,7 @@ from ..bodies.modes import Array
 from ..checks import brief, count, within
 from .points import Range, range_of
 from .sweeps import sweep
+from .swept import failures, usual_failure
 
 BOUNDS = ("low", "high")
 # Of fewer samples no interval can be told.
@@ -66,7 +67,7 @@ def sensitivity(
         over ``bound``; the outputs are the numbers measured and, with the measure ``regime``, for each regime whether
         it was seen. ``used``: how many samples an output was found in throughout; the others are left out of it. NaN
         below 8 of them, or where an output never varies. ``probability`` of each ``regime`` with Wilson's interval, and
-        how many ``runs`` there were and how many ``failed``.
+        how many ``runs`` there were and how many ``failed``; the attribute ``failure`` has what most of these say.
 
     Raises
     ------
@@ -88,12 +89,15 @@ def sensitivity(
     keys = list(named)
     data: dict[str, Any] = _indices(outputs, len(keys), samples, seed, confidence, resamples)
     coordinates: dict[str, Any] = {"output": list(outputs), "parameter": keys, "bound": list(BOUNDS)}
-    data["runs"], data["failed"] = ((), len(points)), ((), int((found["message"].values != "").sum()))
+    messages = failures(found)
+    data["runs"], data["failed"] = ((), len(points)), ((), len(messages))
     if "regime" in found:
         # The two sets are independent draws, the mixed ones are not.
         data |= _probabilities(found["regime"].values[: 2 * samples], confidence)
         coordinates["regime"] = list(REGIMES)
     origin = {name: found.attrs[name] for name in ("title", "scenario", "stridula_version") if name in found.attrs}
+    if messages:
+        origin["failure"] = usual_failure(messages)
     return xr.Dataset(data, coordinates, origin | {"confidence": confidence, "samples": samples, "seed": seed})
 
 
