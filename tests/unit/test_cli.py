@@ -17,6 +17,7 @@ import scipy.io
 
 import stridula as st
 from stridula.cli import running, sweeping
+from stridula.cli.card import card
 from stridula.plot.colours import REGIME_COLOURS
 from stridula.studies.measures import MEASURES, Column, Measure
 
@@ -361,6 +362,16 @@ def test_sweep_writes_a_map_and_says_how_many_points_are_done(stridula, tmp_path
     assert stridula(*SWEEP, *grid, "--measure", "shares", "--set", "transverse=3")[:2] == (code, out)
     assert (tmp_path / "map.nc").read_bytes() == before
     assert [path.name for path in tmp_path.iterdir()] == ["map.nc"]
+
+
+def test_the_card_tells_compiling_from_marching():
+    record = st.load_scenario("squeal", {"duration": "2 ms"}).simulate()
+    record.attrs |= {"wall_time": 0.5, "compile_time": 0.0}
+    assert card(record)["took"] == "0.5 s, 0.00 x real time"
+    record.attrs["compile_time"] = 14.21
+    assert card(record)["took"] == "0.5 s, 0.00 x real time, after 14 s of compiling"
+    del record.attrs["compile_time"]
+    assert card(record)["took"] == "0.5 s, 0.00 x real time"
 
 
 def test_points_of_a_sweep_that_fail_are_counted(stridula):
