@@ -41,7 +41,7 @@ class SoundFile:
     duration : float
         How long it lasts [s].
     peak : float
-        Largest sound pressure of its samples [Pa].
+        Largest sound pressure of its samples [Pa], which is not quite that of the sound at another sample rate.
     full_scale : float
         Sound pressure of a sample of 1 [Pa]; the gain is one over it.
     normalised : bool
@@ -62,7 +62,7 @@ class SoundFile:
         if self.peak == 0.0:
             return f"{form}, silence (full scale {self.full_scale:.4g} Pa)"
         kind = f"normalised by a gain of {1.0 / self.full_scale:.4g} /Pa" if self.normalised else "calibrated"
-        return f"{form}, peak {self.peak:.4g} Pa, full scale {self.full_scale:.4g} Pa, {kind}"
+        return f"{form}, peak as written {self.peak:.4g} Pa, full scale {self.full_scale:.4g} Pa, {kind}"
 
 
 def write_wav(
