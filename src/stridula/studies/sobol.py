@@ -14,6 +14,7 @@ import xarray as xr
 from ..analysis.regimes import REGIMES
 from ..bodies.modes import Array
 from ..checks import brief, count, within
+from ..records.variables import described
 from .points import Range, range_of
 from .sweeps import sweep
 from .swept import failures, usual_failure
@@ -172,11 +173,11 @@ def _indices(
             intervals[:, row] = np.moveaxis(np.percentile(drawn, tails, axis=0), 0, -1)
     along = ("output", "parameter")
     return {
-        "first_order": (along, first, _words("share of the variance that the parameter makes alone")),
+        "first_order": (along, first, described("1", "share of the variance that the parameter makes alone")),
         "first_order_interval": ((*along, "bound"), intervals[0]),
-        "total_order": (along, total, _words("share of the variance that the parameter has a part in")),
+        "total_order": (along, total, described("1", "share of the variance that the parameter has a part in")),
         "total_order_interval": ((*along, "bound"), intervals[1]),
-        "used": ("output", used, _words("samples in which the output was found throughout")),
+        "used": ("output", used, described("1", "samples in which the output was found throughout")),
     }
 
 
@@ -199,7 +200,7 @@ def _probabilities(regimes: Array, confidence: float) -> dict[str, Any]:
         shares.append(seen / good.size if good.size else np.nan)
         bounds.append(_wilson(seen, good.size, confidence))
     return {
-        "probability": ("regime", shares, _words("probability of the regime")),
+        "probability": ("regime", shares, described("1", "probability of the regime")),
         "probability_interval": (("regime", "bound"), bounds),
     }
 
@@ -209,7 +210,3 @@ def _wilson(seen: int, size: int, confidence: float) -> list[float]:
         return [np.nan, np.nan]
     interval = scipy.stats.binomtest(seen, size).proportion_ci(confidence, "wilson")
     return [float(interval.low), float(interval.high)]
-
-
-def _words(meaning: str) -> dict[str, str]:
-    return {"units": "1", "long_name": meaning}
