@@ -8,6 +8,9 @@ from difflib import get_close_matches
 from numbers import Integral, Real
 from typing import Any
 
+# Longest value that a message shows as it is written.
+LONGEST = 80
+
 
 def finite(name: str, value: Any) -> float:
     """Return `value` as a float if it is a finite real number."""
@@ -65,9 +68,20 @@ def instance(name: str, value: Any, kinds: type | tuple[type, ...]) -> None:
     """Raise if `value` is not an instance of one of `kinds`."""
     if not isinstance(value, kinds):
         words = " or ".join(kind.__name__ for kind in (kinds if isinstance(kinds, tuple) else (kinds,)))
-        text = repr(value)
-        short = text if "\n" not in text else f"a {type(value).__name__}"
-        raise ValueError(f"{name} must be a {words}, got {short}")
+        raise ValueError(f"{name} must be {_article(words)} {words}, got {brief(value)}")
+
+
+def brief(value: Any) -> str:
+    """Return a value as it is written, or its kind and its name where that would be long."""
+    text = repr(value)
+    if "\n" not in text and len(text) <= LONGEST:
+        return text
+    kind, name = type(value).__name__, getattr(value, "name", None)
+    return f"{_article(kind)} {kind}" + (f" named {name!r}" if name and isinstance(name, str) else "")
+
+
+def _article(word: str) -> str:
+    return "an" if word[0] in "AEIOaeio" else "a"
 
 
 def suggestion(word: Any, known: Sequence[str]) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, ReducedBody, Track
-from .checks import instance
+from .checks import brief, instance
 from .connections import Connection, Dashpot, Spring, ends
 from .contact import PointContact, RigidTrack
 from .drives import Drive, Force, Gravity, ImposedVelocity, InitialState, InitialVelocity
@@ -119,7 +119,7 @@ class System:
     def _check_body(self, name: str, drive: Drive) -> None:
         body = getattr(drive, "body", None) or getattr(getattr(drive, "point", None), "body", None)
         if body is not None and body not in self.bodies:
-            raise ValueError(f"{name} must act on a body of this system, got a point of {body!r}")
+            raise ValueError(f"{name} must act on a body of this system, got {brief(body)}")
         if isinstance(drive, InitialVelocity) and self.is_held(body) and drive.x:
             raise ValueError(
                 f"{name}.x must be 0 under an imposed velocity, which already moves the slider, got {drive.x!r}"
@@ -162,7 +162,7 @@ class System:
 def _listed(name: str, given: Any, kinds: tuple[type, ...]) -> tuple[Any, ...]:
     words = {"contact": "a PointContact or a list of them"}.get(name, f"a list of {name}")
     if isinstance(given, (str, bytes)) or not isinstance(given, Sequence):
-        raise ValueError(f"{name} must be {words}, got {given!r}")
+        raise ValueError(f"{name} must be {words}, got {brief(given)}")
     for number, entry in enumerate(given):
         instance(f"{name}[{number}]", entry, kinds)
     return tuple(given)

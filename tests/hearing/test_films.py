@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -79,10 +80,12 @@ def test_the_picture_says_time_status_and_scales(motion):
     for frame in (0, 50, 99):
         picture.show(frame)
         word = STATUS_WORDS[int(motion.run.status[frame])]
-        assert beams.get_title(loc="left") == f"t = {1e3 * float(motion.run.time[frame]):.3f} ms, {word}"
+        scales, now = beams.get_title(loc="left").split("\n")
+        assert now == f"t = {1e3 * float(motion.run.time[frame]):.3f} ms, {word}"
+        assert scales == "slowed down 1000 times, vibration drawn 200 times"
         assert picture.point.get_markerfacecolor() == STATUS_COLOURS[word]
         assert all(cursor.get_xdata()[0] == motion.run.time[frame] for cursor in picture.cursors)
-    assert beams.get_title(loc="right") == "slowed down 1000 times, vibration drawn 200 times"
+    assert (beams.get_title(loc="right"), beams.get_xlabel()) == ("", "x [m]")
 
 
 def test_a_gif_has_every_frame(pair, tmp_path):
@@ -142,6 +145,40 @@ def test_a_beam_on_a_rigid_track_that_moves():
     np.testing.assert_allclose(gaps, motion.run.gap, atol=0.05 * float(motion.run.gap.max()))
 
 
+@pytest.fixture(scope="module")
+def on_plate():
+    """Return the motion of a slider on a plate, along a line across it, over 2 ms that hold a stop."""
+    pair = st.load_scenario("squeal-on-plate")
+    contact = pair.system.contacts[0]
+    plate = replace(contact.track, line=st.Line((0.3, 0.2), 0.5))
+    system = st.System([replace(contact, track=plate, at=-0.1)], pair.system.drives)
+    return motion_of(system, 0.018, 0.002, FRAME, pair.scheme)
+
+
+def test_of_a_plate_one_sees_the_cut_along_the_line(on_plate):
+    """Where a contact is closed, the cut bends as far as the tip says."""
+    low, high = on_plate.track[0, [0, -1], 0]
+    assert low < -0.3 < 0.3 < high
+    np.testing.assert_allclose(on_plate.track[:, [0, -1], 1], 0.0, atol=1e-15)
+    for exaggeration in (1.0, 500.0):
+        slider, track = on_plate.drawn(exaggeration)
+        gaps = np.array([tip[0, 1] - on_track(line, tip[0, 0]) for tip, line in zip(slider, track, strict=True)])
+        closed = on_plate.run.status_share.sel(contact_status="separated").values == 0.0
+        moved = np.ptp(track[:, :, 1], axis=0).max()
+        assert closed.any()
+        assert np.abs(gaps[closed]).max() < 0.02 * moved
+    assert Picture(on_plate, 50.0, 1000.0, "").figure.axes[0].get_xlabel() == "x along the cut through the plate [m]"
+
+
+def test_words_do_not_run_into_each_other(on_plate):
+    figure = Picture(on_plate, 12345.0, 123456.0, "Squeal on a plate").figure
+    figure.draw_without_rendering()
+    places = [text.get_window_extent() for text in (*figure.texts, figure.axes[0]._left_title)]
+    assert len(places) == 2
+    assert not places[0].overlaps(places[1])
+    assert all(place.x0 >= 0 and place.x1 <= films.WIDTH and place.y1 <= films.HEIGHT for place in places)
+
+
 def test_the_verb_films_a_scenario_and_its_record_alike(stridula, tmp_path):
     assert stridula("run", "squeal", "--duration", "2 ms", "--out", "run.nc")[0] == 0
     window = ("--from", "1.6 ms", "--duration", "0.4 ms", "--exaggeration", "100")
@@ -171,7 +208,11 @@ def test_the_verb_films_a_scenario_and_its_record_alike(stridula, tmp_path):
         (("squeal", "--from", "-1"), "start must be 0 or above, got -1.0"),
         (("squeal", "--slowdown", "0"), "slowdown must be above 0, got 0.0"),
         (("squeal", "--exaggeration", "-2"), "exaggeration must be above 0, got -2.0"),
-        (("belt",), "system must be one contact between a finite-element beam and a modal beam or a rigid track"),
+        (
+            ("belt",),
+            "system must be a FiniteElementBeam on one ModalBeam, ModalPlate or RigidTrack to be filmed, "
+            "got a PointMass on a RigidTrack\n",
+        ),
         (("stable-sliding", "--from", "3"), "start must be before the run ends (off the track at 1.061 s), got 3.0"),
     ],
 )
@@ -197,3 +238,10 @@ def test_a_record_that_goes_on_from_another_is_refused(stridula, pair):
     code, _, err = stridula("animate", "on.nc", "--out", "a.gif")
     assert code == 2
     assert err == "stridula: name must be a record from its start, got 'on.nc', which goes on from 0.001 s\n"
+
+
+def test_several_contacts_are_not_filmed(pair, tmp_path):
+    first = pair.system.contacts[0]
+    both = [replace(first, name=name, at=at) for name, at in (("one", 0.2), ("other", 0.4))]
+    with pytest.raises(ValueError, match=r"to be filmed, got 2 contacts$"):
+        plot.animate(st.System(both, pair.system.drives), tmp_path / "a.gif")

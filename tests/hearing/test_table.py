@@ -21,7 +21,7 @@ def test_every_measure_of_every_listener(capsys):
     head, _, first, second = (line.split("  ") for line in capsys.readouterr().out.strip().splitlines())
     assert [word.strip() for word in head if word.strip()] == [
         "listener",
-        *(f"{word}" for word, _, _ in (*hearing.LEVELS, *hearing.SENSATIONS)),
+        *(column.head for column in (*hearing.LEVELS, *hearing.SENSATIONS)),
     ]
     cells = [word.strip() for word in first if word.strip()]
     assert cells[0] == "ear at (0.25, 0.25, 0.25) m"
@@ -30,11 +30,59 @@ def test_every_measure_of_every_listener(capsys):
     assert [word.strip() for word in second if word.strip()][1:] == ["-", "-", "-", "0.00", "-", "0.00"]
 
 
-def test_what_cannot_be_said_is_explained(capsys, monkeypatch):
-    print_levels(tone(duration=0.1, rate=20e3))
-    out = capsys.readouterr().out
-    assert "no LAeq: pressure must be sampled at 40000 Hz or more for A-weighting, got 20000 Hz" in out
-    assert "Leq [dB]" in out
+FEELS = "loudness N5 (at least {}), sharpness (at least {}), roughness (at least {})"
+
+
+@pytest.mark.parametrize(
+    ("lasts", "rate", "last_line"),
+    [
+        (
+            0.1,
+            20e3,
+            "0.1 s of sound at 20 kHz are too little for LAeq and LAFmax (at least 40 kHz), "
+            + FEELS.format("0.25 s and 28.3 kHz", "0.5 s and 28.3 kHz", "0.2 s and 28.3 kHz"),
+        ),
+        (0.1, 48e3, "0.1 s of sound at 48 kHz are too little for " + FEELS.format("0.25 s", "0.5 s", "0.2 s")),
+        (
+            0.5,
+            20e3,
+            "0.5 s of sound at 20 kHz are too little for LAeq and LAFmax (at least 40 kHz), "
+            "loudness N5, sharpness and roughness (at least 28.3 kHz)",
+        ),
+        (
+            0.01,
+            96e3,
+            "0.01 s of sound at 96 kHz are too little for Leq, LAeq and LAFmax (at least 0.05 s), "
+            + FEELS.format("0.25 s", "0.5 s", "0.2 s"),
+        ),
+    ],
+)
+def test_what_a_sound_is_too_little_for_is_one_line(capsys, lasts, rate, last_line):
+    if not sensation.is_available():
+        pytest.skip("takes mosqito")
+    print_levels(tone(duration=lasts, rate=rate))
+    said = [line for line in capsys.readouterr().out.splitlines() if line.strip()]
+    assert said[-1] == last_line
+    # Before it the head, a rule and the listener.
+    assert len(said) == 4
+    for column in (*hearing.LEVELS, *hearing.SENSATIONS):
+        assert (column.head in said[0]) is (column.name not in last_line)
+
+
+@pytest.mark.parametrize("column", [*hearing.LEVELS, *hearing.SENSATIONS], ids=lambda column: column.name)
+def test_what_the_table_says_a_measure_takes_is_what_it_takes(column):
+    if column in hearing.SENSATIONS and not sensation.is_available():
+        pytest.skip("takes mosqito")
+    rate = column.lowest_rate or 8e3
+    assert np.isfinite(column.measure(tone(duration=column.shortest + 1.0 / rate, rate=rate)).values).all()
+    with pytest.raises(ValueError, match="must last at least"):
+        column.measure(tone(duration=0.95 * column.shortest, rate=rate))
+    if column.lowest_rate:
+        with pytest.raises(ValueError, match="must be sampled at"):
+            column.measure(tone(duration=1.1 * column.shortest, rate=0.95 * rate))
+
+
+def test_what_takes_a_package_says_so(capsys, monkeypatch):
     monkeypatch.setattr(hearing, "is_available", lambda: False)
     print_levels(tone())
     assert "they take mosqito (pip install stridula[psycho])" in capsys.readouterr().out

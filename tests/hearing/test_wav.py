@@ -119,6 +119,32 @@ def test_nothing_is_clipped(tmp_path):
     assert list(st.read_wav(path).values[:, 0]) == [0.0, 2.0, -3.0]
 
 
+@pytest.mark.parametrize(("period", "grows"), [(50, True), (1, False)])
+@pytest.mark.parametrize("subtype", ["PCM_24", "FLOAT"])
+def test_the_peak_is_that_of_the_file_at_its_own_rate(tmp_path, subtype, period, grows):
+    """A low-pass lets a square wave overshoot, and a click sink."""
+    path = tmp_path / "a.wav"
+    values = np.sign(np.sin(2.0 * np.pi * np.arange(4000.0) / period + 0.1)) if grows else np.eye(1, 4000, 2000)[0]
+    given = heard(values, 100e3)
+    normalised = st.write_wav(path, given, subtype=subtype)
+    peak = float(np.abs(st.read_wav(path)).max())
+    assert normalised.peak == pytest.approx(peak, rel=1e-6)
+    assert f"peak as written {peak:.4g} Pa" in str(normalised)
+    assert normalised.full_scale == pytest.approx(peak * 10.0**0.05, rel=1e-6)
+    assert (peak > 1.05) is grows
+    assert (peak < 0.6) is not grows
+    if subtype == "PCM_24":
+        # Between the peak of the sound and that of the file.
+        between = 0.5 * (1.0 + peak)
+        if grows:
+            with pytest.raises(ValueError, match=f"full_scale must be above the peak of {peak:.4}.*clipped"):
+                st.write_wav(path, given, full_scale=between)
+        else:
+            st.write_wav(path, given, full_scale=between)
+    calibrated = st.write_wav(path, given, full_scale=peak * 1.00001, subtype=subtype)
+    assert float(np.abs(st.read_wav(path)).max()) == pytest.approx(calibrated.peak, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -163,7 +189,7 @@ def test_files_that_are_no_sound_or_say_no_scale(tmp_path):
     with pytest.raises(FileNotFoundError, match="cannot read"):
         st.read_wav(path)
     path.write_bytes(b"no sound")
-    with pytest.raises(ValueError, match="path must be a sound file, got"):
+    with pytest.raises(ValueError, match=r"^path must be a sound file, got '.*a\.wav': Format not recognised\.$"):
         st.read_wav(path)
     soundfile.write(path, np.array([0.0, 0.5]), 8000, subtype="PCM_16")
     with pytest.raises(ValueError, match="full_scale must be given for a file that does not say its own"):

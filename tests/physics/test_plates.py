@@ -222,7 +222,11 @@ def test_probes_on_plates_are_named_and_the_centre_is_heard():
     assert "acceleration" not in run
     heard = st.simulate(on_a_plate(), 1e-3, step=STEP)
     assert list(heard.acceleration_probe.values) == ["track centre y"]
-    probes = [st.Velocity(sheet.at((0.1, 0.05))), st.Velocity(sheet.at(0.25)), st.Velocity(sheet.at(0.15), "x")]
+    probes = [
+        st.Velocity(sheet.at((0.1, 0.05))),
+        st.Velocity(sheet.at(np.float64(0.25))),
+        st.Velocity(sheet.at(0.15), "x"),
+    ]
     several = st.simulate(on_a_plate(), 1e-3, step=STEP, probes=probes)
     assert list(several.velocity_probe.values) == ["track (0.1, 0.05) m y", "track 0.25 m y", "track 0.15 m x"]
     assert not several.velocity[:, 2].any()

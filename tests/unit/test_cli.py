@@ -17,6 +17,7 @@ import scipy.io
 
 import stridula as st
 from stridula.cli import running, sweeping
+from stridula.cli.card import card
 from stridula.plot.colours import REGIME_COLOURS
 from stridula.studies.measures import MEASURES, Column, Measure
 
@@ -363,11 +364,31 @@ def test_sweep_writes_a_map_and_says_how_many_points_are_done(stridula, tmp_path
     assert [path.name for path in tmp_path.iterdir()] == ["map.nc"]
 
 
+def test_the_card_tells_compiling_from_marching():
+    record = st.load_scenario("squeal", {"duration": "2 ms"}).simulate()
+    record.attrs |= {"wall_time": 0.5, "compile_time": 0.0}
+    assert card(record)["took"] == "0.5 s, 0.00 x real time"
+    record.attrs["compile_time"] = 14.21
+    assert card(record)["took"] == "0.5 s, 0.00 x real time, after 14 s of compiling"
+    del record.attrs["compile_time"]
+    assert card(record)["took"] == "0.5 s, 0.00 x real time"
+
+
 def test_points_of_a_sweep_that_fail_are_counted(stridula):
     code, out, err = stridula(*SWEEP, "--vary", "angle=80:95 deg:4")
     assert (code, err) == (0, "")
-    assert out == "4 points: 2 done, 2 failed (messages in 'message' of map.nc)\n"
+    said, counted = out.splitlines()
+    assert said == "2 of 2 failures: slider.angle must be strictly between -pi/2 and pi/2 rad (90 deg)"
+    assert counted == "4 points: 2 done, 2 failed (messages in 'message' of map.nc)"
     assert st.load("map.nc")["angle"].values.tolist() == [80.0, 85.0, 90.0, 95.0]
+
+
+def test_what_all_points_of_a_sweep_fail_with_is_said_once(stridula):
+    code, out, err = stridula(*SWEEP, "--vary", "friction=0.2:2.0:3", "--set", "sample_rate=10 Hz")
+    assert (code, err) == (0, "")
+    assert out.startswith("3 of 3 failures: duration must be at least half a sample interval of 0.1 s, got 0.0")
+    assert out.endswith("\n3 points: 0 done, 3 failed (messages in 'message' of map.nc)\n")
+    assert out.count("\n") == 2
 
 
 def test_sweeps_of_samples_lists_and_tables(stridula, tmp_path):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import tomllib
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -27,7 +28,7 @@ import stridula as st
 from stridula.assembly import assemble
 from stridula.integration import together as together_module
 from stridula.integration.decimation import Decimator
-from stridula.integration.marches import SimpleMarch
+from stridula.integration.marches import GeneralMarch, SimpleMarch
 
 BOTH = pytest.mark.parametrize("scheme", SCHEMES, ids=SCHEME_NAMES)
 
@@ -469,3 +470,30 @@ def test_the_scenario_of_an_extension_runs_the_whole():
 def test_timing_that_cannot_be(words, message):
     with pytest.raises(ValueError, match=message):
         st.simulate(SYSTEM, **words)
+
+
+@pytest.mark.parametrize("name", ["squeal", "squeal-on-plate"])
+def test_a_march_that_had_to_be_compiled_first_is_the_same(name, monkeypatch):
+    """It is compiled by a step of a copy, which leaves no trace in either march."""
+    case = st.load_scenario(name, {"duration": "20 ms"})
+    # The first of a process loads the kernel.
+    _, warm = case.simulate(), case.simulate()
+
+    class Cold:
+        """A kernel that is never compiled yet."""
+
+        signatures = ()
+        stats = SimpleNamespace(cache_misses={"its types": 1})
+
+        def __init__(self, kernel):
+            self.kernel = kernel
+
+        def __call__(self, *arguments):
+            return self.kernel(*arguments)
+
+    monkeypatch.setattr(together_module, "Dispatcher", Cold)
+    for kind in (SimpleMarch, GeneralMarch):
+        monkeypatch.setattr(kind, "kernel", property(lambda march, warm=kind.kernel: Cold(warm.fget(march))))
+    first = case.simulate()
+    assert first.attrs["compile_time"] > 0.0 == warm.attrs["compile_time"]
+    assert_same([first], warm)

@@ -112,3 +112,58 @@ def test_assembly_keeps_slider_bending_axial_in_order():
     np.testing.assert_array_equal(held.contacts[0].fixed[::-1, : slider_modes - 1], ROD.trace(0.0, held_x=True))
     assert np.sum(held.angular_frequency == 0) == 1
     assert np.sum(arrays.angular_frequency == 0) == 2
+
+
+PLATE = st.ModalPlate(st.Material(2.1e11, 7800.0), 3e-3, 0.6, 0.4, name="sheet")
+ROUND = st.ModalBeam(st.Material(2.1e11, 7800.0), st.Circle(0.01), 0.8)
+
+
+@pytest.mark.parametrize(
+    ("refused", "message"),
+    [
+        (
+            lambda: st.PointContact(ROD, BAR, 0.1),
+            "tip must be a BodyPoint, got a FiniteElementBeam",
+        ),
+        (
+            lambda: st.PointContact(BAR.centre, BAR, 0.1),
+            "track must be another body than the tip's (equal ones need names), got a ModalBeam for both",
+        ),
+        (
+            lambda: st.Spring(PLATE.centre, PLATE.centre, stiffness=1.0),
+            "second must be another point than first (equal bodies need names), got a BodyPoint for both",
+        ),
+        (
+            lambda: st.Force(PLATE, y=1.0),
+            "point must be a BodyPoint, got a ModalPlate named 'sheet'",
+        ),
+        (
+            lambda: st.System(SYSTEM.contact, [st.Force(OTHER.root, y=1.0)]),
+            "drives[0] must act on a body of this system, got a FiniteElementBeam",
+        ),
+        (
+            lambda: st.simulate(SYSTEM, 1e-3, probes=[st.Velocity(PLATE.centre)]),
+            "probe must be on a body of this system, got one on a ModalPlate named 'sheet'",
+        ),
+        (
+            lambda: st.simulate(SYSTEM, 1e-3, probes=[st.Reaction(OTHER, "x")]),
+            "probe must be on the slider of this system, got one on a FiniteElementBeam",
+        ),
+        (
+            lambda: st.simulate(SYSTEM, 1e-3, probes=SYSTEM.contact),
+            "probes must be a list of probes, got a PointContact",
+        ),
+        (lambda: st.simulate_many(SYSTEM, 1e-3), "systems must be a list of systems, got a System"),
+        (lambda: st.BodyPoint(SYSTEM, 0.0), "body must be a body of stridula, got a System"),
+        (
+            lambda: st.radiation_efficiency(ROUND, [1000.0]),
+            "track must have a Rectangle as section to have a flat surface in a baffle, got Circle(diameter=0.01)",
+        ),
+        (lambda: st.ModalBeam([BAR] * 20, BAR.section, 0.8), "material must be a Material, got a list"),
+    ],
+)
+def test_messages_name_the_kind_of_what_was_given(refused, message):
+    """The fields of a body would fill a screen."""
+    with pytest.raises(ValueError) as caught:
+        refused()
+    assert str(caught.value) == message

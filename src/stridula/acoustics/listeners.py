@@ -9,7 +9,7 @@ import numpy as np
 
 from ..bodies import ModalBeam, ModalPlate
 from ..bodies.modes import Array
-from ..checks import finite, positive
+from ..checks import brief, finite, positive
 
 FARTHEST = 1000.0
 
@@ -48,7 +48,7 @@ def listeners_of(listener: Any) -> Array:
     if isinstance(listener, np.ndarray):
         listener = listener.tolist()
     if not isinstance(listener, Sequence) or isinstance(listener, (str, bytes)) or not listener:
-        raise ValueError(f"listener must be (x, y, z) or a list of such, got {listener!r}")
+        raise ValueError(f"listener must be (x, y, z) or a list of such, got {brief(listener)}")
     several = listener if isinstance(listener[0], (Sequence, np.ndarray)) else [listener]
     found = []
     for number, place in enumerate(several):

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..bodies import ModalBeam, ModalPlate, Rectangle
 from ..bodies.modes import Array
+from ..checks import brief
 
 
 @dataclass(frozen=True)
@@ -83,15 +84,15 @@ def panel_of(track: ModalBeam | ModalPlate) -> Panel:
         return _bent(track, track.section.width)
     if isinstance(track, ModalBeam):
         raise ValueError(
-            f"track must have a Rectangle as section to have a flat surface in a baffle, got {track.section!r}"
+            f"track must have a Rectangle as section to have a flat surface in a baffle, got {brief(track.section)}"
         )
-    raise ValueError(f"track must be a ModalBeam or a ModalPlate, got {_short(track)}")
+    raise ValueError(f"track must be a ModalBeam or a ModalPlate, got {brief(track)}")
 
 
 def line_of(track: ModalBeam) -> Panel:
     """Return the bending modes of a beam as a panel without width."""
     if not isinstance(track, ModalBeam):
-        raise ValueError(f"track must be a ModalBeam to radiate without a baffle, got {_short(track)}")
+        raise ValueError(f"track must be a ModalBeam to radiate without a baffle, got {brief(track)}")
     return _bent(track, 0.0)
 
 
@@ -132,8 +133,3 @@ def _plate(plate: ModalPlate) -> Panel:
         ends=plate.ends,
         place=plate.track_line.point,
     )
-
-
-def _short(track: object) -> str:
-    text = repr(track)
-    return text if "\n" not in text else f"a {type(track).__name__}"

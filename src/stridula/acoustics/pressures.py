@@ -108,14 +108,19 @@ def over_time(pressure: xr.DataArray, time: Array, values: Array, name: str, uni
     return bare.copy(data=shaped).rename(name).assign_attrs(units=units, long_name=meaning)
 
 
+def is_enough(value: float, least: float) -> bool:
+    """Return whether a duration or a rate is at least another one, but for rounding."""
+    return value >= least * (1.0 - 1e-9)
+
+
 def check_length(pressure: xr.DataArray, shortest: float, what: str) -> None:
     """Raise ValueError if a pressure lasts less than `shortest` seconds, which `what` takes."""
     lasts = pressure.sizes["time"] * _interval(pressure)
-    if lasts < shortest * (1.0 - 1e-9):
+    if not is_enough(lasts, shortest):
         raise ValueError(f"pressure must last at least {shortest:.3g} s for {what}, got {lasts:.3g} s")
 
 
 def check_rate(rate: float, lowest: float, what: str) -> None:
     """Raise ValueError if a sample rate is below `lowest` [Hz], which `what` takes."""
-    if rate < lowest * (1.0 - 1e-9):
+    if not is_enough(rate, lowest):
         raise ValueError(f"pressure must be sampled at {lowest:.6g} Hz or more for {what}, got {rate:.6g} Hz")

@@ -41,7 +41,7 @@ class SoundFile:
     duration : float
         How long it lasts [s].
     peak : float
-        Largest sound pressure of its samples [Pa].
+        Largest sound pressure of its samples [Pa], which is not quite that of the sound at another sample rate.
     full_scale : float
         Sound pressure of a sample of 1 [Pa]; the gain is one over it.
     normalised : bool
@@ -62,7 +62,7 @@ class SoundFile:
         if self.peak == 0.0:
             return f"{form}, silence (full scale {self.full_scale:.4g} Pa)"
         kind = f"normalised by a gain of {1.0 / self.full_scale:.4g} /Pa" if self.normalised else "calibrated"
-        return f"{form}, peak {self.peak:.4g} Pa, full scale {self.full_scale:.4g} Pa, {kind}"
+        return f"{form}, peak as written {self.peak:.4g} Pa, full scale {self.full_scale:.4g} Pa, {kind}"
 
 
 def write_wav(
@@ -166,7 +166,9 @@ def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
         with soundfile.SoundFile(io.BytesIO(content)) as file:
             comment, rate, samples = file.comment, file.samplerate, file.read(dtype="float64", always_2d=True)
     except (soundfile.SoundFileError, TypeError) as error:
-        raise ValueError(f"path must be a sound file, got {str(path)!r}: {error}") from error
+        # The whole of its words names the bytes in memory, too.
+        reason = getattr(error, "error_string", error)
+        raise ValueError(f"path must be a sound file, got {str(path)!r}: {reason}") from error
     found = SCALE.search(comment)
     if full_scale is None and found is None:
         raise ValueError(f"full_scale must be given for a file that does not say its own, got {str(path)!r} alone")

@@ -10,7 +10,7 @@ import xarray as xr
 
 from ..bodies.modes import Array
 from ..checks import choice, count, instance, non_negative, positive
-from ..records.variables import STATUS_WORDS
+from ..records.variables import STATUS_WORDS, described
 from ..system import System
 from .equilibrium import JAMMED, Equilibrium, depends_on_speed, find_equilibrium, slip_speed
 from .structure import SLIDING, Structure
@@ -201,15 +201,15 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents, v
         body[first:end] = name
     ratio = np.where(size > 0.0, -values.real / np.where(size > 0.0, size, 1.0), 0.0)
     data: dict[str, Any] = {
-        "frequency": ("mode", values.imag / (2.0 * np.pi), _words("Hz", "frequency of vibration")),
-        "growth_rate": ("mode", values.real, _words("1/s", "rate at which the amplitude grows")),
-        "damping_ratio": ("mode", ratio, _words("1", "damping ratio; below zero where the mode grows")),
-        "unstable": ("mode", values.real > _round_off(structure), _words("1", "whether the mode grows")),
-        "energy_share": (("mode", "body"), share, _words("1", "share of the body in the kinetic energy")),
+        "frequency": ("mode", values.imag / (2.0 * np.pi), described("Hz", "frequency of vibration")),
+        "growth_rate": ("mode", values.real, described("1/s", "rate at which the amplitude grows")),
+        "damping_ratio": ("mode", ratio, described("1", "damping ratio; below zero where the mode grows")),
+        "unstable": ("mode", values.real > _round_off(structure), described("1", "whether the mode grows")),
+        "energy_share": (("mode", "body"), share, described("1", "share of the body in the kinetic energy")),
         "mode_shape": (
             ("mode", "coordinate", "part"),
             np.stack([shapes.real, shapes.imag], axis=-1).transpose(1, 0, 2),
-            _words("1", "modal displacements, of norm 1"),
+            described("1", "modal displacements, of norm 1"),
         ),
     }
     coordinates = {
@@ -222,7 +222,7 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents, v
     if several:
         coordinates["contact"] = list(system.contact_names)
     for name, units, meaning, numbers in _contacts(structure, equilibrium, velocity):
-        data[name] = ("contact" if several else (), numbers if several else numbers[0], _words(units, meaning))
+        data[name] = ("contact" if several else (), numbers if several else numbers[0], described(units, meaning))
     return xr.Dataset(data, coordinates, {"equilibrium": equilibrium.kind, "round_off": _round_off(structure)})
 
 
@@ -252,7 +252,3 @@ def _normalised(shapes: Array) -> Array:
     turned = shapes * (np.abs(largest) / largest)
     size = np.linalg.norm(turned, axis=0)
     return np.asarray(turned / np.where(size > 0.0, size, 1.0))
-
-
-def _words(units: str, meaning: str) -> dict[str, str]:
-    return {"units": units, "long_name": meaning}

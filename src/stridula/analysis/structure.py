@@ -11,6 +11,7 @@ import scipy.linalg
 from ..assembly import ContactRows, assemble
 from ..bodies import BodyPoint, Track
 from ..bodies.modes import Array
+from ..checks import brief
 from ..contact import PointContact, RigidTrack
 from ..histories import History
 from ..records.variables import STATUS_WORDS
@@ -165,7 +166,7 @@ def settled_time(system: System) -> float:
             histories.append((f"the track of {name}", contact.track.normal_history))
     for name, history in histories:
         if history.settled is None:
-            raise ValueError(f"time must be given for {name}, which never stops varying, got {history!r}")
+            raise ValueError(f"time must be given for {name}, which never stops varying, got {brief(history)}")
     return max((history.settled or 0.0 for _, history in histories), default=0.0)
 
 

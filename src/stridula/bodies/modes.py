@@ -8,6 +8,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import brief
+
 Array = NDArray[Any]
 
 
@@ -96,7 +98,8 @@ class BodyPoint:
     def __post_init__(self) -> None:
         check = getattr(self.body, "check_position", None)
         if check is None or isinstance(self.body, type):
-            text = repr(self.body)
-            short = text if "\n" not in text else f"a {type(self.body).__name__}"
-            raise ValueError(f"body must be a body of stridula, got {short}")
+            raise ValueError(f"body must be a body of stridula, got {brief(self.body)}")
+        if isinstance(self.position, np.generic):
+            # Numbers of NumPy are not equal or unequal to a pair, but an array of both.
+            object.__setattr__(self, "position", self.position.item())
         check(self.position)

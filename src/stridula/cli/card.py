@@ -44,7 +44,9 @@ def card(record: xr.Dataset) -> dict[str, str]:
     if samples:
         lines |= _contact(record) | _energy(record)
     wall_time = record.attrs["wall_time"]
-    lines["took"] = f"{wall_time:.3g} s, {samples * interval / max(wall_time, 1e-9):.2f} x real time"
+    compile_time = record.attrs.get("compile_time", 0.0)
+    compiled = f", after {compile_time:.2g} s of compiling" if compile_time else ""
+    lines["took"] = f"{wall_time:.3g} s, {samples * interval / max(wall_time, 1e-9):.2f} x real time{compiled}"
     lines["step"] = f"{record.attrs['step']:.4g} s, {record.attrs['scheme']}, {record.attrs['modes']} modes"
     return lines
 

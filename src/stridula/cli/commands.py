@@ -206,7 +206,7 @@ def animate(
         float | None, typer.Option(metavar="X", help="How many times larger than life the vibration is drawn.")
     ] = None,
 ) -> None:
-    """Film two beams and their contact in slow motion."""
+    """Film a slider, its track and their contact in slow motion."""
     from .filming import film_scenario
 
     print(film_scenario(name, out, from_, duration, slowdown, exaggeration))

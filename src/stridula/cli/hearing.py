@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -10,22 +12,56 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
+from ..acoustics import levels, sensation
 from ..acoustics.levels import equivalent_level, sound_level
-from ..acoustics.pressures import positions
+from ..acoustics.pressures import channels, is_enough, positions
 from ..acoustics.sensation import is_available, loudness_over_time, roughness, sharpness
 from .consoles import wide_console
 
-Measure = Callable[[xr.DataArray], xr.DataArray]
-# Heads, digits after the point, and what stands below; those of the second group take MoSQITo.
-LEVELS: tuple[tuple[str, int, Measure], ...] = (
-    ("Leq [dB]", 1, equivalent_level),
-    ("LAeq [dB]", 1, lambda pressure: equivalent_level(pressure, "A")),
-    ("LAFmax [dB]", 1, lambda pressure: sound_level(pressure).max("time")),
+
+class Column(NamedTuple):
+    """A column of the table: its head, digits after the point, what stands below, and what that takes [s, Hz]."""
+
+    head: str
+    digits: int
+    measure: Callable[[xr.DataArray], xr.DataArray]
+    shortest: float
+    lowest_rate: float
+
+    @property
+    def name(self) -> str:
+        """What is measured, without its unit."""
+        return self.head.partition(" [")[0]
+
+    def lacks(self, lasts: float, rate: float) -> str:
+        """Return what a sound of a duration [s] at a rate [Hz] lacks for it, in words; nothing where it is enough."""
+        words = [] if is_enough(lasts, self.shortest) else [f"{self.shortest:g} s"]
+        words += [] if is_enough(rate, self.lowest_rate) else [f"{self.lowest_rate / 1e3:g} kHz"]
+        return " and ".join(words)
+
+
+LEVELS = (
+    Column("Leq [dB]", 1, equivalent_level, levels.SHORTEST, 0.0),
+    Column("LAeq [dB]", 1, lambda pressure: equivalent_level(pressure, "A"), levels.SHORTEST, levels.LOWEST_RATE),
+    Column("LAFmax [dB]", 1, lambda pressure: sound_level(pressure).max("time"), levels.SHORTEST, levels.LOWEST_RATE),
 )
-SENSATIONS: tuple[tuple[str, int, Measure], ...] = (
-    ("loudness N5 [sone]", 2, lambda pressure: loudness_over_time(pressure).quantile(0.95, "time")),
-    ("sharpness [acum]", 2, sharpness),
-    ("roughness [asper]", 2, lambda pressure: roughness(pressure).mean("time")),
+# These take MoSQITo.
+SENSATIONS = (
+    Column(
+        "loudness N5 [sone]",
+        2,
+        lambda pressure: loudness_over_time(pressure).quantile(0.95, "time"),
+        sensation.SHORTEST_VARYING,
+        sensation.LOWEST_RATE,
+    ),
+    Column("sharpness [acum]", 2, sharpness, sensation.SHORTEST_STEADY, sensation.LOWEST_RATE),
+    Column(
+        "roughness [asper]",
+        2,
+        lambda pressure: roughness(pressure).mean("time"),
+        sensation.FRAME,
+        sensation.LOWEST_RATE,
+    ),
 )
 
 
@@ -42,23 +78,34 @@ def print_levels(pressure: xr.DataArray) -> None:
     """
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("listener")
-    columns, reasons = [_names(pressure)], []
-    for head, digits, measure in (*LEVELS, *(SENSATIONS if is_available() else ())):
-        try:
-            numbers = np.atleast_1d(measure(pressure).values)
-        except ValueError as error:
-            reasons.append(f"no {head.partition(' [')[0]}: {error}")
+    values, rate = channels(pressure)
+    lasts = len(values) / rate
+    columns, left_out = [_names(pressure)], []
+    for column in (*LEVELS, *(SENSATIONS if is_available() else ())):
+        if column.lacks(lasts, rate):
+            left_out.append(column)
             continue
-        table.add_column(escape(head), justify="right")
-        columns.append([f"{number:.{digits}f}" if np.isfinite(number) else "-" for number in numbers])
-    if not is_available():
-        reasons.append("no loudness, sharpness and roughness: they take mosqito (pip install stridula[psycho])")
+        numbers = np.atleast_1d(column.measure(pressure).values)
+        table.add_column(escape(column.head), justify="right")
+        columns.append([f"{number:.{column.digits}f}" if np.isfinite(number) else "-" for number in numbers])
     for row in zip(*columns, strict=True):
         table.add_row(*row)
     console = wide_console()
     console.print(table)
-    for reason in reasons:
-        console.print(reason, markup=False, highlight=False)
+    if left_out:
+        console.print(_too_little(left_out, lasts, rate), markup=False, highlight=False, soft_wrap=True)
+    if not is_available():
+        words = "no loudness, sharpness and roughness: they take mosqito (pip install stridula[psycho])"
+        console.print(words, markup=False, highlight=False, soft_wrap=True)
+
+
+def _too_little(left_out: Sequence[Column], lasts: float, rate: float) -> str:
+    """Return in one line what a sound is too short or too coarse for, and what that takes."""
+    parts = []
+    for lacks, alike in groupby(left_out, lambda column: column.lacks(lasts, rate)):
+        *names, last = (column.name for column in alike)
+        parts.append(f"{', '.join(names) + ' and ' if names else ''}{last} (at least {lacks})")
+    return f"{lasts:.3g} s of sound at {rate / 1e3:.4g} kHz are too little for {', '.join(parts)}"
 
 
 def _names(pressure: xr.DataArray) -> list[str]:

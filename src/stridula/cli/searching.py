@@ -121,7 +121,7 @@ def _print_calibration(found: xr.Dataset, ranges: dict[str, Range], targets: dic
 def sensitivity_of_scenario(
     name: str, ranges: dict[str, Range], measures: list[str], overrides: dict[str, Any], out: str | None, **options: Any
 ) -> str:
-    """Print Sobol indices and probabilities of the regimes, write them, and return the closing line."""
+    """Print Sobol indices and probabilities of the regimes, write them, and return the closing lines."""
     if out is not None:
         check_writable(out)
     found = sensitivity(name, ranges, measures or ["regime"], overrides=overrides, **options)
@@ -138,7 +138,8 @@ def sensitivity_of_scenario(
     if out is not None:
         save_file(found, out)
     runs, failed = int(found["runs"]), int(found["failed"])
-    return f"{runs} runs: {runs - failed} done, {failed} failed" + (f"; written to {out}" if out else "")
+    counts = f"{runs} runs: {runs - failed} done, {failed} failed" + (f"; written to {out}" if out else "")
+    return f"{found.attrs['failure']}\n{counts}" if failed else counts
 
 
 def _probabilities(found: xr.Dataset) -> Table:

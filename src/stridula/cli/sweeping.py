@@ -16,7 +16,7 @@ from ..studies.machines import client_of
 from ..studies.measures import asked_for
 from ..studies.points import Grid
 from ..studies.sweeps import SweepProgress, sweep
-from ..studies.swept import failed_points
+from ..studies.swept import failures, usual_failure
 from .exits import FAILED, INTERRUPTED, Stopped
 from .points import Points
 from .regimes import print_agreement
@@ -34,7 +34,7 @@ def sweep_scenario(
     workers: int | None,
     scheduler: str | None,
 ) -> str:
-    """Sweep a scenario, write what came of it, and return the closing line.
+    """Sweep a scenario, write what came of it, and return the closing lines.
 
     Raises
     ------
@@ -98,10 +98,12 @@ def _draw(found: xr.Dataset, path: str) -> None:
 
 
 def _closing(found: xr.Dataset, out: str) -> str:
-    points, failed = found["message"].size, failed_points(found)
+    messages = failures(found)
+    points, failed = found["message"].size, len(messages)
     if not failed:
         return f"{points} points: {points} done; written to {out}"
-    return f"{points} points: {points - failed} done, {failed} failed (messages in 'message' of {out})"
+    counts = f"{points} points: {points - failed} done, {failed} failed (messages in 'message' of {out})"
+    return f"{usual_failure(messages)}\n{counts}"
 
 
 @contextmanager

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..bodies import BodyPoint, Track
 from ..bodies.modes import Array
-from ..checks import finite, instance, non_negative, within
+from ..checks import brief, finite, instance, non_negative, within
 from .coulomb import Coulomb, StaticKinetic
 from .lugre import LuGre
 from .rate_and_state import RateAndState
@@ -66,9 +66,8 @@ class PointContact:
                 raise ValueError(f"inclination must be 0 on a {type(self.track).__name__}, got {self.inclination!r}")
         finite("at", self.at)
         if self.track_body == self.tip.body:
-            raise ValueError(
-                f"track must be another body than the tip's (equal ones need names), got {self.tip.body!r} for both"
-            )
+            body = brief(self.tip.body)
+            raise ValueError(f"track must be another body than the tip's (equal ones need names), got {body} for both")
         instance("friction", self.friction, LAWS)
         non_negative("gap", self.gap)
         if abs(finite("inclination", self.inclination)) > 2.0 * math.pi:

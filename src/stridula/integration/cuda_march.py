@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import copy
 from importlib.util import find_spec
+from typing import Any
 
 from numba.core import config
 
@@ -67,6 +68,11 @@ class CudaMarch(SimpleMarch):
 
     def _layout(self) -> tuple[int, int, int]:
         return self.given, 1, self.given
+
+    @property
+    def kernel(self) -> Any:
+        """Nothing that is compiled for the processor."""
+        return None
 
     @property
     def states(self) -> list[State]:

@@ -16,7 +16,7 @@ import xarray as xr
 from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
 from ..bodies import ModalPlate
-from ..checks import choice, count
+from ..checks import brief, choice, count
 from ..records import Probe
 from ..system import System
 from .contact_solve import GaussSeidel
@@ -114,13 +114,13 @@ def simulate_many(
     simulate : One system; says what a record holds.
     """
     if not isinstance(systems, Sequence) or isinstance(systems, str):
-        raise ValueError(f"systems must be a list of systems, got {systems!r}")
+        raise ValueError(f"systems must be a list of systems, got {brief(systems)}")
     if reduce is not None and not callable(reduce):
         raise ValueError(f"reduce must be a function of a record, got {reduce!r}")
     if workers is not None:
         count("workers", workers)
     if not isinstance(watchers, Sequence):
-        raise ValueError(f"watchers must be a list of callables, got {watchers!r}")
+        raise ValueError(f"watchers must be a list of callables, got {brief(watchers)}")
     if not isinstance(device, str) or device not in DEVICES:
         raise ValueError(f"device must be one of {', '.join(DEVICES)}, got {device!r}")
     choice("errors", errors, ("raise", "return"))

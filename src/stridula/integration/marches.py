@@ -78,6 +78,11 @@ class March(Protocol):
     """A system on the march."""
 
     @property
+    def kernel(self) -> Any:
+        """What marches: a function of numba, or anything else where nothing is compiled for the processor."""
+        ...
+
+    @property
     def states(self) -> list[State]:
         """Where each run is."""
         ...
@@ -105,6 +110,11 @@ class GeneralMarch:
         self.blocks, self.state, self.step, self.ratio, self.solve = blocks, state, step, ratio, solve
 
     @property
+    def kernel(self) -> Any:
+        """What marches."""
+        return march
+
+    @property
     def states(self) -> list[State]:
         """Where the run is."""
         return [self.state]
@@ -119,7 +129,7 @@ class GeneralMarch:
         energies = np.empty((samples, at.ENERGIES))
         record = np.empty((samples, len(contacts.constants), at.COLUMNS))
         raw = np.empty((samples * self.ratio, len(probes.direct)))
-        completed, ended = march(
+        completed, ended = self.kernel(
             self.ratio,
             self.step,
             self.solve.tolerance,
@@ -201,6 +211,13 @@ class SimpleMarch:
         return spans
 
     @property
+    def kernel(self) -> Any:
+        """What marches."""
+        if PLAIN:
+            return partial(march_one_by_one, self.runs)
+        return march_run if self.runs == 1 else march_runs
+
+    @property
     def states(self) -> list[State]:
         """Where each run is."""
         found = []
@@ -245,10 +262,7 @@ class SimpleMarch:
 
     def _march(self, signals: Array, motion: Array, *outputs: Array) -> None:
         """March through a chunk and fill `outputs`: energies, record, probes at every step, what became of each run."""
-        kernel: Any = march_run if self.runs == 1 else march_runs
-        if PLAIN:
-            kernel = partial(march_one_by_one, self.runs)
-        kernel(
+        self.kernel(
             self.places.blocks,
             self.ratio,
             self.step,

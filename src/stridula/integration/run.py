@@ -87,7 +87,7 @@ class Run:
         self.done = self.filled = 0
         self.ended = at.FINISHED
         self.tail: Array | None = None
-        self.wall_time = 0.0
+        self.compile_time = self.wall_time = 0.0
 
     @property
     def has_diverged(self) -> bool:
@@ -202,6 +202,7 @@ class Run:
             "contact_tolerance": self.solve.tolerance,
             "initial_energy": self.initial_energy,
             "last_step": last_step,
+            "compile_time": self.compile_time,
             "wall_time": self.wall_time,
             "ended": ended,
         }

@@ -11,7 +11,7 @@ import xarray as xr
 from .._kernels.layout import COLUMNS, ENERGIES
 from ..assembly import Assembly, assemble
 from ..bodies import Track
-from ..checks import instance, positive
+from ..checks import brief, instance, positive
 from ..records import Acceleration, Probe
 from ..system import System
 from .contact_solve import GaussSeidel
@@ -89,7 +89,7 @@ def simulate(
         has the record so far.
     """
     if not isinstance(watchers, Sequence):
-        raise ValueError(f"watchers must be a list of callables, got {watchers!r}")
+        raise ValueError(f"watchers must be a list of callables, got {brief(watchers)}")
     asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve)
     run = asked.run(asked.arrays(system), start, title)
     timing = run.timing
@@ -139,7 +139,7 @@ class Asked:
         self.scheme: Scheme = ExactModal() if scheme is None else scheme
         instance("scheme", self.scheme, (CentralDifference, ExactModal))
         if probes is not None and not isinstance(probes, Sequence):
-            raise ValueError(f"probes must be a list of probes, got {probes!r}")
+            raise ValueError(f"probes must be a list of probes, got {brief(probes)}")
         self.probes = probes
         self.solve = GaussSeidel() if contact_solve is None else contact_solve
         instance("contact_solve", self.solve, GaussSeidel)

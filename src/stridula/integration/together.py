@@ -5,6 +5,8 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Hashable, Sequence
 
+from numba.core.dispatcher import Dispatcher
+
 from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
 from .interrupts import DeferredInterrupt
@@ -17,7 +19,7 @@ STEPS_PER_CHUNK, SAMPLES_PER_CHUNK = 20_000, 1000
 
 def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher] = ()) -> bool:
     """March runs of the same timing to their ends, or to a Ctrl-C between two chunks; return whether there was one."""
-    began, timing, done = clock.perf_counter(), runs[0].timing, 0
+    timing, done = runs[0].timing, 0
     vectors = -(-len(runs) // LANES)
     samples_per_chunk = max(1, STEPS_PER_CHUNK // (timing.ratio * vectors))
     if all(run.is_steady and not run.probes for run in runs):
@@ -26,6 +28,8 @@ def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher
             samples_per_chunk, min(SAMPLES_PER_CHUNK // vectors, 10 * STEPS_PER_CHUNK // timing.ratio)
         )
     with DeferredInterrupt() as interrupt:
+        compile_time = _compiled(runs, march)
+        began = clock.perf_counter()
         while done < timing.samples and any(run.ended == FINISHED for run in runs) and not interrupt.requested:
             count = min(samples_per_chunk, timing.samples - done)
             chunks = march.advance(_imposed(runs, done, count), count)
@@ -43,8 +47,18 @@ def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher
         beyond = march.copy().advance(_imposed(runs, done, ahead), ahead) if ahead else None
     for number, (run, state) in enumerate(zip(runs, march.states, strict=True)):
         run.finish(state, beyond[number] if beyond and run.samples_ahead else None)
-        run.wall_time = (clock.perf_counter() - began) / len(runs)
+        run.compile_time, run.wall_time = compile_time, (clock.perf_counter() - began) / len(runs)
     return interrupt.requested
+
+
+def _compiled(runs: Sequence[Run], march: March) -> float:
+    """Have the kernel compiled, or loaded from disk, before the clock starts; return how long compiling took [s]."""
+    kernel = march.kernel
+    if not isinstance(kernel, Dispatcher) or kernel.signatures:
+        return 0.0
+    began = clock.perf_counter()
+    march.copy().advance(_imposed(runs, 0, 1), 1)
+    return clock.perf_counter() - began if kernel.stats.cache_misses else 0.0
 
 
 def _imposed(runs: Sequence[Run], first_sample: int, samples: int) -> list[Imposed]:

@@ -1,4 +1,4 @@
-"""Films of two beams and their contact, in slow motion."""
+"""Films of a slider, its track and their contact, in slow motion."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ from .timelines import draw_line, draw_status
 
 FRAMES_PER_SECOND = 25
 DURATION, SLOWDOWN = 0.01, 1000.0
-# Without a number, the largest vibration is drawn as this share of the beams' extent.
+# Without a number, the largest vibration is drawn as this share of the bodies' extent.
 SHARE = 0.1
 KINDS = (".mp4", ".gif")
 # Pixels of the picture, both even as encoders want them.
 WIDTH, HEIGHT, DPI = 960, 600, 100
-# Thickness of the beams' lines [points].
+# Thickness of the bodies' lines [points].
 THICK = 2.5
 
 
@@ -87,16 +87,16 @@ def animate(
 ) -> Film:
     """Film a slider and its track in slow motion, the contact point coloured by its status.
 
-    The system is simulated from its start to the end of the window, with displacement probes along both beams. With the
-    scheme and the step of a record the film shows that very run. What is faster than the frames is smoothed away, and
-    never seen as something slower. The mean shape of the track, the slide of the tip and the mean bend of the slider
-    are to scale; the vibration about them is exaggerated, the gap with it. Motion of the track along itself is not
-    drawn.
+    The system is simulated from its start to the end of the window, with displacement probes along both bodies. With
+    the scheme and the step of a record the film shows that very run. What is faster than the frames is smoothed away,
+    and never seen as something slower. The mean shape of the track, the slide of the tip and the mean bend of the
+    slider are to scale; the vibration about them is exaggerated, the gap with it. Motion of the track along itself is
+    not drawn. Of a plate one sees the cut along the line of contact.
 
     Parameters
     ----------
     system : System
-        One contact between a finite-element beam and a modal beam or a rigid track.
+        One contact of a finite-element beam on a modal beam, a modal plate or a rigid track.
     out : str or Path
         The file, ``.mp4`` or ``.gif``, written whole or not at all. MP4 takes an encoder: ``pip install
         stridula[video]``, or an ffmpeg on the path.
@@ -105,7 +105,7 @@ def animate(
     slowdown : float, optional
         How much slower than life; made a whole number of steps for each frame.
     exaggeration : float, optional
-        How many times larger than life the vibration is drawn; what brings it near 10 % of the beams' extent if left
+        How many times larger than life the vibration is drawn; what brings it near 10 % of their extent if left
         out.
     scheme : ExactModal or CentralDifference, optional
         Time scheme, the exact modal one if left out.
@@ -168,12 +168,13 @@ class Picture:
     """
 
     def __init__(self, motion: Motion, exaggeration: float, slowdown: float, title: str) -> None:
-        self.run, self.slowdown, self.exaggeration = motion.run, slowdown, exaggeration
+        self.run = motion.run
+        self.scales = f"slowed down {slowdown:.6g} times, vibration drawn {exaggeration:.6g} times"
         self.slider, self.track = motion.drawn(exaggeration)
         self.frames = len(self.slider)
         self.figure = Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI, layout="constrained")
-        beams, force, status = self.figure.subplots(3, 1, height_ratios=[4.2, 1.0, 0.35])
-        self._draw_beams(beams)
+        bodies, force, status = self.figure.subplots(3, 1, height_ratios=[4.2, 1.0, 0.35])
+        self._draw_bodies(bodies, "x along the cut through the plate [m]" if motion.is_cut else "x [m]")
         self._draw_contact(force, status)
         self.figure.suptitle(title, fontsize=11)
         self.show(0)
@@ -191,9 +192,9 @@ class Picture:
         time = float(self.run["time"].values[frame])
         for cursor in self.cursors:
             cursor.set_xdata([time, time])
-        self.words.set_text(f"t = {1e3 * time:.3f} ms, {word}")
+        self.words.set_text(f"{self.scales}\nt = {1e3 * time:.3f} ms, {word}")
 
-    def _draw_beams(self, axes: Axes) -> None:
+    def _draw_bodies(self, axes: Axes, label: str) -> None:
         self.lines = [
             axes.plot([], [], color=colour, linewidth=THICK, solid_capstyle="round", zorder=zorder)[0]
             for colour, zorder in (("0.45", 1), (LINE, 2))
@@ -205,12 +206,11 @@ class Picture:
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
         axes.set_aspect("equal")
-        axes.set_xlabel("x [m]", fontsize=8)
+        axes.set_xlabel(label, fontsize=8)
         axes.set_ylabel("y [m]", fontsize=8)
         axes.tick_params(labelsize=8)
-        self.words = axes.set_title("t", fontsize=9, loc="left")
-        scales = f"slowed down {self.slowdown:.6g} times, vibration drawn {self.exaggeration:.6g} times"
-        axes.set_title(scales, fontsize=9, loc="right")
+        # On two lines from one edge: side by side they would run into each other above a tall picture.
+        self.words = axes.set_title("", fontsize=9, loc="left")
 
     def _draw_contact(self, above: Axes, below: Axes) -> None:
         draw_line(above, self.run, "normal_force")

@@ -1,7 +1,8 @@
-"""Motion of two beams and their contact over a window of time, as it is to be drawn."""
+"""Motion of a slider, its track and their contact over a window of time, as it is to be drawn."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,8 +10,8 @@ import numpy as np
 import xarray as xr
 
 from ..assembly import assemble
-from ..bodies import FiniteElementBeam, ModalBeam
-from ..bodies.modes import Array
+from ..bodies import FiniteElementBeam, ModalBeam, ModalPlate
+from ..bodies.modes import Array, BodyPoint
 from ..checks import instance, non_negative, positive
 from ..contact import RigidTrack
 from ..integration import simulate
@@ -20,7 +21,7 @@ from ..records import Displacement
 from ..system import System
 
 FEWEST_FRAMES, MOST_FRAMES = 2, 5000
-# Points drawn of a beam: enough for each half wave of its highest mode.
+# Points drawn of a body: enough for each half wave of its highest mode.
 MOST_POINTS = 161
 # Length of a rigid track on both sides of what is seen of it, as a share of the slider's length.
 BEYOND = 0.3
@@ -29,7 +30,7 @@ SAMPLE_RATE = 100e3
 
 @dataclass(frozen=True)
 class Motion:
-    """Two beams over a window of time, in frames.
+    """A slider and its track over a window of time, in frames.
 
     Attributes
     ----------
@@ -38,15 +39,18 @@ class Motion:
     slider : ndarray, shape (frames, points, 2)
         World places of the slider, its tip first [m], departures from rest as they are.
     track : ndarray, shape (frames, points, 2)
-        The same of the track.
+        The same of the track; of a plate, of the cut along the line of contact.
     slide : ndarray, shape (frames, 2)
         Place of the track below the tip where the track has its mean shape [m]: what the slider rides on.
+    is_cut : bool
+        Whether the track is a plate, cut along the line of contact.
     """
 
     run: xr.Dataset
     slider: Array
     track: Array
     slide: Array
+    is_cut: bool = False
 
     def drawn(self, exaggeration: float) -> tuple[Array, Array]:
         """Return the places of slider and track with their vibration drawn `exaggeration` times.
@@ -71,7 +75,7 @@ class Motion:
 
     @property
     def extent(self) -> float:
-        """Largest extent of both beams [m]."""
+        """Largest extent of both bodies [m]."""
         places = np.concatenate([self.slider[0], self.track[0]])
         return float(np.ptp(places, axis=0).max())
 
@@ -85,14 +89,14 @@ def motion_of(
     step: float | None = None,
     sample_rate: float = SAMPLE_RATE,
 ) -> Motion:
-    """Simulate a system up to the end of a window with displacement probes along both beams.
+    """Simulate a system up to the end of a window with displacement probes along slider and track.
 
     With the scheme and the step of a record it is the motion of that record, to the last bit.
 
     Parameters
     ----------
     system : System
-        One contact between a finite-element beam and a modal beam or a rigid track.
+        One contact of a finite-element beam on a modal beam, a modal plate or a rigid track.
     start, duration : float
         The window [s].
     frame : float
@@ -132,23 +136,38 @@ def motion_of(
     return _motion(system, window, list(places.values()))
 
 
-def _pair(system: System) -> tuple[FiniteElementBeam, ModalBeam | RigidTrack]:
+def _pair(system: System) -> tuple[FiniteElementBeam, ModalBeam | ModalPlate | RigidTrack]:
     instance("system", system, System)
     slider: Any = system.slider
     track: Any = system.contacts[0].track
-    kinds = (isinstance(slider, FiniteElementBeam), isinstance(track, (ModalBeam, RigidTrack)))
-    if len(system.contacts) != 1 or not all(kinds):
-        words = ", ".join(f"{system.body_name(body)}: a {type(body).__name__}" for body in system.bodies)
+    several, kinds = len(system.contacts) > 1, (ModalBeam, ModalPlate, RigidTrack)
+    if several or not isinstance(slider, FiniteElementBeam) or not isinstance(track, kinds):
+        under = f"a point of a {type(track.body).__name__}" if isinstance(track, BodyPoint) else _a(track)
+        got = f"{len(system.contacts)} contacts" if several else f"{_a(slider)} on {under}"
         raise ValueError(
-            "system must be one contact between a finite-element beam and a modal beam or a rigid track, "
-            f"got {len(system.contacts)} ({words})"
+            "system must be a FiniteElementBeam on one ModalBeam, ModalPlate or RigidTrack to be filmed, got " + got
         )
     return slider, track
 
 
-def _places(body: FiniteElementBeam | ModalBeam) -> Array:
-    highest = 2 * body.elements if isinstance(body, FiniteElementBeam) else 4 * body.harmonics[0]
-    return np.linspace(0.0, body.length, min(max(highest, 20) + 1, MOST_POINTS))
+def _a(body: object) -> str:
+    return f"a {type(body).__name__}"
+
+
+def _places(body: FiniteElementBeam | ModalBeam | ModalPlate) -> Array:
+    low, high = (0.0, body.length) if isinstance(body, FiniteElementBeam) else body.ends
+    return np.linspace(low, high, min(max(_fewest(body), 20) + 1, MOST_POINTS))
+
+
+def _fewest(body: FiniteElementBeam | ModalBeam | ModalPlate) -> int:
+    """Return how many pieces show every half-wave of a body."""
+    if isinstance(body, FiniteElementBeam):
+        return 2 * body.elements
+    if isinstance(body, ModalBeam):
+        return 4 * body.harmonics[0]
+    # Along the line a product of two sines has the sum of their wavenumbers.
+    low, high = body.ends
+    return math.ceil(4.0 * float((body.wavenumbers @ np.abs(body.track_line.tangent)).max()) * (high - low) / math.pi)
 
 
 def _motion(system: System, run: xr.Dataset, along: list[Array]) -> Motion:
@@ -157,7 +176,7 @@ def _motion(system: System, run: xr.Dataset, along: list[Array]) -> Motion:
     moved = run["displacement"].values.reshape(run.sizes["time"], -1, 2)
     first = along[0].size
     normal, tangent = contact.frame
-    # The abscissa counts along the track, whose world place is known for a beam and chosen for a rigid track.
+    # The abscissa counts along the track, whose world place is known for a beam and chosen for the others.
     tip = contact.at * tangent + contact.gap * normal
     slider_places = tip + along[0][:, None] * slider.axes[0] + moved[:, :first]
     # That of the probes, whose low-pass the contact's own record does not have.
@@ -172,7 +191,8 @@ def _motion(system: System, run: xr.Dataset, along: list[Array]) -> Motion:
     # Motion along the track is left out: the tip is where it is along it, whatever the track below does.
     track_places = rest + moved[:, first:] * [0.0, 1.0]
     below = np.interp(abscissa, along[1], track_places[:, :, 1].mean(axis=0))
-    return Motion(run, slider_places, track_places, np.stack([abscissa, below], axis=1))
+    is_cut = isinstance(contact.track, ModalPlate)
+    return Motion(run, slider_places, track_places, np.stack([abscissa, below], axis=1), is_cut)
 
 
 def _raised(track: RigidTrack, time: Array) -> Array:

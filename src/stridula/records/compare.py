@@ -12,7 +12,7 @@ import xarray as xr
 from ..bodies.modes import Array
 from ..checks import instance, non_negative
 from .export import Column, columns
-from .variables import ENERGY, SOLVE, STATUS
+from .variables import ENERGY, SOLVE, STATUS, described
 
 # Told by the shares of the states, and what the solver did to get there.
 LEFT_OUT = (STATUS.name, *(variable.name for variable in SOLVE))
@@ -21,7 +21,7 @@ LEFT_OUT = (STATUS.name, *(variable.name for variable in SOLVE))
 ENERGIES = tuple(variable.name for variable in ENERGY)
 DISTANCES = ("gap", "contact_height")
 LENGTHS = (*DISTANCES, "displacement")
-UNLIKE = ("wall_time", "scenario", "last_step")
+UNLIKE = ("compile_time", "wall_time", "scenario", "last_step")
 NOT_THERE = "not there"
 
 
@@ -67,8 +67,8 @@ def compare(a: xr.Dataset, b: xr.Dataset, tolerance: float = 1e-6) -> xr.Dataset
     result = xr.Dataset(coords={"variable": names, "record": ["a", "b"]})
     result["units"] = ("variable", [ours[name].units for name in names])
     result["difference"] = ("variable", difference, {"long_name": "largest difference"})
-    result["relative_difference"] = ("variable", relative, {"units": "1", "long_name": "relative to a's largest"})
-    result["first_time"] = ("variable", since, {"units": "s", "long_name": "when it is first above the tolerance"})
+    result["relative_difference"] = ("variable", relative, described("1", "relative to a's largest"))
+    result["first_time"] = ("variable", since, described("s", "when it is first above the tolerance"))
     for word, measure in (("mean", np.nanmean), ("rms", _rms)):
         values = [[_statistic(measure, side[name].values) for side in (ours, theirs)] for name in names]
         result[word] = (("variable", "record"), np.array(values))

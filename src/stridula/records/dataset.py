@@ -23,6 +23,7 @@ from .variables import (
     STATUS_SHARE,
     STATUS_WORDS,
     Variable,
+    described,
 )
 
 
@@ -43,7 +44,7 @@ def to_dataset(
     Arrays of the contacts have the shapes (contacts, samples), and (samples, contacts, 3) for the status. `raw` are the
     last values of the probes at every step, which the low-pass still needs, shape (steps, probes).
     """
-    words = {"units": "s", "long_name": "time at the end of the sample interval"}
+    words = described("s", "time at the end of the sample interval")
     coordinates: dict[str, Any] = {
         "time": ("time", time, words),
         "contact_status": ("contact_status", list(STATUS_WORDS)),

@@ -27,6 +27,11 @@ class Variable:
     cell_methods: str = "point"
 
 
+def described(units: str, meaning: str) -> dict[str, str]:
+    """Return the attributes of a variable that say its unit and its meaning."""
+    return {"units": units, "long_name": meaning}
+
+
 STATUS_WORDS = ("separated", "sticking", "sliding")
 
 CONTACT = (

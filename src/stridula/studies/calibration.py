@@ -18,7 +18,7 @@ from ..analysis.equilibrium import HELD, JAMMED, LIFTED_OFF
 from ..analysis.regimes import REGIMES
 from ..analysis.structure import SLIDING
 from ..bodies.modes import Array
-from ..checks import choice, count, instance, non_negative, positive, suggestion
+from ..checks import brief, choice, count, instance, non_negative, positive, suggestion
 from .measures import MEASURES, Value, value_of
 from .points import Range, ranges_of
 from .sweeps import sweep
@@ -215,7 +215,7 @@ def _own_errors() -> Iterator[None]:
 
 def _targets(targets: Any) -> dict[str, Target | str]:
     if not isinstance(targets, Mapping) or not targets:
-        raise ValueError(f"targets must be targets by the names of measures, got {targets!r}")
+        raise ValueError(f"targets must be targets by the names of measures, got {brief(targets)}")
     found: dict[str, Target | str] = {}
     for name, given in targets.items():
         if name in OWN:

@@ -14,6 +14,7 @@ from ..analysis.stability import sliding_stability
 from ..bodies.modes import Array
 from ..checks import finite, instance, positive
 from ..records.provenance import toml
+from ..records.variables import described
 from ..scenarios import load_scenario
 from ..scenarios.keys import overridden
 from ..scenarios.read import read_tables
@@ -86,10 +87,14 @@ def root_loci(
     both = (key, "mode")
     return xr.Dataset(
         {
-            "frequency": (both, followed.imag / (2.0 * np.pi), _words("Hz", "frequency of vibration")),
-            "growth_rate": (both, followed.real, _words("1/s", "rate at which the amplitude grows")),
-            "unstable": (both, followed.real > slack[:, None], _words("1", "whether the mode grows")),
-            "unstable_modes": (key, [int(one.unstable.sum()) for one in found], _words("1", "modes that grow, of all")),
+            "frequency": (both, followed.imag / (2.0 * np.pi), described("Hz", "frequency of vibration")),
+            "growth_rate": (both, followed.real, described("1/s", "rate at which the amplitude grows")),
+            "unstable": (both, followed.real > slack[:, None], described("1", "whether the mode grows")),
+            "unstable_modes": (
+                key,
+                [int(one.unstable.sum()) for one in found],
+                described("1", "modes that grow, of all"),
+            ),
             "equilibrium": (key, [one.attrs["equilibrium"] for one in found]),
         },
         {key: (key, grid, {"units": units}), "mode": np.arange(followed.shape[1])},
@@ -175,12 +180,12 @@ def _bisected(
             "value": (
                 (),
                 0.5 * (low + high),
-                {"units": units, "long_name": f"{key} at which sliding becomes unstable"},
+                described(units, f"{key} at which sliding becomes unstable"),
             ),
-            "stable": ((), stable, {"units": units, "long_name": "nearest value that is stable"}),
-            "unstable": ((), unstable, {"units": units, "long_name": "nearest value that is not"}),
-            "frequency": ((), float(fastest.frequency), _words("Hz", "frequency of the mode that grows fastest")),
-            "growth_rate": ((), float(fastest.growth_rate), _words("1/s", "its rate of growth")),
+            "stable": ((), stable, described(units, "nearest value that is stable")),
+            "unstable": ((), unstable, described(units, "nearest value that is not")),
+            "frequency": ((), float(fastest.frequency), described("Hz", "frequency of the mode that grows fastest")),
+            "growth_rate": ((), float(fastest.growth_rate), described("1/s", "its rate of growth")),
         },
         attrs={"parameter": key, "tolerance": tolerance, "beyond": _verdict(at[stable])},
     )
@@ -274,7 +279,3 @@ def _followed(steps: Sequence[Array]) -> Array:
         rows = [np.pad(old, (0, new.size), constant_values=complex(np.nan, np.nan)) for old in rows]
         rows.append(np.concatenate([row, new]))
     return np.array(rows)
-
-
-def _words(units: str, meaning: str) -> dict[str, str]:
-    return {"units": units, "long_name": meaning}

@@ -15,7 +15,7 @@ from ..analysis import advance, dominant_frequency, status_share
 from ..analysis.regimes import MEANINGS, regime_of
 from ..analysis.signals import samples
 from ..analysis.stability import stability_of
-from ..checks import suggestion
+from ..checks import brief, suggestion
 from ..records.variables import STATUS_WORDS
 from ..system import System
 
@@ -227,7 +227,7 @@ def asked_for(measures: Any) -> Asked:
     """
     entries = [measures] if isinstance(measures, (str, Mapping)) else measures
     if not isinstance(entries, Sequence) or not entries:
-        raise ValueError(f"measures must be names of measures or functions by name, got {measures!r}")
+        raise ValueError(f"measures must be names of measures or functions by name, got {brief(measures)}")
     names: list[str] = []
     functions: dict[str, Callable[[xr.Dataset], Value]] = {}
     for entry in entries:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import count, finite
+from ..checks import brief, count, finite
 from ..scenarios.quantities import parts
 
 POINT = "point"
@@ -245,7 +245,7 @@ def laid_out(points: Grid | LatinHypercube | Sequence[Mapping[str, Any]]) -> Lay
         asked = {"latin hypercube": {"ranges": ranges, "count": points.count, "seed": points.seed}}
         return Layout(tuple(columns), tuple(zip(*columns.values(), strict=True)), {POINT: points.count}, False, asked)
     if isinstance(points, (str, Mapping)) or not isinstance(points, Sequence):
-        raise ValueError(f"points must be a Grid, a LatinHypercube or a list of values by key, got {points!r}")
+        raise ValueError(f"points must be a Grid, a LatinHypercube or a list of values by key, got {brief(points)}")
     return _listed(points)
 
 

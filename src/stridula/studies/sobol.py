@@ -13,9 +13,11 @@ import xarray as xr
 
 from ..analysis.regimes import REGIMES
 from ..bodies.modes import Array
-from ..checks import count, within
+from ..checks import brief, count, within
+from ..records.variables import described
 from .points import Range, range_of
 from .sweeps import sweep
+from .swept import failures, usual_failure
 
 BOUNDS = ("low", "high")
 # Of fewer samples no interval can be told.
@@ -66,7 +68,7 @@ def sensitivity(
         over ``bound``; the outputs are the numbers measured and, with the measure ``regime``, for each regime whether
         it was seen. ``used``: how many samples an output was found in throughout; the others are left out of it. NaN
         below 8 of them, or where an output never varies. ``probability`` of each ``regime`` with Wilson's interval, and
-        how many ``runs`` there were and how many ``failed``.
+        how many ``runs`` there were and how many ``failed``; the attribute ``failure`` has what most of these say.
 
     Raises
     ------
@@ -88,18 +90,21 @@ def sensitivity(
     keys = list(named)
     data: dict[str, Any] = _indices(outputs, len(keys), samples, seed, confidence, resamples)
     coordinates: dict[str, Any] = {"output": list(outputs), "parameter": keys, "bound": list(BOUNDS)}
-    data["runs"], data["failed"] = ((), len(points)), ((), int((found["message"].values != "").sum()))
+    messages = failures(found)
+    data["runs"], data["failed"] = ((), len(points)), ((), len(messages))
     if "regime" in found:
         # The two sets are independent draws, the mixed ones are not.
         data |= _probabilities(found["regime"].values[: 2 * samples], confidence)
         coordinates["regime"] = list(REGIMES)
     origin = {name: found.attrs[name] for name in ("title", "scenario", "stridula_version") if name in found.attrs}
+    if messages:
+        origin["failure"] = usual_failure(messages)
     return xr.Dataset(data, coordinates, origin | {"confidence": confidence, "samples": samples, "seed": seed})
 
 
 def _distributions(uncertain: Any) -> dict[str, Any]:
     if not isinstance(uncertain, Mapping) or not uncertain:
-        raise ValueError(f"uncertain must be distributions by key, got {uncertain!r}")
+        raise ValueError(f"uncertain must be distributions by key, got {brief(uncertain)}")
     found: dict[str, Any] = {}
     for key, given in uncertain.items():
         is_distribution = callable(getattr(given, "ppf", None))
@@ -168,11 +173,11 @@ def _indices(
             intervals[:, row] = np.moveaxis(np.percentile(drawn, tails, axis=0), 0, -1)
     along = ("output", "parameter")
     return {
-        "first_order": (along, first, _words("share of the variance that the parameter makes alone")),
+        "first_order": (along, first, described("1", "share of the variance that the parameter makes alone")),
         "first_order_interval": ((*along, "bound"), intervals[0]),
-        "total_order": (along, total, _words("share of the variance that the parameter has a part in")),
+        "total_order": (along, total, described("1", "share of the variance that the parameter has a part in")),
         "total_order_interval": ((*along, "bound"), intervals[1]),
-        "used": ("output", used, _words("samples in which the output was found throughout")),
+        "used": ("output", used, described("1", "samples in which the output was found throughout")),
     }
 
 
@@ -195,7 +200,7 @@ def _probabilities(regimes: Array, confidence: float) -> dict[str, Any]:
         shares.append(seen / good.size if good.size else np.nan)
         bounds.append(_wilson(seen, good.size, confidence))
     return {
-        "probability": ("regime", shares, _words("probability of the regime")),
+        "probability": ("regime", shares, described("1", "probability of the regime")),
         "probability_interval": (("regime", "bound"), bounds),
     }
 
@@ -205,7 +210,3 @@ def _wilson(seen: int, size: int, confidence: float) -> list[float]:
         return [np.nan, np.nan]
     interval = scipy.stats.binomtest(seen, size).proportion_ci(confidence, "wilson")
     return [float(interval.low), float(interval.high)]
-
-
-def _words(meaning: str) -> dict[str, str]:
-    return {"units": "1", "long_name": meaning}

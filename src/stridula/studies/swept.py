@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
-from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,9 @@ from ..scenarios.varied import Varied
 from .measures import OWN, Column
 from .points import POINT, Layout
 from .task import Outcome
+
+# What stands before the value in a message.
+GOT = ", got "
 
 
 def check_names(layout: Layout, columns: Sequence[Column]) -> None:
@@ -101,6 +104,18 @@ def _coordinate(dimension: str, key: Varied, values: Sequence[Any]) -> tuple[str
     return dimension, np.array(plain, dtype=object if is_text else None), words
 
 
-def failed_points(found: xr.Dataset) -> int:
-    """Return the number of points of a sweep that failed."""
-    return sum(bool(message) for message in chain(found["message"].values.ravel()))
+def failures(found: xr.Dataset) -> list[str]:
+    """Return the messages of the points of a sweep that failed."""
+    return [str(message) for message in found["message"].values.ravel() if message]
+
+
+def usual_failure(messages: Sequence[str]) -> str:
+    """Return in one line what most of the points that failed say, and how many do; nothing if none failed.
+
+    Messages that differ in the value they got say the same.
+    """
+    if not messages:
+        return ""
+    usual, times = Counter(message.partition(GOT)[0] for message in messages).most_common(1)[0]
+    whole = {message for message in messages if message.partition(GOT)[0] == usual}
+    return f"{times} of {len(messages)} failures: {whole.pop() if len(whole) == 1 else usual}"
