@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
-from numpy.lib.stride_tricks import as_strided
+import scipy.fft
 from scipy.signal import lfilter
 
 from ..bodies import ModalBeam, ModalPlate
@@ -72,14 +71,15 @@ class StreamedSound:
         first = path.first - len(taps) // 2
         # An acceleration is known DEGREE samples after its force.
         self.delay = max(0, DEGREE - first)
-        self.path = np.apply_along_axis(np.convolve, 0, path.taps, taps)
+        self.path = np.apply_along_axis(np.convolve, 1, path.taps.T, taps)
+        self.spectra: dict[int, Array] = {}
         decay = np.exp(-panel.damping * panel.angular_frequency * interval)
         phase = panel.angular_frequency * np.sqrt(1.0 - panel.damping**2) * interval
         self.numerators = [k * numerator(float(one)) for k, one in zip(decay, phase, strict=True)]
         self.poles = [[1.0, -2.0 * k * np.cos(one), k**2] for k, one in zip(decay, phase, strict=True)]
         self.memory = [np.zeros(len(one) - 1) for one in self.numerators]
         self.force, self.position = np.zeros(2 * LEAD), np.zeros(LEAD)
-        self.moved = np.zeros((len(kept), len(self.path) - 1 + first + self.delay - DEGREE))
+        self.moved = np.zeros((len(kept), self.path.shape[1] - 1 + first + self.delay - DEGREE))
         self.has_begun = False
 
     def feed(self, force: Array, position: Array) -> Array:
@@ -111,10 +111,13 @@ class StreamedSound:
         return self._heard(moved)
 
     def _heard(self, moved: Array) -> Array:
-        count, taps = moved.shape[1], len(self.path)
+        """Return what the modes send to the listener, by one transform of all that it can still hear of them."""
+        count, taps = moved.shape[1], self.path.shape[1]
         whole = np.concatenate([self.moved, moved], axis=1)
         self.moved = whole[:, count:]
-        sent: Any = self.path[::-1] @ whole[:, : count + taps - 1]
-        rows, columns = sent.strides
-        # Sent through tap t at sample i - t: the sum along a diagonal.
-        return np.asarray(as_strided(sent, (count, taps), (columns, rows + columns)).sum(axis=1))
+        audible = count + taps - 1
+        size = scipy.fft.next_fast_len(audible, real=True)
+        if size not in self.spectra:
+            self.spectra = {size: scipy.fft.rfft(self.path, size)}
+        sent = scipy.fft.rfft(whole[:, :audible], size)
+        return np.asarray(scipy.fft.irfft(np.sum(sent * self.spectra[size], axis=0), size)[taps - 1 : audible])

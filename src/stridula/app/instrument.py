@@ -17,7 +17,7 @@ from .sources import source_of
 
 RATE = 48_000
 # A tip that sticks under a constant force, or has been off the track, for so long [s] begins another stroke.
-PATIENCE = 1.0
+PATIENCE = 0.5
 # Time in which a jump of what is heard dies away [s]: a stroke that begins anew does not click.
 BLEND = 0.004
 TRACK_POINTS = 65

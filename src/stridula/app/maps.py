@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import multiprocessing
-import os
+import json
+import sys
 from collections.abc import AsyncIterator
-from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -17,37 +16,54 @@ from .playable import Playable
 
 # What each point of a map is marched for at most [s].
 DURATION = 1.0
-NICENESS = 10
+# Longest line of a row [bytes].
+LONGEST = 1_000_000
 
 
 class MapMaker:
-    """The process that computes maps, row by row; it is there while a page is open."""
+    """The process that computes maps, row by row for one page after the other; it is there while a page is open."""
 
     def __init__(self) -> None:
-        self._pool: ProcessPoolExecutor | None = None
+        self._process: asyncio.subprocess.Process | None = None
+        self._turn = asyncio.Lock()
 
     async def rows(self, played: Playable, wanted: Map) -> AsyncIterator[tuple[int, list[str]]]:
         """Yield the number of a row and the regimes along it, empty where there is none, rough rows first."""
         across, along = values_of(wanted.x, wanted.points), values_of(wanted.y, wanted.points)
         simulation = {**played.tables["simulation"], "duration": min(played.scenario.duration, DURATION), "probes": []}
-        tables = played.tables | {"simulation": simulation}
-        loop = asyncio.get_running_loop()
+        asked: dict[str, Any] = {"tables": played.tables | {"simulation": simulation}}
+        asked["keys"] = [wanted.x.key, wanted.y.key]
         for row in rough_first(wanted.points):
-            points = [(value, along[row]) for value in across]
-            found = await loop.run_in_executor(self._started(), regimes, tables, (wanted.x.key, wanted.y.key), points)
-            yield row, found
+            asked["points"] = [[value, along[row]] for value in across]
+            # A row that nobody waits for any more is computed to its end, so that answers keep their order.
+            yield row, await asyncio.shield(asyncio.ensure_future(self._answer(json.dumps(asked))))
 
     def close(self) -> None:
-        """Let the process end."""
-        if self._pool is not None:
-            self._pool.shutdown(wait=False, cancel_futures=True)
-            self._pool = None
+        """End the process."""
+        if self._process is not None and self._process.returncode is None:
+            with contextlib.suppress(ProcessLookupError):
+                self._process.kill()
+        self._process = None
 
-    def _started(self) -> ProcessPoolExecutor:
-        if self._pool is None:
-            context = multiprocessing.get_context("spawn")
-            self._pool = ProcessPoolExecutor(1, mp_context=context, initializer=_begin)
-        return self._pool
+    async def _answer(self, line: str) -> list[str]:
+        async with self._turn:
+            process = await self._started()
+            assert process.stdin is not None
+            assert process.stdout is not None
+            with contextlib.suppress(ConnectionError):
+                process.stdin.write(line.encode() + b"\n")
+                await process.stdin.drain()
+            found = await process.stdout.readline()
+            # The last page has gone, and the process with it.
+            return json.loads(found) if found else []
+
+    async def _started(self) -> asyncio.subprocess.Process:
+        if self._process is None or self._process.returncode is not None:
+            pipe = asyncio.subprocess.PIPE
+            self._process = await asyncio.create_subprocess_exec(
+                sys.executable, "-m", "stridula.app.map_worker", stdin=pipe, stdout=pipe, limit=LONGEST
+            )
+        return self._process
 
 
 def values_of(axis: Axis, points: int) -> list[float]:
@@ -60,29 +76,3 @@ def rough_first(rows: int) -> list[int]:
     bits = max(1, (rows - 1).bit_length())
     order = [int(f"{number:0{bits}b}"[::-1], 2) for number in range(2**bits)]
     return [number for number in order if number < rows]
-
-
-def regimes(tables: dict[str, Any], keys: tuple[str, str], points: list[tuple[float, float]]) -> list[str]:
-    """Return the regime at some points, empty where there is none."""
-    from ..scenarios.keys import located
-    from ..studies.measures import asked_for
-    from ..studies.sweeps import SAMPLE_RATE
-    from ..studies.task import Task
-
-    changed, places, problems = located(tables, dict(zip(keys, points[0], strict=True)))
-    if problems:
-        return [""] * len(points)
-    task = Task(changed, tuple(places[key] for key in keys), asked_for(["regime"]), SAMPLE_RATE, False)
-    return [str(outcome["values"].get("regime", "")) for outcome in task.outcomes(points)]
-
-
-def _begin() -> None:
-    """Stand back behind the sound."""
-    import signal
-
-    from ..studies.task import use_one_thread
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    with contextlib.suppress(OSError, AttributeError):
-        os.nice(NICENESS)
-    use_one_thread()

@@ -50,7 +50,7 @@ class Pages:
             return
         self.open += 1
         try:
-            with suppress(WebSocketDisconnect, RuntimeError):
+            with suppress(WebSocketDisconnect):
                 await Session(socket, self.maps).run()
         finally:
             self.open -= 1

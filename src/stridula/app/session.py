@@ -128,12 +128,11 @@ class Session:
         if early > 0.0:
             await asyncio.sleep(early / FASTEST)
         self._played = max(self._played + wanted, round((since - AHEAD) * FASTEST * RATE))
-        for _ in range(pull.parts):
-            for part in await asyncio.to_thread(lambda: list(instrument.play(pull.samples))):
-                if isinstance(part, Stop):
-                    await self._tell("stroke", why=part.why, goes_on=part.goes_on)
-                else:
-                    await self.socket.send_bytes(packed(part))
+        for part in await asyncio.to_thread(_played, instrument, pull):
+            if isinstance(part, Stop):
+                await self._tell("stroke", why=part.why, goes_on=part.goes_on)
+            else:
+                await self.socket.send_bytes(part)
         await self._tell("pulled", parts=pull.parts)
 
     async def _save(self, instrument: Instrument, save: Save) -> None:
@@ -175,6 +174,12 @@ class Session:
         before = self._tasks.pop(name, None)
         if before is not None:
             before.cancel()
+
+
+def _played(instrument: Instrument, pull: Pull) -> list[bytes | Stop]:
+    """Return the next parts as they go to the page, and what ended strokes."""
+    parts = [part for _ in range(pull.parts) for part in instrument.play(pull.samples)]
+    return [part if isinstance(part, Stop) else packed(part) for part in parts]
 
 
 def _described(played: Playable, instrument: Instrument | None) -> dict[str, Any]:

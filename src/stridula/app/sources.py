@@ -33,9 +33,9 @@ class Source:
 
 
 SOURCES = {
-    "pressure": Source("Sound pressure", "Pa", 1.0, "What a listener hears half a metre above the track, in a baffle."),
-    "force": Source("Contact force", "N", 100.0, "The normal force between tip and track, as if an ear lay in it."),
-    "acceleration": Source("Track acceleration", "m/s²", 500.0, "What a sensor on the middle of the track would give."),
+    "pressure": Source("Sound pressure", "Pa", 0.1, "What a listener hears half a metre above the track, in a baffle."),
+    "force": Source("Contact force", "N", 20.0, "The normal force between tip and track, as if an ear lay in it."),
+    "acceleration": Source("Track acceleration", "m/s²", 50.0, "What a sensor on the middle of the track would give."),
 }
 HEIGHT = 0.5
 

@@ -79,7 +79,9 @@ export class RegimeMap {
     const control = this.controls.numbers().find((one) => one.key === this[name].value);
     if (!control) return null;
     const value = this.controls.values[control.key] / control.scale;
-    return { key: control.key, control, low: Math.min(control.low, value), high: Math.max(control.high, value) };
+    // Of both senses the one that is played.
+    const [low, high] = control.low < 0 ? (value < 0 ? [control.low, 0] : [0, control.high]) : [control.low, control.high];
+    return { key: control.key, control, low: Math.min(low, value), high: Math.max(high, value) };
   }
 
   #offer(select, numbers, first, other) {
