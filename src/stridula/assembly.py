@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -149,6 +149,17 @@ def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
         prescribed=_prescribed(system, histories),
         spans={system.body_name(body): layout.spans[body] for body in system.bodies},
     )
+
+
+def with_travel(arrays: Assembly, system: System, travel: float) -> Assembly:
+    """Return a system whose root has already been moved by a distance [m] beyond what its imposed velocity says."""
+    described = arrays.signals[-3]
+
+    def displacement(time: Array, step: float) -> Array:
+        return described(time, step) + travel
+
+    signals = [*arrays.signals[:-3], displacement, *arrays.signals[-2:]]
+    return replace(arrays, signals=signals, motion=_motion(system, displacement))
 
 
 @dataclass(frozen=True)

@@ -497,3 +497,29 @@ def test_a_march_that_had_to_be_compiled_first_is_the_same(name, monkeypatch):
     first = case.simulate()
     assert first.attrs["compile_time"] > 0.0 == warm.attrs["compile_time"]
     assert_same([first], warm)
+
+
+def pulled(history: st.Constant | st.Sampled, velocity: float = 0.01) -> st.System:
+    system = st.load_scenario("weak-pressure").system
+    return st.System(system.contacts[0], [st.ImposedVelocity(system.slider.root, velocity, 2.0, history)])
+
+
+@BOTH
+def test_a_run_goes_on_at_another_velocity_from_where_the_tip_is(scheme):
+    """As a run whose velocity changes on the way, over one step."""
+    words = {"scheme": scheme, "step": 2.5e-6, "sample_rate": 100e3}
+    half = 0.05
+    first = st.simulate(pulled(st.Constant()), half, **words)
+    second = st.simulate(pulled(st.Constant(), 0.02), 0.002, start=first, **words)
+    times = [0.0, half, half + 2.5e-6, 1.0]
+    whole = st.simulate(pulled(st.Sampled(times, [1.0, 1.0, 2.0, 2.0])), half + 0.002, **words)
+    after = whole.isel(time=slice(first.sizes["time"], None))
+    travelled = after.contact_position.values - first.contact_position.values[-1]
+    assert np.abs(second.contact_position.values - after.contact_position.values).max() < 0.01 * np.ptp(travelled)
+    # The step over which one of them changes is amplified by the impacts that follow.
+    force = [np.cumsum(run.normal_force.values[:100]) for run in (second, after)]
+    assert np.abs(force[0] - force[1]).max() < 0.02 * force[1][-1]
+    assert np.abs(second.ledger_residual.values).max() < 1e-9 * np.abs(second.drive_work.values).max()
+    third = st.simulate(pulled(st.Constant(), 0.02), 0.002, start=second, **words)
+    both = st.simulate(pulled(st.Constant(), 0.02), 0.004, start=first, **words)
+    assert np.array_equal(both.normal_force.values[second.sizes["time"] :], third.normal_force.values)

@@ -9,13 +9,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..assembly import Assembly
+from .._kernels import layout as at
+from .._kernels.march import stored_energy
+from ..assembly import Assembly, with_travel
 from ..checks import instance
 from ..contact import LAWS
 from ..records import Probe
 from ..records.provenance import scenario_toml
 from ..records.state import State
 from ..system import System
+from .blocks import Recurrence
 from .schemes import Scheme
 from .timing import Timing
 
@@ -57,6 +60,38 @@ def state_of(
     before, now = (tomllib.loads(text) for text in (attributes["scenario"], scenario_toml(system, probes, {})))
     _check_frozen(_frozen(before), _frozen(now))
     return State(*(np.array(start[f"state_{name}"].values, dtype=float, order="C") for name in STATE))
+
+
+def imposed_at(arrays: Assembly, last_step: int, step: float) -> dict[str, float]:
+    """Return how far [m] and how fast [m/s] an imposed velocity has moved the root after some steps."""
+    time = np.array([last_step * step])
+    travel, velocity = (float(signal(time, step)[0]) for signal in arrays.signals[-3:-1])
+    return {"root_travel": travel, "root_velocity": velocity}
+
+
+def moved_on(
+    start: xr.Dataset, system: System, arrays: Assembly, modes: Recurrence, state: State, step: float
+) -> Assembly:
+    """Return a system whose root goes on from where a record left it, perhaps at another velocity.
+
+    What hangs at a root that is made to move faster does not move faster at once: `state` is changed so, and the energy
+    that this gives it, as the root sees it, is work of the drive.
+    """
+    if "root_travel" not in start.attrs or system.imposed_velocity is None:
+        return arrays
+    now = imposed_at(arrays, int(start.attrs["last_step"]), step)
+    travel, faster = (now[name] - float(start.attrs[name]) for name in ("root_travel", "root_velocity"))
+    if travel:
+        arrays = with_travel(arrays, system, -travel)
+    if faster:
+        body: Any = system.imposed_velocity.point.body
+        span = slice(*arrays.spans[system.body_name(body)])
+        before = stored_energy(modes.block, modes.matrices, state.modal)
+        state.modal[at.D, span] -= faster * step * body.modes(True).translation[0]
+        after = stored_energy(modes.block, modes.matrices, state.modal)
+        state.energies[at.DRIVE_WORK] += after - before
+        state.energies[at.STORED] = after
+    return arrays
 
 
 def _frozen(tables: dict[str, Any]) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from .blocks import blocks_of
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
 from .marches import Chunk, Imposed, imposed_on
-from .restart import state_of
+from .restart import imposed_at, moved_on, state_of
 from .schemes import Scheme
 from .start import state_at_start
 from .stops import ENDED, contact_words, energy_created
@@ -76,6 +76,7 @@ class Run:
             self.decimator = Decimator(timing.ratio)
         else:
             self.state = state_of(start, system, arrays, scheme, timing, probes)
+            self.arrays = moved_on(start, system, arrays, self.blocks.modes, self.state, timing.step)
             self.first_step, self.initial_energy = int(start.attrs["last_step"]), float(start.attrs["initial_energy"])
             self.decimator = Decimator(timing.ratio, np.array(start["state_raw"].values, dtype=float))
         self.last_energies = self.state.energies.copy()
@@ -202,6 +203,7 @@ class Run:
             "contact_tolerance": self.solve.tolerance,
             "initial_energy": self.initial_energy,
             "last_step": last_step,
+            **(imposed_at(self.arrays, last_step, timing.step) if self.system.imposed_velocity else {}),
             "compile_time": self.compile_time,
             "wall_time": self.wall_time,
             "ended": ended,
