@@ -302,7 +302,7 @@ setInterval(() => {
   $("fps").textContent = stats.fps;
 }, 1000);
 
-window.stridula = { stats, shares: () => pictures.shares, scene, now: () => described };
+window.stridula = { stats, late: () => sound.late, shares: () => pictures.shares, scene, now: () => described };
 theme(localStorage.getItem("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
 pace();
 $("undo").disabled = $("redo").disabled = true;

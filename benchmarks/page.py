@@ -1,0 +1,135 @@
+"""The page under the hand: time from slider to ear, pictures a second and drop-outs, with the server on one core.
+
+    python benchmarks/page.py                                   two minutes
+    python benchmarks/page.py --minutes 10 --write docs/performance.md
+
+It needs Debian's chromium and playwright. Chromium plays into a sink without a sound card, at the pace of one. From slider
+to ear: from the key that moves the friction slider to the moment the first sample computed with it leaves the queue of
+the player, and the limiter's look-ahead and what the browser says of its output on top.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+import machine
+
+CHROMIUM = "/usr/bin/chromium"
+ARGUMENTS = ("--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update")
+CASES = ("weak-pressure", "squeal", "strong-pressure", "judder")
+BEGIN, END = "<!-- page: begin -->", "<!-- page: end -->"
+TICKS = os.sysconf("SC_CLK_TCK")
+
+
+def served() -> tuple[subprocess.Popen, str]:
+    """Start the server on the first core and return it with its address."""
+    cores = sorted(os.sched_getaffinity(0))
+    command = [sys.executable, "-c", "from stridula.cli import main; main()", "app", "--no-browser", "--port", "0"]
+    server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    os.sched_setaffinity(server.pid, {cores[0]})
+    return server, re.search(r"http://\S+", server.stdout.readline())[0]
+
+
+def memory(process: int) -> float:
+    """Return the resident memory of a process [MB]."""
+    return int(Path(f"/proc/{process}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+
+def processor_time(process: int) -> float:
+    """Return the processor time that a process has taken [s]."""
+    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / TICKS
+
+
+def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
+    """Play for some minutes, turning the friction every second and a half; return what was seen."""
+    from playwright.sync_api import sync_playwright
+
+    server, address = served()
+    seen: dict[str, list[float]] = {"fps": [], "dropouts": [], "memory": []}
+    try:
+        with sync_playwright() as play:
+            browser = play.chromium.launch(executable_path=CHROMIUM, args=list(ARGUMENTS))
+            page = browser.new_page(viewport={"width": 1280, "height": 900})
+            page.goto(f"{address}#case={CASES[0]}")
+            page.click("#begin")
+            if not with_map:
+                page.click("#map-on")
+            page.click("#sound")
+            time.sleep(5.0)
+            # What is settled is measured: drop-outs count from the very first sample.
+            page.evaluate("stridula.stats.latencies.length = 0")
+            began, ticks, number = time.monotonic(), processor_time(server.pid), 0
+            while time.monotonic() - began < 60.0 * minutes:
+                number += 1
+                page.focus("#contact-friction-coefficient-slide")
+                page.keyboard.press("ArrowLeft" if number % 2 else "ArrowRight")
+                time.sleep(1.5)
+                stats = page.evaluate("({ ...stridula.stats, latencies: null })")
+                seen["fps"].append(stats["fps"])
+                seen["dropouts"].append(stats["dropouts"])
+                seen["memory"].append(memory(server.pid))
+                if number % 60 == 0:
+                    page.select_option("#case", CASES[number // 60 % len(CASES)])
+            seen["latency"] = page.evaluate("stridula.stats.latencies")
+            seen["share"] = [(processor_time(server.pid) - ticks) / (time.monotonic() - began)]
+            seen["output"] = [page.evaluate("1000 * stridula.late()")]
+            browser.close()
+    finally:
+        server.terminate()
+        server.wait(10)
+    return seen
+
+
+def table(seen: dict[str, list[float]], minutes: float, with_map: bool) -> list[str]:
+    """Return what was seen as lines of Markdown."""
+    latency, fps = np.array(seen["latency"]), np.array(seen["fps"])
+    words = "with maps computed beside it" if with_map else "without maps"
+    first, last = seen["memory"][0], seen["memory"][-1]
+    return [
+        *(f"- {line}" for line in machine.description()),
+        f"- {minutes:g} minutes, {words}, load of the machine at the end {os.getloadavg()[0]:.2f}",
+        "",
+        "| quantity | bar | median | 95 % | worst |",
+        "|---|---|---:|---:|---:|",
+        f"| slider to ear [ms], {latency.size} turns, {seen['output'][0]:.0f} of them limiter and output | < 150 | "
+        f"{np.median(latency):.0f} | {np.percentile(latency, 95):.0f} | {latency.max():.0f} |",
+        f"| pictures a second | >= 30 | {np.median(fps):.0f} | {np.percentile(fps, 5):.0f} | {fps.min():.0f} |",
+        f"| drop-outs in all | 0 | | | {seen['dropouts'][-1]:.0f} |",
+        f"| share of one core that the server takes | | {seen['share'][0]:.2f} | | |",
+        f"| memory of the server [MB], at the start and at the end | | {first:.0f} | | {last:.0f} |",
+    ]
+
+
+def write(target: Path, lines: list[str]) -> None:
+    """Replace what stands between the marks of a page."""
+    before, _, rest = target.read_text(encoding="utf-8").partition(BEGIN)
+    _, mark, after = rest.partition(END)
+    if not mark:
+        raise SystemExit(f"{target} must have the lines {BEGIN} and {END}")
+    target.write_text("\n".join([f"{before}{BEGIN}", "", *lines, "", f"{END}{after}"]), encoding="utf-8")
+
+
+def main() -> None:
+    """Measure and print, and write if asked."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--minutes", type=float, default=2.0)
+    parser.add_argument("--no-map", action="store_true")
+    parser.add_argument("--write", type=Path)
+    asked = parser.parse_args()
+    lines = table(played(asked.minutes, not asked.no_map), asked.minutes, not asked.no_map)
+    print("\n".join(lines))
+    if asked.write:
+        write(asked.write, lines)
+
+
+if __name__ == "__main__":
+    main()
