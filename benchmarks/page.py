@@ -3,9 +3,9 @@
     python benchmarks/page.py                                   two minutes
     python benchmarks/page.py --minutes 10 --write docs/performance.md
 
-It needs Debian's chromium and playwright. Chromium plays into a sink without a sound card, at the pace of one. From slider
-to ear: from the key that moves the friction slider to the moment the first sample computed with it leaves the queue of
-the player, and the limiter's look-ahead and what the browser says of its output on top.
+It needs Debian's chromium and playwright. Chromium plays into a sink without a sound card, at the pace of one. From
+slider to ear: from the key that moves the friction slider to the moment the first sample computed with it leaves the
+queue of the player, and the limiter's look-ahead and what the browser says of its output on top.
 """
 
 from __future__ import annotations

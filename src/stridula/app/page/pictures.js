@@ -53,6 +53,7 @@ export class Pictures {
       this.speed[k] = speed[i];
       this.time[k] = clock - (seen - 1 - i) * interval;
     }
+    if (stroke !== this.stroke) this.begun = this.count - seen;
     this.clock = clock;
     this.stroke = stroke;
     this.shapes = { place, height, slider: next(2 * nodes), track: next(points) };
@@ -76,8 +77,8 @@ export class Pictures {
     return found.map((one) => one / Math.max(1, points.length));
   }
 
-  #since(seconds) {
-    const first = Math.max(0, this.count - KEPT + 1);
+  #since(seconds, begun = 0) {
+    const first = Math.max(begun, this.count - KEPT + 1, 0);
     const found = [];
     for (let n = this.count - 1; n >= first; n--) {
       const k = n % KEPT;
@@ -222,7 +223,7 @@ export class Pictures {
 
   #phase() {
     const [draw, width, height] = this.#begin("phase");
-    const points = this.#since(this.slow === 1 ? PORTRAIT : Math.max(PORTRAIT / this.slow, 4e-4));
+    const points = this.#since(this.slow === 1 ? PORTRAIT : Math.max(PORTRAIT / this.slow, 4e-4), this.begun);
     if (points.length < 2) return;
     // Travel at the mean velocity is no vibration.
     const [first, last] = [points[0], points.at(-1)];
