@@ -103,7 +103,7 @@ function problem(lines) {
 }
 
 function stroke({ why, goes_on: goesOn }) {
-  $("said").textContent = `${why}${goesOn ? ", a new stroke begins" : ", the stroke has ended"}`;
+  $("stroke").textContent = `Last stroke: ${why}.`;
   if (!goesOn) problem([`The stroke has ended: ${why}. Press New stroke, or change something.`]);
 }
 
@@ -158,7 +158,9 @@ function listen() {
 function pace() {
   const slow = Number($("speed").value);
   pictures.pace(slow);
-  stream.postMessage({ pace: { mode: mode === "paused" ? "paused" : slow === 1 ? "live" : "slow", slow } });
+  // Nobody sees or hears a page in the background that is muted.
+  const rests = mode === "paused" || (document.hidden && !sound.on);
+  stream.postMessage({ pace: { mode: rests ? "paused" : slow === 1 ? "live" : "slow", slow } });
   if (mode === "paused" || slow !== 1) sound.flush();
   $("play").textContent = mode === "paused" ? "Play" : "Pause";
   $("step").disabled = mode !== "paused";
@@ -285,6 +287,7 @@ document.addEventListener("keydown", (event) => {
     $("play").click();
   }
 });
+document.addEventListener("visibilitychange", pace);
 $("intro").addEventListener("close", () => localStorage.setItem("visited", "1"));
 
 async function copied(text, what) {
