@@ -26,7 +26,7 @@ class Player extends AudioWorkletProcessor {
     this.peak = 0;
     this.held = 0;
     this.gain = 1;
-    this.attack = 1 - Math.exp(-4 / ahead);
+    this.attack = 1 - Math.exp(-8 / ahead);
     this.release = 1 - Math.exp(-1 / (RELEASE * sampleRate));
     this.quanta = 0;
     this.loudest = this.power = this.least = 0;
