@@ -162,7 +162,7 @@ export class Pictures {
     draw.strokeStyle = this.colours.ink;
     draw.stroke();
     draw.fillStyle = this.colours.ink;
-    draw.fillText(STATES[state], Math.min(cx + 14, width - 70), cy + 26);
+    draw.fillText(STATES[state], Math.min(cx + 14, width - 70), Math.max(14, cy - 14));
     draw.fillStyle = this.colours.soft;
     draw.fillText(`stroke ${this.stroke}, tip at ${(1000 * place).toFixed(1)} mm`, 8, height - 6);
     document.getElementById("exaggeration").textContent = `deflections ${much.toLocaleString("en")} times`;
@@ -191,13 +191,16 @@ export class Pictures {
       one.states |= 1 << this.state[k];
       columns.set(column, one);
     }
-    draw.fillStyle = this.colours.trace;
-    let before = null;
-    for (const [column, { low, high }] of columns) {
-      const [up, down] = before ? [Math.max(high, before.low), Math.min(low, before.high)] : [high, low];
-      const gap = before && column - before.column > 1 ? column - before.column : 1;
-      draw.fillRect(column - gap + 1, y(up), gap, Math.max(1.2, y(down) - y(up)));
-      before = { low, high, column };
+    draw.fillStyle = draw.strokeStyle = this.colours.trace;
+    draw.lineWidth = 1.5;
+    if (points.length < inner) line(draw, points.map((k) => [x(k), y(this.force[k])]));
+    else {
+      let before = null;
+      for (const [column, { low, high }] of columns) {
+        const [up, down] = before ? [Math.max(high, before.low), Math.min(low, before.high)] : [high, low];
+        draw.fillRect(column, y(up), 1, Math.max(1.2, y(down) - y(up)));
+        before = { low, high };
+      }
     }
     STATES.forEach((name, state) => {
       const lane = 6 + tall + 5 + 11 * state;
@@ -207,8 +210,8 @@ export class Pictures {
       let from = null;
       for (const [column, { states }] of columns) {
         if (states & (1 << state)) {
-          const gap = from !== null && column - from < 8 ? column - from : Math.max(1, inner / (span * 12000));
-          draw.fillRect(column - gap + 1, lane, gap, 9);
+          const start = from === null ? column : Math.max(left, from + 1);
+          draw.fillRect(start, lane, column - start + 1, 9);
         }
         from = column;
       }
