@@ -303,6 +303,8 @@ setInterval(() => {
   stats.fps = stats.frames;
   stats.frames = 0;
   $("fps").textContent = stats.fps;
+  const tone = pictures.tone;
+  $("tone").textContent = tone ? `strongest tone ${tone < 1000 ? `${Math.round(tone)} Hz` : `${(tone / 1000).toFixed(2)} kHz`}` : "";
 }, 1000);
 
 window.stridula = { stats, late: () => sound.late, shares: () => pictures.shares, scene, now: () => described };

@@ -270,6 +270,19 @@ export class Pictures {
     this.level = Math.sqrt(sum / Math.max(1, sound.length));
   }
 
+  // Frequency of the strongest tone over the last spectra [Hz], null where there is silence.
+  get tone() {
+    const last = this.columns.slice(-64);
+    if (!last.length) return null;
+    const mean = last[0].power.map((_, i) => last.reduce((sum, { power }) => sum + power[i], 0));
+    let best = 2;
+    for (let i = 3; i < mean.length - 1; i++) if (mean[i] > mean[best]) best = i;
+    if (!(mean[best] > 1e-9 * this.loudest)) return null;
+    // The peak of a parabola through three points on a logarithmic scale.
+    const [a, b, c] = [best - 1, best, best + 1].map((i) => Math.log(mean[i] + 1e-30));
+    return ((best + (0.5 * (a - c)) / (a - 2 * b + c || 1)) * RATE) / SIZE;
+  }
+
   #spectrogram() {
     const canvas = this.canvases.spectrogram;
     const scale = 1;
