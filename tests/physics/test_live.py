@@ -170,3 +170,27 @@ def test_what_it_cannot_march_is_refused_in_one_line():
     belt = system("belt")
     with pytest.raises(ValueError, match="track must be a ModalBeam or a ModalPlate to march without end, got a Rigid"):
         LiveMarch(belt, ())
+
+
+def refuse(*_):
+    raise ValueError("no start")
+
+
+def test_what_is_refused_changes_nothing(monkeypatch):
+    live, _ = played("squeal", chunks=5)
+    still, _ = played("squeal", chunks=5)
+    with pytest.raises(ValueError, match="probe must be on a body of this system"):
+        live.change(system("squeal", track__length=1.3), probes(live.system))
+    with monkeypatch.context() as patch, pytest.raises(ValueError, match="no start"):
+        patch.setattr("stridula.integration.live.state_at_start", refuse)
+        changed(live, "squeal", track__length=1.3)
+    now, then = marched(live, 4), marched(still, 4)
+    assert all(np.array_equal(now[name], then[name]) for name in now)
+
+
+def test_energy_that_comes_from_nowhere_ends_it(monkeypatch):
+    live, _ = played("squeal", chunks=5)
+    monkeypatch.setattr(live, "_first_energy", live._first_energy + 1.0)
+    chunk, ended = live.advance(480)
+    assert ended == "energy created"
+    assert len(chunk.time) == 0

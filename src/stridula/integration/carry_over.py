@@ -1,15 +1,73 @@
-"""The motion of a body that becomes another one of its kind: longer, thicker, leaning more."""
+"""The motion of bodies that become others of their kind: longer, thicker, leaning more."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from .._kernels import layout as at
+from ..assembly import Assembly
 from ..bodies import FiniteElementBeam, ModalBeam, ModalPlate
 from ..bodies.modes import Array
+from ..records.state import State
+from ..system import System
+from .schemes import Scheme
 
 SAME_MESH = ("elements", "root_support", "tip_support")
+
+
+@dataclass(frozen=True)
+class Before:
+    """What marched before a change.
+
+    Attributes
+    ----------
+    system : System
+        The system.
+    scheme : Scheme
+        Its time scheme.
+    spans : dict
+        First mode of each body and the one after its last, by the body's name.
+    step : float
+        Its time step [s].
+    """
+
+    system: System
+    scheme: Scheme
+    spans: dict[str, tuple[int, int]]
+    step: float
+
+    def goes_on_as(self, system: System) -> bool:
+        """Return whether the motion means something for another system."""
+        before = self.system
+        return (
+            (before.imposed_velocity is None) == (system.imposed_velocity is None)
+            and before.connections == system.connections
+            and before.contacts[0].gap == system.contacts[0].gap
+            and len(before.bodies) == len(system.bodies)
+            and all(carries_over(*pair) for pair in zip(before.bodies, system.bodies, strict=True))
+        )
+
+    def motion_as(self, system: System, arrays: Assembly, state: State, time: float) -> tuple[Array, Array]:
+        """Return modal positions and velocities as those of another system."""
+        position, velocity = np.zeros((2, arrays.mode_count))
+        speed_up = _root_velocity(system, time) - _root_velocity(self.system, time)
+        for before, now in zip(self.system.bodies, system.bodies, strict=True):
+            held = self.system.is_held(before)
+            old, new = slice(*self.spans[self.system.body_name(before)]), slice(*arrays.spans[system.body_name(now)])
+            position[new] = carried_over(before, now, held, state.modal[at.Q, old])
+            velocity[new] = carried_over(before, now, held, state.modal[at.D, old] / self.step)
+            if held:
+                # A root that is made to move faster does not take its body along at once.
+                velocity[new] -= speed_up * now.modes(held).translation[0]
+        return position, velocity
+
+
+def _root_velocity(system: System, time: float) -> float:
+    imposed = system.imposed_velocity
+    return 0.0 if imposed is None else imposed.velocity * float(imposed.history.factor(np.array([time]))[0])
 
 
 def carries_over(before: Any, now: Any) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import deepcopy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,15 +19,15 @@ from ..records import Probe
 from ..records.state import State
 from ..system import System
 from .blocks import blocks_of
-from .carry_over import carried_over, carries_over
+from .carry_over import Before
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
-from .marches import Imposed, imposed_on, march_of
+from .marches import Chunk, Imposed, imposed_on, march_of
 from .run import CONTACT_COLUMN, ENERGY_COLUMN
 from .schemes import ExactModal, Scheme
 from .simulate import choose_timing
 from .start import rows_where_it_starts, state_at_start
-from .stops import ENDED
+from .stops import ENDED, energy_created
 
 # Share of the lowest frequency of vibration below which a mode yields as a free one does.
 SOFT = 0.3
@@ -129,14 +130,12 @@ class LiveMarch:
         chunk : LiveChunk
             Fewer samples where the march ended.
         ended : str
-            ``finished``, ``off the track``, ``not finite`` or ``contact unsolved``; after the last three only
-            `restart` helps.
+            ``finished``, ``off the track``, ``not finite``, ``contact unsolved`` or ``energy created``; after all but
+            the first, only `restart` helps.
         """
         imposed = self._imposed(samples)
         (chunk,) = self._march.advance([imposed], samples)
-        finite = np.isfinite(chunk.energies[: chunk.completed]).all(axis=1)
-        done = chunk.completed if finite.all() else int(np.argmin(finite))
-        ended = chunk.ended if done == chunk.completed else at.NOT_FINITE
+        done, ended = self._believed(chunk)
         time = (self._sample + np.arange(1, done + 1)) * self.interval
         self._sample += done
         record, energy = chunk.contacts[:done, 0].T, chunk.energies[:done].T
@@ -169,7 +168,15 @@ class LiveMarch:
         ValueError
             As at the start; then all goes on as it was.
         """
-        before, state = _Before(self.system, self.scheme, self.spans, self.step), self._march.states[0]
+        kept = dict(vars(self))
+        try:
+            return self._change(system, probes, scheme)
+        except ValueError:
+            vars(self).update(kept)
+            raise
+
+    def _change(self, system: System, probes: Sequence[Probe], scheme: Scheme | None) -> bool:
+        before, state = Before(self.system, self.scheme, self.spans, self.step), deepcopy(self._march.states[0])
         arrays = assembled(system, probes)
         self._take(system, probes, before.scheme if scheme is None else scheme, arrays)
         self._begin_probes()
@@ -186,6 +193,22 @@ class LiveMarch:
             self._start_from(position, velocity, place, 0.0 if is_closed else self._gap)
         return True
 
+    def _believed(self, chunk: Chunk) -> tuple[int, int]:
+        """Return how many samples of a chunk can be believed, and what ended it."""
+        energies = np.ascontiguousarray(chunk.energies[: chunk.completed].T)
+        bad = np.flatnonzero(~np.isfinite(energies).all(axis=0))
+        if bad.size:
+            return int(bad[0]), at.NOT_FINITE
+        law = self.system.contacts[0].friction
+        known = self._first_energy, self._largest_energy, self._blocks.modes.energy_of_loads()
+        created = energy_created(energies, self._last_energies, *known, not law.state_units, not self._arrays.coupled)
+        if created is not None:
+            return created, at.ENERGY_CREATED
+        if chunk.completed:
+            self._last_energies = energies[:, -1].copy()
+            self._largest_energy = max(self._largest_energy, float(np.abs(energies[: at.DAMPING_LOSS + 1]).max()))
+        return chunk.completed, chunk.ended
+
     def _take(self, system: System, probes: Sequence[Probe], scheme: Scheme, arrays: Assembly) -> None:
         timing = choose_timing(arrays, scheme, self.interval, None, 1.0 / self.interval)
         self.system, self.probes, self.scheme = system, tuple(probes), scheme
@@ -201,6 +224,9 @@ class LiveMarch:
         self._blocks = blocks_of(self._arrays, self.scheme, self.step)
         state.energies[:] = 0.0
         state.energies[at.STORED] = stored_energy(self._blocks.modes.block, self._blocks.modes.matrices, state.modal)
+        self._last_energies: Array = state.energies.copy()
+        self._first_energy: float = float(state.energies[at.STORED])
+        self._largest_energy: float = self._first_energy
         self._march = march_of(self._blocks, state, self.step, self.ratio, GaussSeidel())
         self._steady: Imposed | None = None
 
@@ -274,46 +300,6 @@ class LiveMarch:
         yielded = np.linalg.solve(squared, row)
         missing = gap - arrays.contacts[0].contact.gap - row @ position
         return np.asarray(yielded * missing / (row @ yielded))
-
-
-@dataclass(frozen=True)
-class _Before:
-    """What marched before a change."""
-
-    system: System
-    scheme: Scheme
-    spans: dict[str, tuple[int, int]]
-    step: float
-
-    def goes_on_as(self, system: System) -> bool:
-        """Return whether the motion means something for another system."""
-        before = self.system
-        return (
-            (before.imposed_velocity is None) == (system.imposed_velocity is None)
-            and before.connections == system.connections
-            and before.contacts[0].gap == system.contacts[0].gap
-            and len(before.bodies) == len(system.bodies)
-            and all(carries_over(*pair) for pair in zip(before.bodies, system.bodies, strict=True))
-        )
-
-    def motion_as(self, system: System, arrays: Assembly, state: State, time: float) -> tuple[Array, Array]:
-        """Return modal positions and velocities as those of another system."""
-        position, velocity = np.zeros((2, arrays.mode_count))
-        speed_up = _root_velocity(system, time) - _root_velocity(self.system, time)
-        for before, now in zip(self.system.bodies, system.bodies, strict=True):
-            held = self.system.is_held(before)
-            old, new = slice(*self.spans[self.system.body_name(before)]), slice(*arrays.spans[system.body_name(now)])
-            position[new] = carried_over(before, now, held, state.modal[at.Q, old])
-            velocity[new] = carried_over(before, now, held, state.modal[at.D, old] / self.step)
-            if held:
-                # A root that is made to move faster does not take its body along at once.
-                velocity[new] -= speed_up * now.modes(held).translation[0]
-        return position, velocity
-
-
-def _root_velocity(system: System, time: float) -> float:
-    imposed = system.imposed_velocity
-    return 0.0 if imposed is None else imposed.velocity * float(imposed.history.factor(np.array([time]))[0])
 
 
 def _later(signal: Signal, now: float) -> Signal:
