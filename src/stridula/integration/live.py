@@ -18,11 +18,11 @@ from ..checks import instance, positive
 from ..records import Probe
 from ..records.state import State
 from ..system import System
-from .blocks import blocks_of
+from .blocks import Blocks, blocks_of
 from .carry_over import Before
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
-from .marches import Chunk, Imposed, imposed_on, march_of
+from .marches import Chunk, Imposed, March, imposed_on, march_of
 from .run import CONTACT_COLUMN, ENERGY_COLUMN
 from .schemes import ExactModal, Scheme
 from .simulate import choose_timing
@@ -81,6 +81,21 @@ class LiveMarch:
     ValueError
         If the system has several contacts, or one that does not move along a beam or a plate.
     """
+
+    # What marches, where it is, and what it had of energy; set again at every change.
+    system: System
+    probes: tuple[Probe, ...]
+    scheme: Scheme
+    step: float
+    ratio: int
+    _described: Assembly
+    _arrays: Assembly
+    _blocks: Blocks
+    _march: March
+    _steady: Imposed | None
+    _last_energies: Array
+    _first_energy: float
+    _largest_energy: float
 
     def __init__(
         self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None, sample_rate: float = 48e3
@@ -212,9 +227,9 @@ class LiveMarch:
     def _take(self, system: System, probes: Sequence[Probe], scheme: Scheme, arrays: Assembly) -> None:
         timing = choose_timing(arrays, scheme, self.interval, None, 1.0 / self.interval)
         self.system, self.probes, self.scheme = system, tuple(probes), scheme
-        self._described: Assembly = arrays
-        self.step: float = timing.step
-        self.ratio: int = timing.ratio
+        self._described = arrays
+        self.step = timing.step
+        self.ratio = timing.ratio
 
     def _begin_probes(self) -> None:
         self._decimator, self._waiting = Decimator(self.ratio), np.zeros((0, len(self.probes)))
@@ -224,11 +239,10 @@ class LiveMarch:
         self._blocks = blocks_of(self._arrays, self.scheme, self.step)
         state.energies[:] = 0.0
         state.energies[at.STORED] = stored_energy(self._blocks.modes.block, self._blocks.modes.matrices, state.modal)
-        self._last_energies: Array = state.energies.copy()
-        self._first_energy: float = float(state.energies[at.STORED])
-        self._largest_energy: float = self._first_energy
+        self._last_energies = state.energies.copy()
+        self._first_energy = self._largest_energy = float(state.energies[at.STORED])
         self._march = march_of(self._blocks, state, self.step, self.ratio, GaussSeidel())
-        self._steady: Imposed | None = None
+        self._steady = None
 
     def _imposed(self, samples: int) -> Imposed:
         if not (self._blocks.is_simple and self._arrays.prescribed.is_steady):
