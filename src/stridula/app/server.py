@@ -22,9 +22,11 @@ MOST_PAGES = 16
 # Codes of a closed socket: a page from elsewhere, one too many.
 FROM_ELSEWHERE, TOO_MANY = 4403, 4429
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
+POLICY = (
+    "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
+    "connect-src 'self' {sockets}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
 HEADERS = {
-    "Content-Security-Policy": "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; "
-    "img-src 'self' blob: data:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
     "Cross-Origin-Opener-Policy": "same-origin",
@@ -75,7 +77,11 @@ def create_app(is_open: bool = False) -> ASGIApp:
         if name not in known:
             return PlainTextResponse("not found", 404, HEADERS)
         kind = mimetypes.guess_type(name)[0] or "application/octet-stream"
-        return Response(known[name].read_bytes(), 200, HEADERS, "text/javascript" if name.endswith(".js") else kind)
+        # Not every browser takes the socket of a page's own server for its own.
+        host = request.headers["host"]
+        policy = {"Content-Security-Policy": POLICY.format(sockets=f"ws://{host} wss://{host}")}
+        kind = "text/javascript" if name.endswith(".js") else kind
+        return Response(known[name].read_bytes(), 200, HEADERS | policy, kind)
 
     routes = [Route("/", page), Route("/{name}", page), WebSocketRoute("/socket", pages.socket)]
     app = Starlette(routes=routes)
