@@ -130,6 +130,7 @@ class GeneralMarch:
             contacts.laws,
             contacts.spans,
             contacts.half_waves,
+            contacts.shares,
             contacts.rows,
             contacts.compliance,
             state.modal,
