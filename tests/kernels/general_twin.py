@@ -358,7 +358,9 @@ class Touch:
                 against[side, start : start + count] = size * np.sin(k * x)
                 slopes[side, start : start + count] = size * k * np.cos(k * x)
         if self.along_plate:
-            span, line = m.spans[track], track.line or st.Line((0.0, track.width / 2))
+            first, (bending, _) = m.spans[track].start, track.harmonics
+            span, flat = slice(first, first + bending), slice(first + bending, m.spans[track].stop)
+            line = track.line or st.Line((0.0, track.width / 2))
             along = np.array([np.cos(line.direction), np.sin(line.direction)])
             place = line.origin + x * along
             size = 2 / np.sqrt(track.material.density * track.thickness * track.length * track.width)
@@ -366,6 +368,13 @@ class Touch:
             against[1, span] = size * np.sin(a * place[0]) * np.sin(b * place[1])
             slopes[1, span] = size * a * along[0] * np.cos(a * place[0]) * np.sin(b * place[1])
             slopes[1, span] += size * b * along[1] * np.sin(a * place[0]) * np.cos(b * place[1])
+            a, b = np.pi * (track.in_plane_numbers / [track.length, track.width]).T
+            # A mode of a half-wave along one side only has twice the modal mass.
+            size = size / np.where(a * b == 0, np.sqrt(2), 1)
+            u, v = size * track.polarisations.T * along[:, None]
+            sx, cx, sy, cy = np.sin(a * place[0]), np.cos(a * place[0]), np.sin(b * place[1]), np.cos(b * place[1])
+            against[0, flat] = u * sx * cy + v * cx * sy
+            slopes[0, flat] = along[0] * a * (u * cx * cy - v * sx * sy) + along[1] * b * (v * cx * cy - u * sx * sy)
         return self.normal @ (self.tip - against), self.tangent @ (self.tip - against), slopes
 
     def motions(self, t):

@@ -121,9 +121,22 @@ def on_a_plate(line=None, angle=30.0, **changes) -> st.System:
     return st.System(contact, dragged(0.05, 3.0)(rod))
 
 
-def sprung_plate() -> st.System:
+def soft(line=None, **changes) -> st.ModalPlate:
+    """A sheet so soft that it stretches and shears where others bend, of 0.3 m x 0.2 m x 40 mm."""
+    words = {"damping": 0.02, "cutoff": 1.5e3, "line": line, "in_plane": True} | changes
+    return st.ModalPlate(st.Material(2e7, 1000.0, 0.4), 0.04, 0.3, 0.2, **words)
+
+
+def on_a_soft_plate(line=None, angle=-30.0, **changes) -> st.System:
+    """A slider dragged over a plate that also moves in its plane."""
+    sheet, rod = soft(line, **changes), slider(angle, cutoff=8e3)
+    contact = st.PointContact(rod.tip, sheet, at=0.1, friction=st.Coulomb(0.9), gap=1e-8)
+    return st.System(contact, dragged(0.05, 3.0)(rod))
+
+
+def sprung_plate(sheet=None, direction="y") -> st.System:
     """A pad on three feet thrown along a diagonal of a plate that a spring and a dashpot hold."""
-    sheet = plate(st.Line((0.05, 0.04), 0.5), cutoff=2e3)
+    sheet = sheet or plate(st.Line((0.05, 0.04), 0.5), cutoff=2e3)
     block = pad(3)
     laws = (st.Coulomb(0.6), st.StaticKinetic(0.5, 0.3), st.Coulomb(0.4))
     contacts = [
@@ -133,8 +146,8 @@ def sprung_plate() -> st.System:
     joints = [
         st.Spring(block.at("back"), stiffness=5e3),
         st.Spring(block.at("back"), stiffness=2e3, direction="y"),
-        st.Spring(sheet.at((0.2, 0.05)), stiffness=1e4, direction="y"),
-        st.Dashpot(sheet.at(0.15), coefficient=2.0, direction="y"),
+        st.Spring(sheet.at((0.2, 0.05)), stiffness=1e4, direction=direction),
+        st.Dashpot(sheet.at(0.15), coefficient=2.0, direction=direction),
     ]
     return st.System(contacts, [st.InitialVelocity(block, x=0.2), st.Gravity()], joints)
 
@@ -219,6 +232,9 @@ SYSTEMS = {
     "plate": (on_a_plate, 5e-6),
     "diagonal of a plate": (lambda: on_a_plate(st.Line((0.25, 0.03), 2.3), -30.0), 5e-6),
     "sprung plate": (sprung_plate, 5e-6),
+    "plate soft in its plane": (on_a_soft_plate, 5e-6),
+    "diagonal of a plate soft in its plane": (lambda: on_a_soft_plate(st.Line((0.25, 0.03), 2.3)), 5e-6),
+    "sprung plate soft in its plane": (lambda: sprung_plate(soft(st.Line((0.05, 0.04), 0.5), cutoff=800.0), "x"), 5e-6),
     "frozen contact": (frozen, 5e-6),
     "groove": (groove, 1e-4),
     "inclined plane": (inclined_pin, 5e-6),

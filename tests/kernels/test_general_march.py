@@ -159,6 +159,28 @@ def test_comparison_rejects_a_wrong_twin(change, name):
     assert disagreements(run, twin.march(slightly(change, system), twin.exact, step, STEPS))
 
 
+@pytest.mark.parametrize("wrong", ["polarisations", "slopes"])
+def test_comparison_tells_motion_in_the_plane(wrong, monkeypatch):
+    """Negative control: shear modes that move the other way across; slopes of the plane left out of the ledger."""
+    make, step = SYSTEMS["sprung plate soft in its plane"]
+    run, trail = both(make(), SCHEMES[1], twin.exact, step)
+    assert disagreements(run, trail) == {}
+    if wrong == "polarisations":
+        sheet = make().contacts[0].track
+        monkeypatch.setattr(st.ModalPlate, "polarisations", abs(sheet.polarisations))
+    else:
+        right = twin.Touch.rows
+
+        def rows(self, x):
+            normal, tangent, slopes = right(self, x)
+            return normal, tangent, slopes * [[0.0], [1.0]]
+
+        monkeypatch.setattr(twin.Touch, "rows", rows)
+    found = disagreements(run, twin.march(make(), twin.exact, step, STEPS))
+    assert "convection_work" in found
+    assert (wrong == "slopes") == (len(found) == 1)
+
+
 def test_comparison_tells_an_exact_damping_matrix_from_its_diagonal():
     """Negative control: the block's damping, which couples its modes, projected on the diagonal."""
     make, step = SYSTEMS["thrown block"]

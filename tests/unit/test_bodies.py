@@ -54,6 +54,13 @@ MAKERS = {
         [0.1, (0.1, 0.1), st.Line((0.5, 0.1)), st.Line((0.1, 0.0)), st.Line((0.0, 0.0), 2.0), st.Line((0.0, 0.3), 0.8)],
     ),
     "ModalPlate.name": (lambda v: sheet(name=v), "name", [None, 1]),
+    "ModalPlate.in_plane": (lambda v: sheet(in_plane=v), "in_plane", [None, 1, "true", (2, 2)]),
+    "ModalPlate.in_plane_modes": (
+        lambda v: sheet(in_plane_modes=v),
+        "in_plane_modes",
+        [None, 5, (5,), (0, 0), (-1, 2), (5, 1.5), (True, 2), "ab"],
+    ),
+    "ModalPlate.cutoff in the plane": (lambda v: sheet(in_plane=True, cutoff=v), "cutoff", [86.0, 6.7e3]),
     "ModalPlate.at": (lambda v: sheet().at(v), "position", [-0.1, 0.41, NAN, "centre", None, (0.1, 0.31), (0.1,)]),
     "Section.area": (lambda v: st.Section(v, 1e-9), "area", POSITIVE),
     "Section.second_moment": (lambda v: st.Section(1e-4, v), "second_moment", POSITIVE),

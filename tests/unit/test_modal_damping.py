@@ -58,6 +58,30 @@ def test_a_record_runs_again_with_them(tmp_path):
     assert not np.array_equal(plain["normal_force"], run["normal_force"])
 
 
+def test_a_plate_that_moves_in_its_plane_has_those_modes_last():
+    """Two longitudinal modes of one half-wave, a shear mode and a longitudinal one of both."""
+    sheet = replace(plate(), in_plane=True, in_plane_modes=(1, 1))
+    ratios = [0.01 * k for k in range(10)]
+    damped = replace(sheet, damping=ratios)
+    np.testing.assert_array_equal(damped.modes().damping, ratios)
+    assert damped.harmonics == (6, 4)
+    rising = np.diff(damped.modes().frequency) > 0.0
+    np.testing.assert_array_equal(rising, [True] * 9)
+    np.testing.assert_allclose(damped.polarisations, [[0.8, -0.6], [1.0, 0.0], [0.0, 1.0], [0.6, 0.8]], atol=1e-15)
+    with pytest.raises(ValueError, match="damping must have one ratio or 10, one for each mode kept, got 6"):
+        replace(sheet, damping=ratios[:6])
+
+
+def test_sound_brakes_a_beam_when_its_damping_is_added():
+    still = beam()
+    taken = st.radiation_damping(still)
+    damped = replace(still, damping=taken)
+    np.testing.assert_array_equal(damped.modes().damping, taken)
+    bending = still.harmonics[0]
+    assert (taken[:bending] > 0.0).all()
+    assert not taken[bending:].any()
+
+
 def test_sound_brakes_a_plate_when_its_damping_is_added():
     still = plate()
     taken = st.radiation_damping(still)

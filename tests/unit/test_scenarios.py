@@ -782,6 +782,28 @@ def test_a_plate_takes_what_stands_at_the_top_and_survives_provenance(tmp_path):
     assert turned.material.poisson == 0.3
 
 
+def test_a_plate_moves_in_its_plane_where_its_table_says_so(tmp_path):
+    flat = PLATE.replace("bending_modes = [5, 4]", "bending_modes = [5, 4]\nin_plane = true\nin_plane_modes = [2, 0]")
+    (tmp_path / "plate.toml").write_text(flat.replace("cutoff", "# cutoff"), encoding="utf-8")
+    case = st.load_scenario(tmp_path / "plate.toml")
+    assert case.system.track.in_plane
+    assert case.system.track.harmonics == (20, 2)
+    record = case.simulate()
+    again = st.load_scenario(record)
+    assert (again.system, again.probes) == (case.system, case.probes)
+    assert again.simulate().attrs["scenario"] == record.attrs["scenario"]
+    rigid = st.load_scenario(tmp_path / "plate.toml", {"in_plane": False}).system.track
+    assert rigid.harmonics == (20, 0)
+    with pytest.raises(
+        ValueError, match=r"in_plane_modes must be two whole numbers.* each of which must be at least 0"
+    ):
+        st.load_scenario(tmp_path / "plate.toml", {"in_plane_modes": [2, -1]})
+    with pytest.raises(ValueError, match=r"in_plane_modes must be two whole numbers of at least 0.* not both 0"):
+        st.load_scenario(tmp_path / "plate.toml", {"in_plane_modes": [0, 0]})
+    with pytest.raises(ValueError, match="cutoff must leave at least one mode in the plane"):
+        st.load_scenario(tmp_path / "plate.toml", {"cutoff": "2 kHz"})
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [

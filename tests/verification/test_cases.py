@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula.verification import falling, impacts, instabilities, jams, laws, orders, sliders, stability
+from stridula.verification import falling, impacts, instabilities, jams, laws, orders, plates, sliders, stability
 from stridula.verification.case import schemes
 from stridula.verification.cases import CASES
 
@@ -21,6 +21,12 @@ def test_case(case):
 
 def missed(outcome) -> set[str]:
     return {row.quantity for row in outcome.rows if not row.holds}
+
+
+def test_a_plate_of_another_poissons_ratio_falls_short(monkeypatch):
+    """Negative control: 1e-4 more moves each mode in the plane by more than its last digit."""
+    monkeypatch.setattr(plates, "STEEL", replace(plates.STEEL, poisson=0.3001))
+    assert sum(name.startswith("mode") for name in missed(plates.in_plane())) == len(plates.PRINTED_IN_PLANE)
 
 
 def test_a_slider_with_another_friction_falls_short(monkeypatch):

@@ -14,13 +14,19 @@ Q, D = range(2)
 # Rows of a contact: relative displacement of the tip against the fixed part of the track, along normal and tangent.
 NORMAL, TANGENTIAL = range(2)
 
-# Spans of the modes that a contact sees: fixed rows; bending and axial modes of a track that the tip moves along. Then
-# how many half-waves these have along the track, on a plate along its two sides; along the second none on a beam.
+# Spans of the modes that a contact sees: fixed rows; bending and axial modes of a track that the tip moves along, on a
+# plate those in its plane. Then how many half-waves these have along the track, on a plate along its two sides; along
+# the second none on a beam.
 FIXED, FIXED_END, BENDING, BENDING_END, AXIAL, AXIAL_END, WAVES, CROSS_WAVES = range(8)
 SPANS = 8
 
-# Rows of the half-waves of each mode of a plate along its two sides, counted from zero.
+# Rows of the half-waves of each mode of a plate along its two sides: the place of their sine and cosine. That of one
+# half-wave is 0, that of none the last, at twice the number of all modes.
 ALONG, ACROSS = range(2)
+
+# Rows of what products of sines and cosines, along one side times across, give of a mode in the plane of a plate: of
+# its motion along the line, then of the slope of that.
+SINE_COSINE, COSINE_SINE, BOTH_COSINES, BOTH_SINES = range(4)
 
 # Motion imposed on a contact: of the tip and of the track along the tangent, of the gap.
 TIP_MOTION, TRACK_MOTION, GAP_MOTION = range(3)

@@ -81,7 +81,7 @@ def set_harmonics(contacts, spans, i, place, rows, waves, slopes):
 
 
 @numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def set_products(contacts, spans, half_waves, i, place, rows, waves, slopes):
+def set_products(contacts, spans, half_waves, shares, i, place, rows, waves, slopes):
     """Put minus the trace of a plate at abscissa `place` of its line, and its slope, into the span of contact `i`."""
     sines, cosines, cross_sines, cross_cosines = waves[0], waves[1], waves[2], waves[3]
     first, amplitude = spans[i, at.BENDING], contacts[i, at.AMPLITUDE]
@@ -94,6 +94,13 @@ def set_products(contacts, spans, half_waves, i, place, rows, waves, slopes):
         rows[i, at.NORMAL, k] = -amplitude * sines[m] * cross_sines[n]
         turn = rate * (m + 1.0) * cosines[m] * cross_sines[n] + cross_rate * (n + 1.0) * sines[m] * cross_cosines[n]
         slopes[i, k - first] = -amplitude * turn
+    for k in range(spans[i, at.AXIAL], spans[i, at.AXIAL_END]):
+        m, n = half_waves[at.ALONG, k], half_waves[at.ACROSS, k]
+        sine, cosine, cross_sine, cross_cosine = sines[m], cosines[m], cross_sines[n], cross_cosines[n]
+        moved = shares[at.SINE_COSINE, k] * sine * cross_cosine + shares[at.COSINE_SINE, k] * cosine * cross_sine
+        rows[i, at.TANGENTIAL, k] = -moved
+        turn = shares[at.BOTH_COSINES, k] * cosine * cross_cosine + shares[at.BOTH_SINES, k] * sine * cross_sine
+        slopes[i, k - first] = -turn
 
 
 @numba.njit(cache=True, fastmath=FASTMATH, inline="always")
@@ -160,11 +167,13 @@ def work_of_loads_and_damping(block, matrices, state, load, new):
 def convecting_force(spans, i, slopes, normal, tangential, state, new):
     """Return the force along the track that its slopes make of the forces of contact `i`."""
     first, first_axial = spans[i, at.BENDING], spans[i, at.AXIAL]
+    # Both kinds of modes of a beam share their slopes.
+    first_stretched = first if spans[i, at.CROSS_WAVES] > 0 else first_axial
     bend = stretch = 0.0
     for k in range(first, spans[i, at.BENDING_END]):
         bend += slopes[i, k - first] * (state[at.Q, k] + new[k])
     for k in range(first_axial, spans[i, at.AXIAL_END]):
-        stretch += slopes[i, k - first_axial] * (state[at.Q, k] + new[k])
+        stretch += slopes[i, k - first_stretched] * (state[at.Q, k] + new[k])
     return tangential * stretch - normal * bend
 
 
@@ -198,6 +207,7 @@ def march(
     laws,
     spans,
     half_waves,
+    shares,
     rows,
     compliance,
     state,
@@ -218,15 +228,16 @@ def march(
 
     `loads` has a row of load increments for each of the first signals, `signals` a row of amplitudes a step, `motion`
     the motions imposed on each contact at every step, the one before and the one after. `half_waves` are those of
-    the modes of plates. `rows` are the contacts' traces, their harmonic spans filled here; `compliance` is that of the
-    fixed parts. `state`, `carried` and `energies` are updated in place; `energy_record` and `record` get a row a
-    sample, `raw` the probes at every step.
+    the modes of plates, `shares` what their products give of those in the plane. `rows` are the contacts' traces, their
+    harmonic spans filled here; `compliance` is that of the fixed parts. `state`, `carried` and `energies` are updated
+    in place; `energy_record` and `record` get a row a sample, `raw` the probes at every step.
     """
     n_modes, n_contacts = block.shape[1], contacts.shape[0]
     n_harmonic = 0
     for i in range(n_contacts):
         n_harmonic += spans[i, at.BENDING_END] > spans[i, at.BENDING]
-    waves, slopes = np.zeros((4, 2 * n_modes)), np.zeros((n_contacts, n_modes))
+    waves, slopes = np.zeros((4, 2 * n_modes + 1)), np.zeros((n_contacts, n_modes))
+    waves[1, 2 * n_modes] = waves[3, 2 * n_modes] = 1.0
     load, new, position = np.zeros(n_modes), np.empty(n_modes), np.empty(n_modes)
     push, work = np.empty(n_modes), np.empty(n_modes)
     gaps, slips, places = np.empty(n_contacts), np.empty(n_contacts), np.empty(n_contacts)
@@ -274,7 +285,7 @@ def march(
                         crossed = abs(place - carried[i, at.ABSCISSA]) < high - low
                         return sample, (at.OFF_TRACK if crossed else at.NOT_FINITE)
                     if spans[i, at.CROSS_WAVES] > 0:
-                        set_products(contacts, spans, half_waves, i, place, rows, waves, slopes)
+                        set_products(contacts, spans, half_waves, shares, i, place, rows, waves, slopes)
                     else:
                         set_harmonics(contacts, spans, i, place, rows, waves, slopes)
                     gap += along(rows, i, at.NORMAL, position, bending, bending_end)

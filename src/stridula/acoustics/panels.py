@@ -66,7 +66,7 @@ class Panel:
 def panel_of(track: ModalBeam | ModalPlate) -> Panel:
     """Return the surface of a track: a plate, or a beam as a strip that moves uniformly across its width.
 
-    Axial modes move in the plane of the surface and are left out.
+    Axial modes, and those in the plane of a plate, move in the plane of the surface and are left out.
 
     Parameters
     ----------
@@ -121,15 +121,15 @@ def _bent(beam: ModalBeam, width: float) -> Panel:
 
 
 def _plate(plate: ModalPlate) -> Panel:
-    modes = plate.modes()
+    modes, count = plate.modes(), plate.harmonics[0]
     return Panel(
         length=plate.length,
         width=plate.width,
         edge=0.0,
         amplitude=plate.amplitude,
         wavenumbers=plate.wavenumbers,
-        angular_frequency=modes.angular_frequency,
-        damping=modes.damping,
+        angular_frequency=modes.angular_frequency[:count],
+        damping=modes.damping[:count],
         ends=plate.ends,
         place=plate.track_line.point,
     )

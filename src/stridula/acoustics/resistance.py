@@ -72,7 +72,7 @@ def radiation_damping(track: ModalBeam | ModalPlate, air: Air | None = None) -> 
     Returns
     -------
     ndarray, shape (modes,)
-        Damping ratios [1] of the modes that bend, in the order of the track's.
+        Damping ratios [1] of all modes of the track in its order, zero for those that do not bend it.
 
     Raises
     ------
@@ -82,7 +82,9 @@ def radiation_damping(track: ModalBeam | ModalPlate, air: Air | None = None) -> 
     air = Air() if air is None else air
     panel = panel_of(track)
     efficiency = radiation_efficiency(track, panel.angular_frequency / (2.0 * np.pi), air)
-    return air.impedance * efficiency * mean_square(panel) / (2.0 * panel.angular_frequency)
+    found = np.zeros(sum(track.harmonics))
+    found[: efficiency.size] = air.impedance * efficiency * mean_square(panel) / (2.0 * panel.angular_frequency)
+    return found
 
 
 def mean_square(panel: Panel) -> Array:

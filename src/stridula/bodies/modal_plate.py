@@ -1,4 +1,4 @@
-"""A rectangular plate given by its exact modes: simply supported along its four edges, rigid in its plane."""
+"""A rectangular plate given by its exact modes: simply supported along its four edges, in its plane rigid or not."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ import numpy as np
 from ..checks import count, finite, instance, positive, within
 from .damping import check_damping_count, checked_damping, damping_of_modes
 from .modes import Array, BodyPoint, Modes
+from .plane_stress import PlaneStress, lowest, plane_stress, rigid
 from .sections import Material
 
 # Sine or cosine that rounding leaves of a right angle.
 ALONG_AN_EDGE = 1e-15
+FROM_0 = "two whole numbers of at least 0, along length and width, not both 0"
 
 
 @dataclass(frozen=True)
@@ -54,12 +56,20 @@ class Line:
 
 @dataclass(frozen=True)
 class ModalPlate:
-    """A thin rectangular plate in its exact modes ``sin(m pi x / length) sin(n pi y / width)``, by rising frequency.
+    """A thin rectangular plate in its exact modes, those of bending first, each kind by rising frequency.
 
-    Kirchhoff, simply supported along its edges, bending only: in its own plane it does not move.
+    Kirchhoff, simply supported along its edges: ``w = sin(m pi x / length) sin(n pi y / width)`` and
     ``w_mn = pi² ((m / length)² + (n / width)²) sqrt(D / rho h)`` with ``D = E h³ / 12 (1 - nu²)``; modal mass
     ``rho h length width / 4`` (Leissa 1969, Vibration of Plates). Bodies slide on it along a line: world x is along the
     line, world y along the plate's normal, towards the slider.
+
+    In its own plane it is rigid, or with `in_plane` stretches and shears in plane stress, its edges held along their
+    normals and free along themselves: ``u = A sin(kx x) cos(ky y)`` along the length,
+    ``v = B cos(kx x) sin(ky y)`` along the width, with ``(kx, ky) = (m pi / length, n pi / width)``. Longitudinal modes
+    have ``(A, B)`` along ``(kx, ky)`` and ``w = c_L |k|``, ``c_L² = E / rho (1 - nu²)``; shear modes, with m and n of
+    at least 1, have it along ``(ky, -kx)`` and ``w = c_T |k|``, ``c_T² = E / 2 rho (1 + nu)``. Modal mass
+    ``rho h length width / 4`` for unit ``(A, B)``, twice that where m or n is 0 (Xing & Liu 2009, Int. J. Mech. Sci.
+    51, 246-255). Contacts are in the middle plane: what presses does not stretch it, and what rubs does not bend it.
 
     Parameters
     ----------
@@ -68,20 +78,27 @@ class ModalPlate:
     thickness, length, width : float
         Thickness and sides [m].
     bending_modes : tuple of int, optional
-        Numbers of half-waves kept along the length and along the width; each pair of them is a mode.
+        Numbers of half-waves kept along the length and along the width; each pair of them is a mode that bends.
     damping : float or sequence of float, optional
-        Modal damping ratio of every mode [1], from 0 to 1 (1 excluded), or one for each mode in their order.
+        Modal damping ratio of every mode [1], from 0 to 1 (1 excluded), or one for each mode in their order: those of
+        bending as in `numbers`, then those in the plane as in `in_plane_numbers`.
     cutoff : float, optional
-        Keep all the modes up to this frequency [Hz] instead of the numbers above.
+        Keep all the modes up to this frequency [Hz] instead of `bending_modes` and `in_plane_modes`.
     line : Line, optional
         Where bodies slide on it; along its length through the middle of its width, from the edge, if left out.
     name : str, optional
         What it is called in records; tells equal bodies apart.
+    in_plane : bool, optional
+        Whether it moves in its plane, too; else it is rigid there.
+    in_plane_modes : tuple of int, optional
+        Most half-waves along the length and along the width of the modes in the plane, counted from 0; not both 0. A
+        pair of them is a longitudinal mode and, where neither is 0, a shear mode.
 
     Raises
     ------
     ValueError
-        If an argument is out of its range, if no mode lies below `cutoff`, or if the line does not cross the plate.
+        If an argument is out of its range, if no mode of a kind wanted lies below `cutoff`, or if the line does not
+        cross the plate.
     """
 
     material: Material
@@ -93,6 +110,8 @@ class ModalPlate:
     cutoff: float | None = None
     line: Line | None = None
     name: str = ""
+    in_plane: bool = False
+    in_plane_modes: tuple[int, int] = (6, 6)
 
     def __post_init__(self) -> None:
         instance("material", self.material, Material)
@@ -100,13 +119,15 @@ class ModalPlate:
             positive(side, getattr(self, side))
         words = "two whole numbers of at least 1, along length and width"
         object.__setattr__(self, "bending_modes", _pair("bending_modes", self.bending_modes, count, words))
+        instance("in_plane", self.in_plane, bool)
+        object.__setattr__(self, "in_plane_modes", _pair("in_plane_modes", self.in_plane_modes, _count_from_0, FROM_0))
+        if not any(self.in_plane_modes):
+            raise ValueError(f"in_plane_modes must be {FROM_0}, got {self.in_plane_modes!r}")
         object.__setattr__(self, "damping", checked_damping(self.damping))
         instance("name", self.name, str)
-        if self.cutoff is not None and positive("cutoff", self.cutoff) * (1.0 + 1e-12) < self._frequency(1, 1):
-            raise ValueError(
-                f"cutoff must leave at least one mode (first at {self._frequency(1, 1):.6g} Hz), got {self.cutoff!r} Hz"
-            )
-        check_damping_count(self.damping, len(self.numbers))  # type: ignore[arg-type]
+        if self.cutoff is not None:
+            self._check_cutoff(positive("cutoff", self.cutoff) * (1.0 + 1e-12))
+        check_damping_count(self.damping, sum(self.harmonics))  # type: ignore[arg-type]
         if self.line is not None:
             instance("line", self.line, Line)
             self._check_line(self.line)
@@ -161,23 +182,36 @@ class ModalPlate:
 
     @property
     def amplitude(self) -> float:
-        """Largest value of a mass-normalised mode shape [kg^(-1/2)], ``sqrt(4 / rho h length width)``."""
+        """Largest value of a mass-normalised shape of bending [kg^(-1/2)], ``sqrt(4 / rho h length width)``."""
         return float(np.sqrt(4.0 / self.total_mass))
 
     @property
     def harmonics(self) -> tuple[int, int]:
-        """Numbers of bending and of axial modes kept; there are no axial ones."""
-        return len(self.numbers), 0
+        """Numbers of modes kept that bend and that move in the plane."""
+        return len(self.numbers), len(self.in_plane_numbers)
 
     @property
     def numbers(self) -> Array:
-        """Numbers (m, n) of half-waves of each mode along length and width, shape (modes, 2)."""
+        """Numbers (m, n) of half-waves of each mode that bends along length and width, shape (bending modes, 2)."""
         return _numbers(self)
 
     @property
     def wavenumbers(self) -> Array:
-        """Wavenumbers (m pi / length, n pi / width) of each mode [rad/m], shape (modes, 2)."""
+        """Wavenumbers (m pi / length, n pi / width) of each mode that bends [rad/m], shape (bending modes, 2)."""
         return np.asarray(self.numbers * (np.pi / np.array([self.length, self.width])))
+
+    @property
+    def in_plane_numbers(self) -> Array:
+        """Numbers (m, n) of half-waves of each mode in the plane along length and width, shape (in-plane modes, 2)."""
+        return _in_plane(self).numbers
+
+    @property
+    def polarisations(self) -> Array:
+        """Unit vectors (A, B) of each mode in the plane, shape (in-plane modes, 2).
+
+        Along ``(m / length, n / width)`` for a longitudinal mode, along ``(n / width, -m / length)`` for a shear mode.
+        """
+        return _in_plane(self).polarisations
 
     def modes(self, held_x: bool = False) -> Modes:
         """Return the modes; `held_x` is for bodies whose root is driven and must be false."""
@@ -186,7 +220,7 @@ class ModalPlate:
         return _modes(self)
 
     def shapes(self, x: Any, y: Any) -> Array:
-        """Return the mass-normalised mode shapes at points of the plate.
+        """Return the mass-normalised shapes of the modes that bend at points of the plate.
 
         Parameters
         ----------
@@ -195,27 +229,80 @@ class ModalPlate:
 
         Returns
         -------
-        ndarray, shape (..., modes)
+        ndarray, shape (..., bending modes)
             Displacement along the normal for unit modes [kg^(-1/2)].
         """
         along, across = self.wavenumbers.T
         x, y = np.asarray(x, dtype=float)[..., None], np.asarray(y, dtype=float)[..., None]
         return np.asarray(self.amplitude * np.sin(along * x) * np.sin(across * y))
 
+    def in_plane_shapes(self, x: Any, y: Any) -> Array:
+        """Return the mass-normalised shapes of the modes in the plane at points of the plate.
+
+        Parameters
+        ----------
+        x, y : array_like, shape (...)
+            Distances along length and width from the corner [m].
+
+        Returns
+        -------
+        ndarray, shape (..., 2, in-plane modes)
+            Displacements along length and width for unit modes [kg^(-1/2)].
+        """
+        sheet = _in_plane(self)
+        along, across = sheet.wavenumbers
+        x, y = np.asarray(x, dtype=float)[..., None], np.asarray(y, dtype=float)[..., None]
+        shapes = [np.sin(along * x) * np.cos(across * y), np.cos(along * x) * np.sin(across * y)]
+        return np.asarray(sheet.amplitudes * np.stack(shapes, axis=-2) / math.sqrt(self.total_mass))
+
     def trace(self, position: Any, held_x: bool = False) -> Array:
-        """Return the rows that give the displacement (0, w) at `position` from the modes, shape (2, modes)."""
-        shapes = self.shapes(*self._point(position))
-        return np.stack([np.zeros_like(shapes), shapes])
+        """Return the rows that give the displacement at `position` from the modes.
+
+        Parameters
+        ----------
+        position : float or tuple of float
+            Abscissa of the line, or distances along length and width [m].
+        held_x : bool, optional
+            Of no effect.
+
+        Returns
+        -------
+        ndarray, shape (2, modes)
+            Displacements along the line and along the normal for unit modes [kg^(-1/2)].
+        """
+        x, y = self._point(position)
+        bending, in_plane = self.harmonics
+        rows = np.zeros((2, bending + in_plane))
+        rows[1, :bending] = self.shapes(x, y)
+        rows[0, bending:] = np.array(self.track_line.tangent) @ self.in_plane_shapes(x, y)
+        return rows
 
     def trace_slope(self, position: Any) -> Array:
         """Return the derivative of `trace` along the line [1/m], shape (2, modes)."""
         x, y = self._point(position)
         along, across = self.wavenumbers.T
         cosine, sine = self.track_line.tangent
-        rows = np.zeros((2, len(along)))
-        rows[1] = cosine * along * np.cos(along * x) * np.sin(across * y)
-        rows[1] += sine * across * np.sin(along * x) * np.cos(across * y)
-        return np.asarray(self.amplitude * rows)
+        bending, in_plane = self.harmonics
+        rows = np.zeros((2, bending + in_plane))
+        rows[1, :bending] = cosine * along * np.cos(along * x) * np.sin(across * y)
+        rows[1, :bending] += sine * across * np.sin(along * x) * np.cos(across * y)
+        rows[1] *= self.amplitude
+        (along, across), shares = _in_plane(self).wavenumbers, self.in_plane_shares
+        rows[0, bending:] = shares[2] * np.cos(along * x) * np.cos(across * y)
+        rows[0, bending:] += shares[3] * np.sin(along * x) * np.sin(across * y)
+        return rows
+
+    @property
+    def in_plane_shares(self) -> Array:
+        """What products of sines S and cosines C, of kx x times of ky y, give of each mode in the plane on the line.
+
+        Displacement along the line is ``shares[0] S C + shares[1] C S`` [kg^(-1/2)], its derivative along the line
+        ``shares[2] C C + shares[3] S S`` [kg^(-1/2)/m]; shape (4, in-plane modes).
+        """
+        sheet, direction = _in_plane(self), np.array(self.track_line.tangent)[:, None]
+        u, v = direction * sheet.amplitudes / math.sqrt(self.total_mass)
+        along, across = direction * sheet.wavenumbers
+        return np.stack([u, v, along * u + across * v, -along * v - across * u])
 
     def _point(self, position: Any) -> tuple[float, float]:
         """Return the distances along length and width [m] of an abscissa or a pair."""
@@ -225,6 +312,18 @@ class ModalPlate:
     def _frequency(self, m: Any, n: Any) -> Any:
         squared = (m / self.length) ** 2 + (n / self.width) ** 2
         return 0.5 * np.pi * squared * math.sqrt(self.rigidity / self.surface_density)
+
+    def _check_cutoff(self, highest: float) -> None:
+        if highest < self._frequency(1, 1):
+            raise ValueError(
+                f"cutoff must leave at least one mode (first at {self._frequency(1, 1):.6g} Hz), got {self.cutoff!r} Hz"
+            )
+        first = lowest(self.material, self.length, self.width)
+        if self.in_plane and highest < first:
+            raise ValueError(
+                f"cutoff must leave at least one mode in the plane where in_plane is true (first at {first:.6g} Hz), "
+                f"got {self.cutoff!r} Hz"
+            )
 
     def _holds(self, x: float, y: float) -> bool:
         return 0.0 <= x <= self.length and 0.0 <= y <= self.width
@@ -236,6 +335,10 @@ class ModalPlate:
         x, y = line.point((low + high) / 2.0)
         if not (high > low and 0.0 < x < self.length and 0.0 < y < self.width):
             raise ValueError(f"line must cross the plate inside its edges, got {line!r}")
+
+
+def _count_from_0(name: str, value: Any) -> int:
+    return count(name, value, low=0)
 
 
 def _pair(
@@ -280,10 +383,27 @@ def _numbers(plate: ModalPlate) -> Array:
 
 
 @lru_cache(maxsize=16)
+def _in_plane(plate: ModalPlate) -> PlaneStress:
+    if not plate.in_plane:
+        return rigid(plate.length, plate.width)
+    return plane_stress(plate.material, plate.length, plate.width, plate.in_plane_modes, plate.cutoff)
+
+
+@lru_cache(maxsize=16)
 def _modes(plate: ModalPlate) -> Modes:
     m, n = plate.numbers.T
     # The integral of rho h sin sin over the plate: only odd half-waves move on average.
     mean = (1.0 - (-1.0) ** m) / (m * np.pi) * (1.0 - (-1.0) ** n) / (n * np.pi)
-    translation = np.zeros((2, len(m)))
-    translation[1] = plate.total_mass * plate.amplitude * mean
-    return Modes(2.0 * np.pi * plate._frequency(m, n), damping_of_modes(plate.damping, len(m)), translation)
+    translation = np.zeros((2, sum(plate.harmonics)))
+    translation[1, : len(m)] = plate.total_mass * plate.amplitude * mean
+    # In the plane, also only those whose cosine has no half-wave.
+    sheet = _in_plane(plate)
+    along, across = sheet.numbers.T
+    moved = sheet.amplitudes * [_mean_of_sine(along) * (across == 0), _mean_of_sine(across) * (along == 0)]
+    translation[0, len(m) :] = math.sqrt(plate.total_mass) * (np.array(plate.track_line.tangent) @ moved)
+    angular = 2.0 * np.pi * np.concatenate([plate._frequency(m, n), sheet.frequency])
+    return Modes(angular, damping_of_modes(plate.damping, angular.size), translation)
+
+
+def _mean_of_sine(half_waves: Array) -> Array:
+    return np.asarray((1.0 - (-1.0) ** half_waves) / (np.maximum(half_waves, 1) * np.pi))

@@ -107,7 +107,9 @@ class ContactBlocks:
     spans : ndarray, shape (contacts, spans)
         Spans of modes that each contact sees.
     half_waves : ndarray, shape (2, modes)
-        Half-waves of the modes of plates along their two sides, counted from zero.
+        Where the sines of the modes of plates lie, by their half-waves along the two sides.
+    shares : ndarray, shape (4, modes)
+        What products of sines and cosines give of the modes in the plane of plates.
     rows : ndarray, shape (contacts, 2, modes)
         Rows along normal and tangent; harmonic spans are filled by the march.
     compliance : ndarray, shape (2 contacts, 2 contacts)
@@ -118,6 +120,7 @@ class ContactBlocks:
     laws: Array
     spans: Array
     half_waves: Array
+    shares: Array
     rows: Array
     compliance: Array
 
@@ -129,7 +132,7 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
     # Unsigned, so that the march need not look for indices below zero.
     spans = np.zeros((count, at.SPANS), dtype=np.uint64)
     rows = np.array([contact.fixed for contact in arrays.contacts])
-    half_waves = np.zeros((2, arrays.mode_count), dtype=np.uint64)
+    half_waves, shares = np.zeros((2, arrays.mode_count), dtype=np.uint64), np.zeros((4, arrays.mode_count))
     for i, one in enumerate(arrays.contacts):
         used = np.flatnonzero(one.fixed.any(axis=0))
         fixed = (used[0], used[-1] + 1) if used.size else (0, 0)
@@ -138,7 +141,11 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
         if isinstance(one.contact.track, Track):
             constants[i, at.LOW :], spans[i, at.WAVES :] = _waves(one.contact.track)
         if isinstance(one.contact.track, ModalPlate):
-            half_waves[:, slice(*one.bending)] = one.contact.track.numbers.T - 1
+            plate, in_plane = one.contact.track, slice(*one.axial)
+            half_waves[:, slice(*one.bending)] = plate.numbers.T - 1
+            numbers = plate.in_plane_numbers.T
+            half_waves[:, in_plane] = np.where(numbers == 0, 2 * arrays.mode_count, numbers - 1)
+            shares[:, in_plane] = plate.in_plane_shares
         constants[i, at.LAW], parameters = _law(one.contact.friction)
         laws[i, : len(parameters)] = parameters
         if not one.fixed[0].any() and one.bending[0] == one.bending[1]:
@@ -147,7 +154,8 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
                 "got a tip that does not"
             )
     flat = rows.reshape(2 * count, -1)
-    return ContactBlocks(constants, laws, spans, half_waves, rows, np.ascontiguousarray(modes.mobility(flat) @ flat.T))
+    compliance = np.ascontiguousarray(modes.mobility(flat) @ flat.T)
+    return ContactBlocks(constants, laws, spans, half_waves, shares, rows, compliance)
 
 
 def _waves(track: Track) -> tuple[tuple[float, ...], tuple[int, int]]:
@@ -156,7 +164,7 @@ def _waves(track: Track) -> tuple[tuple[float, ...], tuple[int, int]]:
         return (*track.ends, 0.0, np.pi / track.length, 0.0, 0.0, track.amplitude), (max(track.harmonics), 0)
     (x, y), (cosine, sine) = track.track_line.origin, track.track_line.tangent
     along, across = np.pi / track.length, np.pi / track.width
-    most = track.numbers.max(axis=0)
+    most = np.concatenate([track.numbers, track.in_plane_numbers]).max(axis=0)
     return (*track.ends, along * x, along * cosine, across * y, across * sine, track.amplitude), (most[0], most[1])
 
 

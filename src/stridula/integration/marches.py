@@ -140,6 +140,7 @@ class GeneralMarch:
             contacts.laws,
             contacts.spans,
             contacts.half_waves,
+            contacts.shares,
             contacts.rows,
             contacts.compliance,
             state.modal,

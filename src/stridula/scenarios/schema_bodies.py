@@ -125,7 +125,11 @@ class Plate(Table):
     width: is_.Length
     """other side [m]"""
     bending_modes: is_.Counts = ModalPlate.bending_modes
-    """numbers of half-waves along length and width, unless there is a cutoff"""
+    """numbers of half-waves along length and width of modes that bend, unless there is a cutoff"""
+    in_plane: bool = ModalPlate.in_plane
+    """whether it moves in its plane, too; else it is rigid there"""
+    in_plane_modes: is_.CountsOrNone = ModalPlate.in_plane_modes
+    """most half-waves along length and width of modes in its plane, counted from 0, unless there is a cutoff"""
     damping: is_.ModalDamping = ModalPlate.damping
     """damping ratio of every mode, or one for each"""
     cutoff: is_.Frequency | None = None

@@ -1,4 +1,4 @@
-"""The simply supported plate: natural frequencies, deflection under a force, and what it answers at a point."""
+"""The simply supported plate: natural frequencies, also in its plane, deflection under a force, mobility at a point."""
 
 from __future__ import annotations
 
@@ -7,13 +7,21 @@ from math import pi, sqrt
 import numpy as np
 from scipy.special import j1
 
-from ..bodies import Material, ModalPlate
+from ..bodies import Material, ModalBeam, ModalPlate, Rectangle
 from ..bodies.modes import Array
 from .case import Case, Curve, Outcome, Row, Sketch
 
 STEEL = Material(2.1e11, 7800.0, 0.3)
 # Frequencies of the first modes (m, n) of a plate of 0.4 m x 0.3 m x 2 mm [Hz], to the digits that are printed.
 PRINTED = {(1, 1): 85.640, (2, 1): 178.132, (1, 2): 250.070, (2, 2): 342.561}
+# Of the first modes in its plane: half-waves, whether of shear, frequency [Hz].
+PRINTED_IN_PLANE = (
+    ((1, 1), "shear", 6704.01),
+    ((1, 0), "longitudinal", 6799.10),
+    ((0, 1), "longitudinal", 9065.47),
+    ((2, 1), "shear", 9668.66),
+    ((1, 1), "longitudinal", 11331.84),
+)
 # Deflection at the centre of a square plate under a force F there, over F a²/D: Timoshenko & Woinowsky-Krieger.
 TIMOSHENKO = 0.01160
 
@@ -136,12 +144,64 @@ def answers() -> Outcome:
     return Outcome(rows, Sketch("frequency [Hz]", "real mobility over the infinite plate's", curves), notes)
 
 
+def in_plane() -> Outcome:
+    """The first modes in the plane against the closed form, and modes along the length against a clamped bar."""
+    plate = ModalPlate(STEEL, 0.002, 0.4, 0.3, in_plane=True)
+    frequency = plate.modes().frequency[plate.harmonics[0] :][: len(PRINTED_IN_PLANE)]
+    # A longitudinal mode moves along its wave.
+    along = np.abs(np.sum(plate.polarisations * (plate.in_plane_numbers / [plate.length, plate.width]), axis=1))
+    kinds = np.where(along < 1e-9, "shear", "longitudinal")
+    rows = []
+    for place, (pair, kind, known) in enumerate(PRINTED_IN_PLANE):
+        same = tuple(plate.in_plane_numbers[place]) == pair and kinds[place] == kind
+        found = float(frequency[place]) if same else float("nan")
+        rows.append(
+            Row(f"mode {place + 1}, {kind} {pair}", known, found, 0.5e-2, "half of the last digit printed", "Hz")
+        )
+    light, count = Material(2.1e11, 7800.0, 0.0), 201
+    strip = ModalPlate(light, 0.002, 0.4, 0.3, in_plane=True, in_plane_modes=(count, 0))
+    bar = ModalBeam(light, Rectangle(0.3, 0.002), 0.4, axial_modes=count)
+    shapes, angular = (one[..., strip.harmonics[0] :] for one in (strip.trace(0.2)[0], strip.modes().angular_frequency))
+    axial = bar.modes().frequency[bar.harmonics[0] :]
+    rows.append(
+        Row(
+            "without Poisson's effect, along the length: largest ratio to a bar's frequencies, less 1",
+            0.0,
+            float(np.abs(angular / (2.0 * pi * axial) - 1.0).max()),
+            1e-12,
+            "the same closed form, to round-off",
+        )
+    )
+    stiffness = light.young * 0.3 * 0.002 / 0.4
+    rows.append(
+        Row(
+            "of the same: compliance at mid-length over length / E S",
+            0.25,
+            float(np.sum((shapes / angular) ** 2)) * stiffness,
+            1.0 / (pi**2 * (count + 1)),
+            "a bar held at both ends; the odd modes left out: 2 / pi² of the sum of 1 / m²",
+        )
+    )
+    numbers = np.arange(1, len(PRINTED_IN_PLANE) + 1)
+    curves = [
+        Curve(numbers, np.array([known for *_, known in PRINTED_IN_PLANE]), "closed form"),
+        Curve(numbers, frequency, "modal plate", marks=True),
+    ]
+    return Outcome(rows, Sketch("mode in the plane", "frequency [Hz]", curves))
+
+
 CASES = (
     Case(
         "frequencies-plate",
         "Frequencies of the simply supported plate",
         "closed form (Leissa 1969, Vibration of Plates, NASA SP-160)",
         frequencies,
+    ),
+    Case(
+        "in-plane-plate",
+        "A plate in its plane, edges held along their normals",
+        "closed form (Xing & Liu 2009, Int. J. Mech. Sci. 51, 246-255); a bar clamped at both ends",
+        in_plane,
     ),
     Case(
         "deflection-plate",
