@@ -121,6 +121,26 @@ def test_another_velocity_pulls_on_from_where_the_tip_is():
     assert place[-1] - place[0] == pytest.approx(travelled, rel=0.1)
 
 
+def test_a_plate_keeps_the_amplitude_of_each_of_its_waves():
+    def on_plate(thickness: float) -> st.System:
+        plate = st.ModalPlate(st.Material(2.1e11, 7800.0), thickness, 0.5, 0.4, (4, 3), in_plane=True)
+        rod = st.load_scenario("squeal").system.slider
+        contact = st.PointContact(rod.tip, plate, 0.2, st.Coulomb(0.5))
+        return st.System(contact, [st.Force(rod.root, transverse=3.0)])
+
+    before, now = on_plate(0.004), on_plate(0.0041)
+    live = LiveMarch(before, ())
+    marched(live, 5)
+    spans, old = live.spans["track"], live.position
+    assert live.change(now, ())
+    ratio = np.sqrt(0.0041 / 0.004)
+    # The contact is put back to its opening, by a displacement that is small against the waves.
+    kept = np.abs(live.position[slice(*spans)] - ratio * old[slice(*spans)])
+    assert kept.max() < 0.05 * np.abs(old[slice(*spans)]).max()
+    frequencies = [one.track.modes().angular_frequency for one in (before, now)]
+    assert not np.array_equal(*frequencies)
+
+
 def test_a_root_that_is_made_to_move_faster_does_not_take_its_body_along_at_once():
     live, before = played("weak-pressure", chunks=50, drives__0__normal_load=0.001, contact__gap=1e-3)
     changed(live, "weak-pressure", drives__0__normal_load=0.001, contact__gap=1e-3, drives__0__velocity=0.5)
