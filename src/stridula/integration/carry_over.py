@@ -126,7 +126,7 @@ def _sines(track: ModalBeam | ModalPlate) -> list[Any]:
         # Of a pair of half-waves in the plane there is a longitudinal mode and one of shear.
         shears = (track.polarisations[:, 1] < 0.0).tolist()
         in_plane = zip(track.in_plane_numbers.tolist(), shears, strict=True)
-        bending = [("bending", tuple(pair), False) for pair in track.numbers.tolist()]
-        return bending + [("in plane", tuple(pair), shear) for pair, shear in in_plane]
+        bends = [("bending", tuple(pair), False) for pair in track.numbers.tolist()]
+        return bends + [("in plane", tuple(pair), shear) for pair, shear in in_plane]
     bending, axial = track.harmonics
     return [("bending", k) for k in range(bending)] + [("axial", k) for k in range(axial)]
