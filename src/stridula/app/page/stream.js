@@ -2,13 +2,16 @@
 // the page, so that neither waits for the other.
 const PART = 480; // Samples of a part while live.
 const RATE = 48000;
-const BUFFER = 0.05; // Sound kept ahead [s]; more after a drop-out.
+const BUFFER = 0.05; // Sound kept ahead [s]; more after a drop-out, and less again after a while without one.
 const MOST_BUFFER = 0.11;
+const MORE = 0.02; // How much more after a drop-out [s].
+const CALM = 20000; // Time without a drop-out after which half of that is let go [ms].
 const RETRY = 1000; // Time between attempts to come back [ms].
 const FRAME = 1000 / 60;
 
 let socket, player, url;
 let buffer = BUFFER;
+let calm;
 let pace = { mode: "live", slow: 1 };
 let asked = 0; // Samples asked for that have not come.
 let left = 0; // Samples the player has.
@@ -43,7 +46,9 @@ self.onmessage = ({ data }) => {
   } else if (data.step) {
     pull(1, 1);
   } else if (data.more) {
-    buffer = Math.min(MOST_BUFFER, buffer + 0.02);
+    buffer = Math.min(MOST_BUFFER, buffer + MORE);
+    clearInterval(calm);
+    calm = setInterval(() => (buffer = Math.max(BUFFER, buffer - MORE / 2)), CALM);
   } else if (data.say) {
     if (data.say.type === "scene") scene(data.say);
     else say(data.say);
