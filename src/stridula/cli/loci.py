@@ -9,8 +9,8 @@ import xarray as xr
 
 from ..records.files import save as save_file
 from ..studies.loci import critical_value, critical_values, parameter_of, root_loci
+from .outputs import check_outputs
 from .points import numbers_of
-from .running import check_outputs
 from .stability import KINDS
 
 

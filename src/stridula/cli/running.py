@@ -19,6 +19,7 @@ from ..records.files import save
 from ..scenarios.load import load_scenario
 from .card import print_card
 from .exits import FAILED, INTERRUPTED, Stopped
+from .outputs import check_outputs
 
 
 def run_scenario(
@@ -70,33 +71,6 @@ def _check_wav(wav: str, name: str, out: str | None, plot: str | None, system: A
     check_writable(wav)
     check_ending(wav)
     check_baffled(system)
-
-
-def check_outputs(out: str | None, plot: str | None, word: str = "--out") -> None:
-    """Raise ValueError or OSError if a file and a figure cannot be written there; write nothing.
-
-    Parameters
-    ----------
-    out, plot : str or None
-        The files, None for one that is not asked for.
-    word : str, optional
-        The option of the first.
-    """
-    if out is not None and plot is not None and Path(out).resolve() == Path(plot).resolve():
-        raise ValueError(f"--plot must be another file than {word}, got {plot!r} for both")
-    if plot is not None:
-        from matplotlib.figure import Figure
-
-        formats = sorted(Figure().canvas.get_supported_filetypes())
-        if _format(plot) not in formats:
-            raise ValueError(f"--plot must end in one of {', '.join(f'.{word}' for word in formats)}, got {plot!r}")
-    for path in (out, plot):
-        if path is not None:
-            check_writable(path)
-
-
-def _format(path: str) -> str:
-    return Path(path).suffix.lower().removeprefix(".")
 
 
 def _finish(record: xr.Dataset, title: str, out: str | None, plot: str | None) -> list[str]:

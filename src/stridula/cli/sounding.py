@@ -18,7 +18,7 @@ from ..records.files import load
 from ..scenarios.load import load_scenario
 from ..scenarios.quantities import quantity
 from .hearing import print_levels
-from .running import check_outputs
+from .outputs import check_outputs
 
 # Window of a spectrogram [s].
 SHORTEST_FIGURE = 0.02

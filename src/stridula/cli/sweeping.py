@@ -18,9 +18,9 @@ from ..studies.points import Grid
 from ..studies.sweeps import SweepProgress, sweep
 from ..studies.swept import failures, usual_failure
 from .exits import FAILED, INTERRUPTED, Stopped
+from .outputs import check_outputs
 from .points import Points
 from .regimes import print_agreement
-from .running import check_outputs
 
 
 def sweep_scenario(

@@ -1,0 +1,34 @@
+"""Whether what a verb is to write can be written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..disk import check_writable
+
+
+def check_outputs(out: str | None, plot: str | None, word: str = "--out") -> None:
+    """Raise ValueError or OSError if a file and a figure cannot be written there; write nothing.
+
+    Parameters
+    ----------
+    out, plot : str or None
+        The files, None for one that is not asked for.
+    word : str, optional
+        The option of the first.
+    """
+    if out is not None and plot is not None and Path(out).resolve() == Path(plot).resolve():
+        raise ValueError(f"--plot must be another file than {word}, got {plot!r} for both")
+    if plot is not None:
+        from matplotlib.figure import Figure
+
+        formats = sorted(Figure().canvas.get_supported_filetypes())
+        if _format(plot) not in formats:
+            raise ValueError(f"--plot must end in one of {', '.join(f'.{word}' for word in formats)}, got {plot!r}")
+    for path in (out, plot):
+        if path is not None:
+            check_writable(path)
+
+
+def _format(path: str) -> str:
+    return Path(path).suffix.lower().removeprefix(".")
