@@ -5,17 +5,22 @@ from __future__ import annotations
 import errno
 import ipaddress
 import socket
+import sys
 import threading
 import webbrowser
 
 import uvicorn
 
 from ..studies.task import use_one_thread
+from .instrument import RATE, Instrument
 from .messages import LARGEST
+from .playable import PRESETS, playable
 from .server import create_app
 
 # How long pages are waited for when the server stops [s].
 GRACE = 2
+# After how long it is said that something is being compiled [s].
+PATIENCE = 2.0
 
 
 def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
@@ -42,10 +47,11 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
             f"host must be this machine's own, such as 127.0.0.1, unless --open lets other machines in, got {host!r}"
         )
     listening = _bound(host, port)
+    use_one_thread()
+    _get_ready()
     shown = f"[{host}]" if ":" in host else host
     address = f"http://{shown}:{listening.getsockname()[1]}/"
     print(f"stridula plays at {address} (Ctrl-C stops it)", flush=True)
-    use_one_thread()
     if opens_browser:
         threading.Timer(0.5, webbrowser.open, [address]).start()
     config = uvicorn.Config(
@@ -60,6 +66,17 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
         limit_concurrency=200,
     )
     uvicorn.Server(config).run(sockets=[listening])
+
+
+def _get_ready() -> None:
+    """Play a moment, so that what must be compiled is; say so where it takes long, which it does the first time."""
+    words = "stridula: compiling, once; this takes some ten seconds"
+    notice = threading.Timer(PATIENCE, print, [words], {"file": sys.stderr, "flush": True})
+    notice.daemon = True
+    notice.start()
+    for case in PRESETS[:3:2]:
+        list(Instrument(playable(case, None, {})).play(RATE // 100))
+    notice.cancel()
 
 
 def is_loopback(host: str) -> bool:
