@@ -80,6 +80,8 @@ def _bound(host: str, port: int) -> socket.socket:
         found = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
         found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         found.bind(address)
+        # Whoever reads the address may come at once: a call waits until it is answered.
+        found.listen()
     except OSError as error:
         taken = " (another program listens there: choose another --port)" if error.errno == errno.EADDRINUSE else ""
         raise ValueError(f"host and port must be free, got {host}:{port}: {error.strerror}{taken}") from error

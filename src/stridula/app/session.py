@@ -60,9 +60,8 @@ class Session:
         )
         try:
             while True:
-                text = await self.socket.receive_text()
                 try:
-                    await self._answer(message_of(text))
+                    await self._answer(message_of(await self._heard()))
                 except ScenarioError as error:
                     await self._tell("problem", problems=list(error.problems))
                 except ValueError as error:
@@ -70,6 +69,12 @@ class Session:
         finally:
             for task in self._tasks.values():
                 task.cancel()
+
+    async def _heard(self) -> str:
+        try:
+            return await self.socket.receive_text()
+        except KeyError:
+            raise ValueError("message must be text, got bytes") from None
 
     async def _tell(self, what: str, **words: Any) -> None:
         await self.socket.send_json({"type": what, **words})
@@ -153,6 +158,8 @@ class Session:
             axis = getattr(message, side)
             if axis.key not in known or not axis.low < axis.high:
                 raise ValueError(f"{side} must be a number of the page that rises from low to high, got {axis.key!r}")
+        if message.x.key == message.y.key:
+            raise ValueError(f"y must be another number than x, got {message.y.key!r} for both")
         self._do("map", self._rows(played, message))
 
     async def _rows(self, played: Playable, wanted: Map) -> None:
