@@ -7,7 +7,7 @@ from typing import Any
 
 from .serving import WAIT, Server
 
-PLAYS = "() => window.stridula && stridula.stats.samples > 4800"
+PLAYS = "window.stridula && stridula.stats.samples > 4800"
 
 
 class Browsing(AbstractContextManager["Browsing"]):
@@ -27,13 +27,18 @@ class Browsing(AbstractContextManager["Browsing"]):
         page.on("console", lambda said: said.type in ("error", "warning") and self.complaints.append(said.text))
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.goto(self.server.address + hash)
-        page.wait_for_function(PLAYS)
+        until(page, PLAYS)
         return page
 
     def __exit__(self, *raised: Any) -> None:
         self.context.close()
         if raised[0] is None and self.complains:
             assert self.complaints == []
+
+
+def until(page: Any, true: str, arg: Any = None) -> None:
+    """Wait until an expression in `arg` is true; as a function, for the page lets nobody evaluate texts."""
+    page.wait_for_function(f"(arg) => {true}", arg=arg)
 
 
 def stats(page: Any, name: str) -> Any:
@@ -44,7 +49,7 @@ def stats(page: Any, name: str) -> Any:
 def plays_on(page: Any, samples: int = 4800) -> None:
     """Wait until so many more samples were played."""
     before = stats(page, "samples")
-    page.wait_for_function(f"stridula.stats.samples >= {before + samples}")
+    until(page, f"stridula.stats.samples >= {before + samples}")
 
 
 def shown(page: Any, key: str) -> float:

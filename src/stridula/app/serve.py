@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import ipaddress
+import logging
 import socket
 import threading
 import webbrowser
@@ -46,6 +47,8 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
     address = f"http://{shown}:{listening.getsockname()[1]}/"
     print(f"stridula plays at {address} (Ctrl-C stops it)", flush=True)
     use_one_thread()
+    # A page that goes in the middle of what it asked for is no news.
+    logging.getLogger("asyncio").setLevel(logging.ERROR)
     if opens_browser:
         threading.Timer(0.5, webbrowser.open, [address]).start()
     config = uvicorn.Config(
