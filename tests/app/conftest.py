@@ -25,10 +25,19 @@ ARGUMENTS = (
 @pytest.fixture(scope="session")
 def server(tmp_path_factory) -> Iterator[Server]:
     """Serve the page; whatever befell it in between, it has complained of nothing."""
-    with_errors = Server(tmp_path_factory.mktemp("server") / "errors")
-    yield with_errors
-    with_errors.stop()
-    assert with_errors.complaints == ""
+    shared = Server(tmp_path_factory.mktemp("server") / "errors")
+    yield shared
+    shared.stop()
+    assert shared.complaints == ""
+
+
+@pytest.fixture
+def own(tmp_path) -> Iterator[Server]:
+    """Serve the page to one test alone, which may end the server."""
+    server = Server(tmp_path / "errors")
+    yield server
+    server.stop()
+    assert server.complaints == ""
 
 
 @pytest.fixture
@@ -43,7 +52,9 @@ def talk(server) -> Iterator[Conversation]:
 def chromium():
     """Start a browser; not for longer than a file of tests, for it keeps a loop of events running."""
     if not CHROMIUM.exists():
-        (pytest.fail if os.environ.get("CI") else pytest.skip)(MISSING, pytrace=False)
+        if os.environ.get("CI"):
+            pytest.fail(MISSING, pytrace=False)
+        pytest.skip(MISSING)
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import select
+import signal
 import subprocess
 import sys
 import time
@@ -65,6 +66,11 @@ class Server:
         """End it at once."""
         self.process.kill()
         self._wait()
+
+    def interrupt(self) -> int:
+        """Press Ctrl-C and return the exit code."""
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait(WAIT)
 
     def _wait(self) -> None:
         self.process.wait(WAIT)

@@ -5,14 +5,13 @@ from __future__ import annotations
 import contextlib
 import json
 import time
-from collections.abc import Iterator
 
 import psutil
 import pytest
 from websockets.exceptions import ConnectionClosed
 
 from .conversation import RATE, conversation
-from .serving import Server, eventually
+from .serving import eventually
 
 MOST_PAGES, AHEAD, FASTEST = 16, 1.0, 1.5
 # What a hundred pages may leave in memory, once memory is as the first of them left it [bytes].
@@ -22,15 +21,6 @@ SIDES = {
     "x": {"key": "contact.friction.coefficient", "low": 0.2, "high": 1.6},
     "y": {"key": "slider.angle", "low": 0.5, "high": 0.9},
 }
-
-
-@pytest.fixture
-def own(tmp_path) -> Iterator[Server]:
-    """Return a server that nobody else speaks with."""
-    server = Server(tmp_path / "errors")
-    yield server
-    server.stop()
-    assert server.complaints == ""
 
 
 def test_sixteen_pages_at_most_until_one_goes(own):
@@ -65,15 +55,15 @@ def test_sessions_that_are_dropped_leave_nothing(own):
                 talk.say("scene", revision=1)
             if number % 4 > 1:
                 talk.until("scene")
-                talk.say("pull", parts=20, samples=480)
+                talk.say("pull", parts=5, samples=480)
             if number % 4 > 2:
-                talk.say("map", points=24, **SIDES)
+                talk.say("map", points=4, **SIDES)
 
     with conversation(own) as first:
         # A page that stays keeps the process of maps, for which those that go have left rows to compute.
         first.until("hello")
         first.scene()
-        first.say("map", points=24, **SIDES)
+        first.say("map", points=4, **SIDES)
         first.until("map row")
         for number in range(WARM_UP):
             drop(number)
@@ -98,7 +88,7 @@ def test_rows_that_nobody_waits_for_begin_no_process(own):
         for page in pages:
             page.until("hello")
             page.scene()
-            page.say("map", points=24, **SIDES)
+            page.say("map", points=12, **SIDES)
         pages[0].until("map row")
         assert len(process.children()) == 1
     eventually(lambda: not process.children(), "an end of the process of maps")
@@ -133,7 +123,7 @@ def test_the_process_of_maps_ends_with_the_server(own):
     with conversation(own) as talk:
         talk.until("hello")
         talk.scene()
-        talk.say("map", points=24, **SIDES)
+        talk.say("map", points=8, **SIDES)
         talk.until("map row")
         (maker,) = process.children()
         own.process.kill()

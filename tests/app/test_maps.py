@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import numpy as np
+import psutil
 import pytest
 
 import stridula as st
 from stridula.analysis.regimes import REGIMES
+from stridula.app.maps import MapMaker
+from stridula.app.messages import Map
+from stridula.app.playable import playable
 
 from .conversation import Conversation
 
@@ -44,7 +50,7 @@ def test_a_map_has_every_row_and_says_what_a_sweep_says(talk):
 
 def test_what_is_played_goes_on_beside_a_map_and_a_new_one_takes_its_place(talk):
     talk.scene("squeal")
-    talk.say("map", x=ACROSS, y=UP, points=24)
+    talk.say("map", x=ACROSS, y=UP, points=12)
     assert len(talk.play(480).sound) == 480
     talk.until("map row")
     rows = rows_of(talk, x={**ACROSS, "low": 0.3}, y=UP, points=2)
@@ -54,7 +60,7 @@ def test_what_is_played_goes_on_beside_a_map_and_a_new_one_takes_its_place(talk)
 
 def test_a_map_that_is_not_wanted_any_more_stops(talk):
     talk.scene("squeal")
-    talk.say("map", x=ACROSS, y=UP, points=24)
+    talk.say("map", x=ACROSS, y=UP, points=12)
     talk.until("map row")
     talk.say("no map")
     talk.play(480)
@@ -62,6 +68,31 @@ def test_a_map_that_is_not_wanted_any_more_stops(talk):
     # The map that comes after it is the only one.
     rows = rows_of(talk, x=ACROSS, y=UP, points=2)
     assert len(rows) == 2
+
+
+@pytest.mark.parametrize("turns", range(4))
+def test_a_map_given_up_as_it_begins_begins_no_process(turns):
+    played = playable("squeal", None, {})
+    wanted = Map.model_validate({"type": "map", "x": ACROSS, "y": UP, "points": 2})
+
+    async def given_up() -> None:
+        maker = MapMaker()
+
+        async def asked() -> None:
+            async for _ in maker.rows(played, wanted):
+                pass
+
+        task = asyncio.create_task(asked())
+        for _ in range(turns):
+            await asyncio.sleep(0)
+        task.cancel()
+        maker.close()
+        for _ in range(20):
+            await asyncio.sleep(0.01)
+
+    before = psutil.Process().children()
+    asyncio.run(given_up())
+    assert psutil.Process().children() == before
 
 
 def test_where_nothing_can_be_built_a_map_is_empty(talk):

@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-import pytest
+from contextlib import ExitStack
 
 from .browsing import Browsing, plays_on, stats, until
+from .conversation import conversation
 from .serving import Server
 
 FRICTION = "contact.friction.coefficient"
-
-
-@pytest.fixture
-def own(tmp_path):
-    """Return a server to be killed."""
-    server = Server(tmp_path / "errors")
-    yield server
-    server.kill()
 
 
 def test_the_page_comes_back_with_its_server_and_plays_on_as_it_was(chromium, own, tmp_path):
@@ -44,10 +37,6 @@ def test_the_page_comes_back_with_its_server_and_plays_on_as_it_was(chromium, ow
 
 
 def test_a_page_too_many_says_so(chromium, own):
-    from contextlib import ExitStack
-
-    from .conversation import conversation
-
     with ExitStack() as stack, Browsing(chromium, own) as browsing:
         browsing.complains = False
         for _ in range(16):

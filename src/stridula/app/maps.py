@@ -50,13 +50,15 @@ class MapMaker:
         """Return a row in its turn; one that nobody waits for any more is not begun, for it would begin the process."""
         await self._turn.acquire()
         # Once begun it is computed to its end, so that answers keep their order.
-        return await asyncio.shield(asyncio.ensure_future(self._computed(line)))
+        return await asyncio.shield(asyncio.ensure_future(self._computed(line, self._closed)))
 
-    async def _computed(self, line: str) -> list[str]:
-        closed = self._closed
+    async def _computed(self, line: str, closed: int) -> list[str]:
         try:
+            if closed != self._closed:
+                return []
             process = await self._started()
             if closed != self._closed:
+                # The last page went while the process began.
                 self.close()
                 return []
             assert process.stdin is not None

@@ -8,6 +8,7 @@ import logging
 import socket
 import threading
 import webbrowser
+from contextlib import suppress
 
 import uvicorn
 
@@ -62,7 +63,9 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
         timeout_graceful_shutdown=GRACE,
         limit_concurrency=200,
     )
-    uvicorn.Server(config).run(sockets=[listening])
+    # Ctrl-C is how it ends.
+    with suppress(KeyboardInterrupt):
+        uvicorn.Server(config).run(sockets=[listening])
 
 
 def is_loopback(host: str) -> bool:
