@@ -43,6 +43,7 @@ class Instrument:
         self._still, self._blend, self._last = 0, 0.0, 0.0
         self._must_blend = False
         self.last_seconds = LastSeconds(RATE)
+        self.last_seconds.changed(0.0, played.toml)
 
     def change(self, played: Playable, revision: int) -> bool:
         """Go on as another scenario and return whether the motion went on; else a stroke begins."""
@@ -50,6 +51,7 @@ class Instrument:
         track, steps = before.system.track, before.ratio
         goes_on = self.live.change(played.system, played.probes, played.scenario.scheme)
         self.played, self.revision = played, revision
+        self.last_seconds.changed(self.played_samples / RATE, played.toml)
         if (track, steps) != (self.live.system.track, self.live.ratio):
             self.source = source_of(self.name, self.live)
         self._must_blend, self._still = True, 0

@@ -64,7 +64,9 @@ class LastSeconds:
             self._changes.popleft()
 
     def changed(self, clock: float, toml: str) -> None:
-        """Keep what is played from a time on."""
+        """Keep what is played from a time on, in place of what would be from the same time on."""
+        if self._changes and self._changes[-1][0] == clock:
+            self._changes.pop()
         self._changes.append((clock, toml))
 
     def record(self, played: Playable, steps: int) -> bytes:

@@ -45,7 +45,12 @@ def main() -> None:
         os.nice(NICENESS)
     use_one_thread()
     for line in sys.stdin:
-        print(json.dumps(regimes(**json.loads(line))), flush=True)
+        found = json.dumps(regimes(**json.loads(line)))
+        try:
+            print(found, flush=True)
+        except BrokenPipeError:
+            # The server has gone in between; what is left unwritten would only be complained of.
+            os._exit(0)
 
 
 if __name__ == "__main__":

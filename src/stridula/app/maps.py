@@ -26,6 +26,7 @@ class MapMaker:
     def __init__(self) -> None:
         self._process: asyncio.subprocess.Process | None = None
         self._turn = asyncio.Lock()
+        self._closed = 0
 
     async def rows(self, played: Playable, wanted: Map) -> AsyncIterator[tuple[int, list[str]]]:
         """Yield the number of a row and the regimes along it, empty where there is none, rough rows first."""
@@ -35,8 +36,7 @@ class MapMaker:
         asked["keys"] = [wanted.x.key, wanted.y.key]
         for row in rough_first(wanted.points):
             asked["points"] = [[value, along[row]] for value in across]
-            # A row that nobody waits for any more is computed to its end, so that answers keep their order.
-            yield row, await asyncio.shield(asyncio.ensure_future(self._answer(json.dumps(asked))))
+            yield row, await self._answer(json.dumps(asked))
 
     def close(self) -> None:
         """End the process."""
@@ -44,10 +44,23 @@ class MapMaker:
             with contextlib.suppress(ProcessLookupError):
                 self._process.kill()
         self._process = None
+        self._closed += 1
 
     async def _answer(self, line: str) -> list[str]:
-        async with self._turn:
+        """Return a row in its turn; one that nobody waits for any more is not begun, for it would begin the process."""
+        await self._turn.acquire()
+        # Once begun it is computed to its end, so that answers keep their order.
+        return await asyncio.shield(asyncio.ensure_future(self._computed(line, self._closed)))
+
+    async def _computed(self, line: str, closed: int) -> list[str]:
+        try:
+            if closed != self._closed:
+                return []
             process = await self._started()
+            if closed != self._closed:
+                # The last page went while the process began.
+                self.close()
+                return []
             assert process.stdin is not None
             assert process.stdout is not None
             with contextlib.suppress(ConnectionError):
@@ -56,6 +69,8 @@ class MapMaker:
             found = await process.stdout.readline()
             # The last page has gone, and the process with it.
             return json.loads(found) if found else []
+        finally:
+            self._turn.release()
 
     async def _started(self) -> asyncio.subprocess.Process:
         if self._process is None or self._process.returncode is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from ..bodies import FiniteElementBeam, ModalBeam
@@ -47,7 +48,7 @@ class Playable:
         """What is recorded beside the contact."""
         return (Acceleration(self.system.track.centre, "y"),)
 
-    @property
+    @cached_property
     def toml(self) -> str:
         """The scenario as TOML, to run with `stridula run`."""
         return toml({"title": self.scenario.title} | self.tables)

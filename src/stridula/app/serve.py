@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import errno
 import ipaddress
+import logging
 import socket
 import sys
 import threading
 import webbrowser
+from contextlib import suppress
 
 import uvicorn
 
@@ -52,6 +54,8 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
     shown = f"[{host}]" if ":" in host else host
     address = f"http://{shown}:{listening.getsockname()[1]}/"
     print(f"stridula plays at {address} (Ctrl-C stops it)", flush=True)
+    # A page that goes in the middle of what it asked for is no news.
+    logging.getLogger("asyncio").setLevel(logging.ERROR)
     if opens_browser:
         threading.Timer(0.5, webbrowser.open, [address]).start()
     config = uvicorn.Config(
@@ -65,7 +69,9 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
         timeout_graceful_shutdown=GRACE,
         limit_concurrency=200,
     )
-    uvicorn.Server(config).run(sockets=[listening])
+    # Ctrl-C is how it ends.
+    with suppress(KeyboardInterrupt):
+        uvicorn.Server(config).run(sockets=[listening])
 
 
 def _get_ready() -> None:
@@ -97,6 +103,8 @@ def _bound(host: str, port: int) -> socket.socket:
         found = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
         found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         found.bind(address)
+        # Whoever reads the address may come at once: a call waits until it is answered.
+        found.listen()
     except OSError as error:
         taken = " (another program listens there: choose another --port)" if error.errno == errno.EADDRINUSE else ""
         raise ValueError(f"host and port must be free, got {host}:{port}: {error.strerror}{taken}") from error

@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 import time as clock
 from collections.abc import Coroutine
+from contextlib import suppress
 from typing import Any
 
-from starlette.websockets import WebSocket
+from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from ..scenarios.errors import ScenarioError
 from ..version import __version__
@@ -26,6 +27,8 @@ from .theory import theory
 AHEAD, FASTEST = 1.0, 1.5
 # Quiet time after a change before linear theory is asked [s].
 PAUSE = 0.25
+# Code of a socket that closed without one.
+GONE = 1006
 
 
 class Session:
@@ -60,9 +63,8 @@ class Session:
         )
         try:
             while True:
-                text = await self.socket.receive_text()
                 try:
-                    await self._answer(message_of(text))
+                    await self._answer(message_of(await self._heard()))
                 except ScenarioError as error:
                     await self._tell("problem", problems=list(error.problems))
                 except ValueError as error:
@@ -71,8 +73,14 @@ class Session:
             for task in self._tasks.values():
                 task.cancel()
 
+    async def _heard(self) -> str:
+        try:
+            return await self.socket.receive_text()
+        except KeyError:
+            raise ValueError("message must be text, got bytes") from None
+
     async def _tell(self, what: str, **words: Any) -> None:
-        await self.socket.send_json({"type": what, **words})
+        await _sent(self.socket.send_json({"type": what, **words}))
 
     async def _answer(self, message: Message) -> None:
         if isinstance(message, Scene):
@@ -132,7 +140,7 @@ class Session:
             if isinstance(part, Stop):
                 await self._tell("stroke", why=part.why, goes_on=part.goes_on)
             else:
-                await self.socket.send_bytes(part)
+                await _sent(self.socket.send_bytes(part))
         await self._tell("pulled", parts=pull.parts)
 
     async def _save(self, instrument: Instrument, save: Save) -> None:
@@ -142,7 +150,7 @@ class Session:
         else:
             content = await asyncio.to_thread(last.record, played, steps)
         await self._tell("file", format=save.format, size=len(content))
-        await self.socket.send_bytes(content)
+        await _sent(self.socket.send_bytes(content))
 
     def _map(self, played: Playable, message: Map | NoMap) -> None:
         if isinstance(message, NoMap):
@@ -153,17 +161,21 @@ class Session:
             axis = getattr(message, side)
             if axis.key not in known or not axis.low < axis.high:
                 raise ValueError(f"{side} must be a number of the page that rises from low to high, got {axis.key!r}")
+        if message.x.key == message.y.key:
+            raise ValueError(f"y must be another number than x, got {message.y.key!r} for both")
         self._do("map", self._rows(played, message))
 
     async def _rows(self, played: Playable, wanted: Map) -> None:
-        async for row, found in self.maps.rows(played, wanted):
-            await self._tell("map row", x=wanted.x.key, y=wanted.y.key, row=row, regimes=found)
-        await self._tell("map done")
+        with suppress(WebSocketDisconnect):
+            async for row, found in self.maps.rows(played, wanted):
+                await self._tell("map row", x=wanted.x.key, y=wanted.y.key, row=row, regimes=found)
+            await self._tell("map done")
 
     async def _theory(self, played: Playable, revision: int) -> None:
         await asyncio.sleep(PAUSE)
         found = await asyncio.to_thread(theory, played.system)
-        await self._tell("theory", revision=revision, **found)
+        with suppress(WebSocketDisconnect):
+            await self._tell("theory", revision=revision, **found)
 
     def _do(self, name: str, what: Coroutine[Any, Any, None]) -> None:
         """Do something beside what is played, in place of what was done under this name before."""
@@ -174,6 +186,14 @@ class Session:
         before = self._tasks.pop(name, None)
         if before is not None:
             before.cancel()
+
+
+async def _sent(sending: Coroutine[Any, Any, None]) -> None:
+    """Send; raises WebSocketDisconnect where the page has gone, and also where another task noticed it first."""
+    try:
+        await sending
+    except RuntimeError:
+        raise WebSocketDisconnect(GONE) from None
 
 
 def _played(instrument: Instrument, pull: Pull) -> list[bytes | Stop]:

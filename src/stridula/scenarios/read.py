@@ -68,7 +68,7 @@ def tables_of_text(text: str, name: str) -> dict[str, Any]:
         raise ScenarioError([f"scenario must not be empty, got {name}: `stridula show squeal` prints one to edit"])
     bases = shipped("bases") | shipped("cases")
     base = tables.get("base")
-    if base is not None and base not in bases:
+    if base is not None and not (isinstance(base, str) and base in bases):
         near = suggestion(base, list(bases))
         raise ScenarioError([f"base must be one of {', '.join(bases)} in a text, got {base!r}{near}"])
     named = tables.get("bodies")

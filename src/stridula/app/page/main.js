@@ -18,6 +18,7 @@ let hello, controls, map, described;
 let revision = 0;
 let mode = "live";
 let skipped = false;
+let badLink = false;
 
 stream.onmessage = ({ data }) => {
   if (data.part) part(data.part);
@@ -53,6 +54,8 @@ async function welcome(message) {
     controls = new Controls($("controls"), hello, scene);
     map = new RegimeMap(scene, controls, say);
     await readLink();
+    // Undo does not go back to before the link.
+    scene.past = [];
   }
   say({ type: "listen", source: $("source").value });
   say({ type: "repeat", on: $("repeat").checked });
@@ -79,7 +82,9 @@ function changed() {
 function shown(message) {
   described = message;
   stats.revision = message.revision;
-  $("problem").hidden = true;
+  // What is played in place of a link that cannot be read does not take its message away.
+  $("problem").hidden = !badLink;
+  badLink = false;
   controls.show(message.values);
   pictures.describe(message);
   map.follow();
@@ -223,6 +228,7 @@ async function readLink() {
     return await scene.read(location.hash);
   } catch {
     problem(["The link cannot be read: it must be one that Copy link made."]);
+    badLink = !described;
     return false;
   }
 }

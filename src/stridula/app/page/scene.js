@@ -80,7 +80,7 @@ export class Scene {
   async read(hash) {
     const words = new URLSearchParams(hash.replace(/^#/, ""));
     if (![...words].length) return false;
-    const next = { case: words.get("case") ?? "squeal", text: null, overrides: {} };
+    const next = { case: words.get("case") ?? (words.has("text") ? "" : "squeal"), text: null, overrides: {} };
     if (words.has("text")) next.text = await unpacked(words.get("text"));
     for (const [key, value] of words) {
       if (key === "case" || key === "text") continue;

@@ -1,0 +1,70 @@
+"""A server of the page for each process of tests, a browser for each file of tests that needs one."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from .browsing import Browsing
+from .conversation import Conversation, conversation
+from .serving import Server
+
+CHROMIUM = Path("/usr/bin/chromium")
+MISSING = f"{CHROMIUM} must be there to test the page in a browser: apt-get install chromium"
+ARGUMENTS = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-background-networking",
+    "--disable-component-update",
+)
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory) -> Iterator[Server]:
+    """Serve the page; whatever befell it in between, it has complained of nothing."""
+    shared = Server(tmp_path_factory.mktemp("server") / "errors")
+    yield shared
+    shared.stop()
+    assert shared.complaints == ""
+
+
+@pytest.fixture
+def own(tmp_path) -> Iterator[Server]:
+    """Serve the page to one test alone, which may end the server."""
+    server = Server(tmp_path / "errors")
+    yield server
+    server.stop()
+    assert server.complaints == ""
+
+
+@pytest.fixture
+def talk(server) -> Iterator[Conversation]:
+    """Open a socket that has been greeted."""
+    with conversation(server) as opened:
+        opened.until("hello")
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    """Start a browser; not for longer than a file of tests, for it keeps a loop of events running."""
+    if not CHROMIUM.exists():
+        if os.environ.get("CI"):
+            pytest.fail(MISSING, pytrace=False)
+        pytest.skip(MISSING)
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=list(ARGUMENTS))
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def browsing(chromium, server) -> Iterator[Browsing]:
+    """Return what opens pages as a visitor of its own does; none of them may have complained."""
+    with Browsing(chromium, server) as opened:
+        yield opened

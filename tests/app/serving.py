@@ -1,0 +1,94 @@
+"""A server of the page as a process of its own."""
+
+from __future__ import annotations
+
+import os
+import re
+import select
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from http.client import HTTPConnection, HTTPResponse
+from pathlib import Path
+from typing import Any
+
+# What takes longer has failed [s]: a loaded machine is slow, a first start compiles.
+WAIT, START = 30.0, 300.0
+COMMAND = (sys.executable, "-c", "from stridula.cli import main; main()", "app", "--no-browser")
+
+
+class Server:
+    """`stridula app` on a free port, or on one that is given."""
+
+    def __init__(self, errors: Path, port: int = 0) -> None:
+        self.errors = errors
+        with errors.open("ab") as file:
+            self.process = subprocess.Popen(
+                [*COMMAND, "--port", str(port)], stdout=subprocess.PIPE, stderr=file, text=True
+            )
+        assert self.process.stdout is not None
+        ready, _, _ = select.select([self.process.stdout], [], [], START)
+        line = self.process.stdout.readline() if ready else ""
+        found = re.fullmatch(r"stridula plays at (http://127\.0\.0\.1:(\d+)/) \(Ctrl-C stops it\)\n", line)
+        if found is None:
+            self.kill()
+            raise AssertionError(f"the server said {line!r} and {self.complaints}")
+        self.address, self.port = found[1], int(found[2])
+
+    @property
+    def origin(self) -> str:
+        """What the browser calls where its pages come from."""
+        return self.address.rstrip("/")
+
+    @property
+    def complaints(self) -> str:
+        """What it wrote to standard error: nothing, if all is well."""
+        return self.errors.read_text(encoding="utf-8")
+
+    def get(self, path: str, **headers: str) -> tuple[HTTPResponse, bytes]:
+        """Ask for a file of the page."""
+        connection = HTTPConnection("127.0.0.1", self.port, timeout=WAIT)
+        try:
+            connection.request("GET", path, headers=headers)
+            answer = connection.getresponse()
+            return answer, answer.read()
+        finally:
+            connection.close()
+
+    def stop(self) -> None:
+        """End it as one does who has finished."""
+        self.process.terminate()
+        self._wait()
+
+    def kill(self) -> None:
+        """End it at once."""
+        self.process.kill()
+        self._wait()
+
+    def interrupt(self) -> int:
+        """Press Ctrl-C and return the exit code."""
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait(WAIT)
+
+    def _wait(self) -> None:
+        self.process.wait(WAIT)
+        assert self.process.stdout is not None
+        self.process.stdout.close()
+
+
+def app(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run `stridula app` where it cannot serve."""
+    return subprocess.run(
+        [*COMMAND, *arguments], capture_output=True, text=True, timeout=START, env=os.environ, check=False
+    )
+
+
+def eventually(found: Callable[[], Any], what: str, wait: float = WAIT) -> Any:
+    """Return what is found once it is true."""
+    end = time.monotonic() + wait
+    while not (value := found()):
+        assert time.monotonic() < end, f"{what} did not come about in {wait} s"
+        time.sleep(0.05)
+    return value

@@ -1,0 +1,131 @@
+"""Many pages: how many, how fast, and what is left of them: nothing."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import time
+
+import psutil
+import pytest
+from websockets.exceptions import ConnectionClosed
+
+from .conversation import RATE, conversation
+from .serving import eventually
+
+MOST_PAGES, AHEAD, FASTEST = 16, 1.0, 1.5
+# What a hundred pages may leave in memory, once memory is as the first of them left it [bytes].
+GROWTH = 30e6
+WARM_UP, SESSIONS = 30, 100
+SIDES = {
+    "x": {"key": "contact.friction.coefficient", "low": 0.2, "high": 1.6},
+    "y": {"key": "slider.angle", "low": 0.5, "high": 0.9},
+}
+
+
+def test_sixteen_pages_at_most_until_one_goes(own):
+    with contextlib.ExitStack() as stack:
+        pages = [stack.enter_context(conversation(own)) for _ in range(MOST_PAGES)]
+        for page in pages:
+            page.until("hello")
+        with conversation(own) as one_more, pytest.raises(ConnectionClosed) as refused:
+            one_more.hear()
+        assert (refused.value.rcvd.code, refused.value.rcvd.reason) == (4429, "at most 16 pages can be open")
+        # Those that are there play on.
+        pages[0].scene()
+        assert len(pages[0].play(480).sound) == 480
+        pages[-1].socket.close()
+
+        def has_room() -> bool:
+            with conversation(own) as another, contextlib.suppress(ConnectionClosed):
+                return another.hear()["type"] == "hello"
+            return False
+
+        eventually(has_room, "room for another page")
+
+
+def test_sessions_that_are_dropped_leave_nothing(own):
+    process = psutil.Process(own.process.pid)
+
+    def drop(number: int) -> None:
+        """Open a page and let it go in the middle of something."""
+        with conversation(own, close_timeout=0.0 if number % 2 else 1.0) as talk:
+            talk.until("hello")
+            if number % 4:
+                talk.say("scene", revision=1)
+            if number % 4 > 1:
+                talk.until("scene")
+                talk.say("pull", parts=5, samples=480)
+            if number % 4 > 2:
+                talk.say("map", points=4, **SIDES)
+
+    with conversation(own) as first:
+        # A page that stays keeps the process of maps, for which those that go have left rows to compute.
+        first.until("hello")
+        first.scene()
+        first.say("map", points=4, **SIDES)
+        first.until("map row")
+        for number in range(WARM_UP):
+            drop(number)
+        before = process.memory_info().rss
+        for number in range(SESSIONS):
+            drop(number)
+        assert len(process.children()) == 1
+    eventually(lambda: not process.children(), "an end of the process of maps")
+    assert process.memory_info().rss < before + GROWTH
+    # Nothing is left that begins it again.
+    with conversation(own) as last:
+        last.until("hello")
+        last.scene()
+        last.play(480)
+    assert not process.children()
+
+
+def test_rows_that_nobody_waits_for_begin_no_process(own):
+    process = psutil.Process(own.process.pid)
+    with contextlib.ExitStack() as stack:
+        pages = [stack.enter_context(conversation(own)) for _ in range(4)]
+        for page in pages:
+            page.until("hello")
+            page.scene()
+            page.say("map", points=12, **SIDES)
+        pages[0].until("map row")
+        assert len(process.children()) == 1
+    eventually(lambda: not process.children(), "an end of the process of maps")
+    # Whoever was still in the queue had its turn by now.
+    with conversation(own) as page:
+        page.until("hello")
+        page.scene()
+        page.play(9600)
+        page.play(9600)
+        assert not process.children()
+
+
+def test_no_page_plays_faster_than_time_goes_by_more_than_half(own):
+    seconds = 3
+    with conversation(own) as talk:
+        began = time.monotonic()
+        talk.until("hello")
+        talk.scene()
+        pulls = seconds * RATE // 9600
+        # All at once: whoever does not wait for answers is not answered sooner.
+        for _ in range(pulls):
+            talk.socket.send(json.dumps({"type": "pull", "parts": 20, "samples": 480}))
+        for _ in range(pulls):
+            talk.until("pulled")
+        took = time.monotonic() - began
+    assert took > (seconds - AHEAD) / FASTEST - 0.05
+    assert sum(isinstance(one, bytes) for one in talk.others) >= seconds * 100
+
+
+def test_the_process_of_maps_ends_with_the_server(own):
+    process = psutil.Process(own.process.pid)
+    with conversation(own) as talk:
+        talk.until("hello")
+        talk.scene()
+        talk.say("map", points=8, **SIDES)
+        talk.until("map row")
+        (maker,) = process.children()
+        own.process.kill()
+        own.process.wait()
+        eventually(lambda: not maker.is_running(), "an end of the process of maps")

@@ -1,0 +1,135 @@
+"""Maps of regimes around what is played."""
+
+from __future__ import annotations
+
+import asyncio
+
+import numpy as np
+import psutil
+import pytest
+
+import stridula as st
+from stridula.analysis.regimes import REGIMES
+from stridula.app.maps import MapMaker
+from stridula.app.messages import Map
+from stridula.app.playable import playable
+
+from .conversation import Conversation
+
+FRICTION, ANGLE = "contact.friction.coefficient", "slider.angle"
+ACROSS, UP = {"key": FRICTION, "low": 0.2, "high": 1.6}, {"key": ANGLE, "low": 0.5, "high": 0.9}
+
+
+def rows_of(talk: Conversation, **words) -> dict[int, list[str]]:
+    """Return all rows of a map by number."""
+    talk.others.clear()
+    talk.say("map", **words)
+    done = talk.until("map done", "problem")
+    assert done["type"] == "map done", done
+    rows = [one for one in talk.others if isinstance(one, dict) and one["type"] == "map row"]
+    assert {(row["x"], row["y"]) for row in rows} == {(words["x"]["key"], words["y"]["key"])}
+    assert len(rows) == len({row["row"] for row in rows})
+    return {row["row"]: row["regimes"] for row in rows}
+
+
+def test_a_map_has_every_row_and_says_what_a_sweep_says(talk):
+    talk.scene("squeal")
+    rows = rows_of(talk, x=ACROSS, y=UP, points=4)
+    assert sorted(rows) == [0, 1, 2, 3]
+    assert {len(row) for row in rows.values()} == {4}
+    words = {word for row in rows.values() for word in row}
+    assert words <= {*REGIMES, ""}
+    assert len(words - {""}) > 1
+    across = np.linspace(ACROSS["low"], ACROSS["high"], 4)
+    # From the lowest to the highest.
+    for row, angle in ((0, UP["low"]), (3, UP["high"])):
+        points = [{FRICTION: float(value), ANGLE: angle} for value in across]
+        swept = st.sweep("squeal", points, "regime", duration=1.0, probes=False, workers=1)
+        assert rows[row] == [str(word) for word in swept.regime.values]
+
+
+def test_what_is_played_goes_on_beside_a_map_and_a_new_one_takes_its_place(talk):
+    talk.scene("squeal")
+    talk.say("map", x=ACROSS, y=UP, points=12)
+    assert len(talk.play(480).sound) == 480
+    talk.until("map row")
+    rows = rows_of(talk, x={**ACROSS, "low": 0.3}, y=UP, points=2)
+    assert sorted(rows) == [0, 1]
+    assert {len(row) for row in rows.values()} == {2}
+
+
+def test_a_map_that_is_not_wanted_any_more_stops(talk):
+    talk.scene("squeal")
+    talk.say("map", x=ACROSS, y=UP, points=12)
+    talk.until("map row")
+    talk.say("no map")
+    talk.play(480)
+    talk.others.clear()
+    # The map that comes after it is the only one.
+    rows = rows_of(talk, x=ACROSS, y=UP, points=2)
+    assert len(rows) == 2
+
+
+@pytest.mark.parametrize("turns", range(4))
+def test_a_map_given_up_as_it_begins_begins_no_process(turns):
+    played = playable("squeal", None, {})
+    wanted = Map.model_validate({"type": "map", "x": ACROSS, "y": UP, "points": 2})
+
+    async def given_up() -> None:
+        maker = MapMaker()
+
+        async def asked() -> None:
+            async for _ in maker.rows(played, wanted):
+                pass
+
+        task = asyncio.create_task(asked())
+        for _ in range(turns):
+            await asyncio.sleep(0)
+        task.cancel()
+        maker.close()
+        for _ in range(20):
+            await asyncio.sleep(0.01)
+
+    before = psutil.Process().children()
+    asyncio.run(given_up())
+    assert psutil.Process().children() == before
+
+
+def test_where_nothing_can_be_built_a_map_is_empty(talk):
+    talk.scene("squeal")
+    rows = rows_of(talk, x={"key": "slider.length", "low": -1.0, "high": -0.5}, y=UP, points=2)
+    assert rows == {0: ["", ""], 1: ["", ""]}
+
+
+@pytest.mark.parametrize(
+    ("x", "named"),
+    [
+        ({"key": "no.such.key", "low": 0.0, "high": 1.0}, "x must be a number of the page"),
+        ({"key": "contact.friction.law", "low": 0.0, "high": 1.0}, "x must be a number of the page"),
+        ({"key": "contact.friction.static", "low": 0.0, "high": 1.0}, "x must be a number of the page"),
+        ({"key": FRICTION, "low": 1.0, "high": 1.0}, "x must be a number of the page that rises"),
+        ({"key": FRICTION, "low": 1.0, "high": 0.0}, "x must be a number of the page that rises"),
+        ({"key": FRICTION, "low": 0.0}, "map.x.high"),
+        ({"key": FRICTION, "low": 0.0, "high": 1e300}, "map.x.high"),
+    ],
+)
+def test_a_side_that_is_none_is_refused(talk, x, named):
+    talk.scene("squeal")
+    talk.say("map", x=x, y=UP, points=4)
+    (problem,) = talk.until("problem", "map row", "map done")["problems"]
+    assert problem.startswith(named)
+    assert len(talk.play(480).sound) == 480
+
+
+@pytest.mark.parametrize("points", [1, 25, 10_000_000])
+def test_a_map_has_its_bounds(talk, points):
+    talk.scene("squeal")
+    talk.say("map", x=ACROSS, y=UP, points=points)
+    (problem,) = talk.until("problem", "map row", "map done")["problems"]
+    assert problem.startswith("map.points must be")
+
+
+def test_two_sides_are_not_the_same(talk):
+    talk.scene("squeal")
+    talk.say("map", x=ACROSS, y=ACROSS, points=2)
+    assert talk.until("problem", "map done")["type"] == "problem"

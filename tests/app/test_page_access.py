@@ -1,0 +1,159 @@
+"""The page for everybody: by keyboard, on a phone, dark and light, read aloud."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from .browsing import Browsing, plays_on, stats, until
+
+AXE = (Path(__file__).parent / "vendor" / "axe.min.js").read_text(encoding="utf-8")
+FRICTION, ANGLE = "contact.friction.coefficient", "slider.angle"
+PHONE = {"viewport": {"width": 390, "height": 800}}
+REACHED = "button, select, input, textarea, summary, a[href], canvas[tabindex]"
+SEEN = f"""() => [...document.querySelectorAll('{REACHED}')].filter((one) =>
+  !one.disabled && one.checkVisibility({{ visibilityProperty: true }}) && !one.closest('dialog:not([open])'))"""
+
+
+def grave(page) -> list[str]:
+    """Return what axe calls serious or critical, with where it is."""
+    page.evaluate(AXE)
+    found = page.evaluate("axe.run(document, { resultTypes: ['violations'] })")
+    return [
+        f"{one['id']}: {node['target']} {node['failureSummary']}"
+        for one in found["violations"]
+        if one["impact"] in ("serious", "critical")
+        for node in one["nodes"]
+    ]
+
+
+@pytest.fixture(params=["light", "dark", "phone"])
+def shown(request, chromium, server):
+    """Open the page as different people see it."""
+    words = {"color_scheme": "dark"} if request.param == "dark" else PHONE if request.param == "phone" else {}
+    with Browsing(chromium, server, bypass_csp=True, **words) as browsing:
+        yield browsing
+
+
+def test_axe_finds_nothing_grave(shown):
+    page = shown.open()
+    page.locator("#scenario summary").click()
+    until(page, "document.getElementById('map-words').textContent.includes('computed')")
+    assert grave(page) == []
+    # Nor while it says what is wrong, with a button that is disabled in sight.
+    page.locator("#toml").fill("no TOML")
+    page.locator("#toml-apply").click()
+    page.locator("#problem").wait_for(state="visible")
+    page.locator("#play").click()
+    assert grave(page) == []
+
+
+def test_axe_finds_nothing_grave_in_the_introduction(shown):
+    page = shown.open(intro=True)
+    assert page.locator("#intro").is_visible()
+    assert grave(page) == []
+
+
+def test_axe_would_find_what_is_grave(chromium, server):
+    with Browsing(chromium, server, bypass_csp=True) as browsing:
+        page = browsing.open()
+        page.evaluate("document.getElementById('play').textContent = ''")
+        page.evaluate("document.getElementById('case-words').style.color = '#eee'")
+        assert {line.partition(":")[0] for line in grave(page)} >= {"button-name", "color-contrast"}
+
+
+def test_the_theme_follows_the_system_until_one_chooses(chromium, server):
+    with Browsing(chromium, server, color_scheme="dark") as browsing:
+        page = browsing.open()
+        theme = "document.documentElement.dataset.theme"
+        assert page.evaluate(theme) == "dark"
+        page.locator("#theme").click()
+        assert page.evaluate(theme) == "light"
+        page.reload()
+        plays_on(page, 0)
+        assert page.evaluate(theme) == "light"
+
+
+@pytest.mark.parametrize("intro", [False, True])
+def test_a_phone_need_not_scroll_sideways(chromium, server, intro):
+    with Browsing(chromium, server, **PHONE) as browsing:
+        page = browsing.open(intro=intro)
+        if not intro:
+            page.locator("#scenario summary").click()
+        width = "document.documentElement"
+        assert page.evaluate(f"{width}.scrollWidth") <= page.evaluate(f"{width}.clientWidth") == 390
+        # Nor is anything cut off: all that one sees lies within.
+        assert page.evaluate(f"({SEEN})().filter((one) => one.getBoundingClientRect().right > 390.5).length") == 0
+
+
+def test_the_keyboard_reaches_everything(browsing):
+    page = browsing.open()
+    page.locator("#scenario summary").click()
+    page.evaluate("document.activeElement.blur()")
+    page.evaluate(f"window.wanted = ({SEEN})()")
+    count = page.evaluate("wanted.length")
+    assert count > 40
+    page.evaluate("window.reached = new Set(); window.unseen = []")
+    for _ in range(count + 20):
+        page.keyboard.press("Tab")
+        page.evaluate(
+            """() => {
+              const one = document.activeElement;
+              reached.add(one);
+              const shown = one.closest('.file') ?? one;
+              if (one !== document.body && getComputedStyle(shown).outlineStyle === 'none') unseen.push(one.id);
+            }"""
+        )
+    name = "(one) => one.id || one.dataset.key || one.textContent"
+    assert page.evaluate(f"wanted.filter((one) => !reached.has(one)).map({name})") == []
+    # Where one is can be seen.
+    assert page.evaluate("unseen") == []
+
+
+def test_space_pauses_where_nothing_else_takes_it(browsing):
+    page = browsing.open()
+    play = page.locator("#play")
+    page.keyboard.press("Space")
+    assert play.text_content() == "Play"
+    page.keyboard.press("Space")
+    assert play.text_content() == "Pause"
+    plays_on(page)
+    # On a button it presses the button.
+    page.locator("#theme").focus()
+    theme = page.locator("#theme").text_content()
+    page.keyboard.press("Space")
+    assert page.locator("#theme").text_content() != theme
+    assert play.text_content() == "Pause"
+
+
+def test_arrow_keys_move_the_cross_hair(browsing):
+    page = browsing.open("#case=stable-sliding")
+    values = "stridula.now().values"
+    before = page.evaluate(values)
+    page.locator("#map").focus()
+    for key, moved, sign in (
+        ("ArrowRight", FRICTION, 1),
+        ("ArrowLeft", FRICTION, -1),
+        ("ArrowUp", ANGLE, 1),
+        ("ArrowDown", ANGLE, -1),
+    ):
+        start = page.evaluate(values)[moved]
+        page.keyboard.press(key)
+        until(page, "arg[2] * (stridula.now().values[arg[0]] - arg[1]) > 1e-3", [moved, start, sign])
+    after = page.evaluate(values)
+    assert after[FRICTION] == pytest.approx(before[FRICTION], abs=0.01)
+    assert after[ANGLE] == pytest.approx(before[ANGLE], abs=0.01)
+    assert stats(page, "samples") > 0
+    plays_on(page)
+
+
+def test_changes_are_said_to_who_does_not_see(browsing):
+    page = browsing.open()
+    assert page.locator("#said").get_attribute("aria-live") == "polite"
+    page.locator("#link").click()
+    until(page, "document.getElementById('said').textContent || !document.getElementById('problem').hidden")
+    assert page.locator("#source").get_attribute("aria-describedby") == "source-words"
+    for canvas in page.locator("canvas").all():
+        assert canvas.get_attribute("aria-label")
+        assert canvas.get_attribute("role") in ("img", "application")

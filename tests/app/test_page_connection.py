@@ -1,0 +1,47 @@
+"""The page without its server, and when the server is there again."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+
+from .browsing import Browsing, plays_on, stats, until
+from .conversation import conversation
+from .serving import Server
+
+FRICTION = "contact.friction.coefficient"
+
+
+def test_the_page_comes_back_with_its_server_and_plays_on_as_it_was(chromium, own, tmp_path):
+    with Browsing(chromium, own) as browsing:
+        # A socket that finds no server complains; so it shall here.
+        browsing.complains = False
+        page = browsing.open(f"#case=stable-sliding&{FRICTION}=0.62")
+        until(page, "stridula.now()?.toml.includes('coefficient = 0.62')")
+        lost = page.locator("#lost")
+        assert lost.is_hidden()
+        own.kill()
+        lost.wait_for(state="visible")
+        assert lost.text_content().startswith("Connection lost")
+        assert lost.get_attribute("role") == "alert"
+        assert stats(page, "connected") is False
+        again = Server(tmp_path / "again", own.port)
+        try:
+            lost.wait_for(state="hidden")
+            plays_on(page, 48_000)
+            assert "coefficient = 0.62" in page.evaluate("stridula.now().toml")
+            assert page.evaluate("stridula.now().revision") >= 2
+            assert not [said for said in browsing.complaints if "WebSocket" not in said]
+        finally:
+            again.stop()
+        assert again.complaints == ""
+
+
+def test_a_page_too_many_says_so(chromium, own):
+    with ExitStack() as stack, Browsing(chromium, own) as browsing:
+        browsing.complains = False
+        for _ in range(16):
+            stack.enter_context(conversation(own)).until("hello")
+        page = browsing.context.new_page()
+        page.goto(own.address)
+        page.locator("#lost").wait_for(state="visible")
+        assert page.locator("#lost").text_content() == "No room: at most 16 pages can be open."

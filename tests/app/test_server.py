@@ -1,0 +1,182 @@
+"""The server: what it gives to whom, and how it refuses."""
+
+from __future__ import annotations
+
+import json
+import re
+import socket
+from importlib.resources import files
+
+import pytest
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.sync.client import connect
+
+from .conversation import conversation
+from .serving import WAIT, app
+
+PAGE = [entry for entry in files("stridula.app").joinpath("page").iterdir() if entry.is_file()]
+
+
+@pytest.mark.parametrize("entry", PAGE, ids=lambda entry: entry.name)
+def test_every_file_of_the_page_comes_as_it_is_and_says_what_it_is(server, entry):
+    answer, content = server.get(f"/{entry.name}")
+    kinds = {"js": "text/javascript", "css": "text/css", "html": "text/html", "svg": "image/svg+xml"}
+    assert (answer.status, content) == (200, entry.read_bytes())
+    assert answer.getheader("content-type").partition(";")[0] == kinds[entry.name.rpartition(".")[2]]
+
+
+def test_the_page_may_load_and_speak_with_nothing_but_its_server(server):
+    answer, content = server.get("/")
+    policy = dict(part.strip().partition(" ")[::2] for part in answer.getheader("content-security-policy").split(";"))
+    assert policy["default-src"] == policy["frame-ancestors"] == policy["base-uri"] == "'none'"
+    assert policy["script-src"] == policy["connect-src"] == policy["worker-src"] == "'self'"
+    assert not any("unsafe" in words for words in policy.values())
+    assert answer.getheader("x-content-type-options") == "nosniff"
+    assert answer.getheader("referrer-policy") == "no-referrer"
+    assert answer.getheader("cross-origin-resource-policy") == "same-origin"
+    assert answer.getheader("access-control-allow-origin") is None
+    assert answer.getheader("server") is None
+    assert b"<canvas" in content
+
+
+@pytest.mark.parametrize("entry", PAGE, ids=lambda entry: entry.name)
+def test_nothing_on_the_page_comes_from_elsewhere(entry):
+    written = re.sub(r'xmlns(:\w+)?="[^"]*"', "", entry.read_text(encoding="utf-8"))
+    assert not re.findall(r"https?://|(?:src|href)=[\"']//|url\(", written)
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/no-such-file",
+        "/../server.py",
+        "/%2e%2e/server.py",
+        "/..%2fserver.py",
+        "/page/../../server.py",
+        "/%2e%2e%2f%2e%2e%2f%2e%2e%2fetc%2fpasswd",
+        "//etc/passwd",
+        "/main.js%00.txt",
+    ],
+)
+def test_no_path_leads_out_of_the_page(server, path):
+    answer, content = server.get(path)
+    assert (answer.status, content.lower()) == (404, b"not found")
+
+
+@pytest.mark.parametrize("host", ["evil.example", "evil.example:80", "127.0.0.1.evil.example", "192.168.0.1", ""])
+def test_who_calls_the_server_by_another_name_is_refused(server, host):
+    assert server.get("/", Host=host)[0].status == 421
+
+
+@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example", "192.168.0.1"])
+def test_who_calls_the_socket_by_another_name_is_refused(server, host):
+    with (
+        socket.create_connection(("127.0.0.1", server.port), WAIT) as wire,
+        pytest.raises(InvalidStatus) as refused,
+        connect(f"ws://{host}:{server.port}/socket", sock=wire, origin=f"http://{host}:{server.port}"),
+    ):
+        pass
+    assert refused.value.response.status_code == 403
+
+
+@pytest.mark.parametrize("host", ["localhost", "127.0.0.1", "[::1]"])
+def test_this_machine_has_three_names(server, host):
+    assert server.get("/", Host=f"{host}:{server.port}")[0].status == 200
+
+
+@pytest.mark.parametrize("origin", ["http://evil.example", "null", "http://127.0.0.1:1", "file://", None])
+def test_a_page_from_elsewhere_is_refused(server, origin):
+    with conversation(server, origin=origin) as talk, pytest.raises(ConnectionClosed) as refused:
+        talk.hear()
+    assert refused.value.rcvd.code == 4403
+
+
+def test_another_host_wants_to_be_let_in():
+    done = app("--host", "0.0.0.0", "--port", "0")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert re.fullmatch(r"stridula: host must be .* unless --open lets other machines in, got '0.0.0.0'\n", done.stderr)
+
+
+def test_a_port_that_is_taken_is_named_in_one_line():
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        done = app("--port", str(port))
+    assert (done.returncode, done.stdout) == (2, "")
+    words = rf"stridula: host and port must be free, got 127.0.0.1:{port}: .*choose another --port\)\n"
+    assert re.fullmatch(words, done.stderr)
+
+
+def test_ctrl_c_ends_it_with_a_page_open(own):
+    with conversation(own) as talk:
+        talk.until("hello")
+        talk.scene()
+        assert own.interrupt() == 0
+
+
+BAD = {
+    "no JSON": "{",
+    "a list": "[]",
+    "a number": "1",
+    "nothing": "",
+    "no type": '{"parts": 1}',
+    "unknown type": '{"type": "dance"}',
+    "unknown key": '{"type": "restart", "now": true}',
+    "too many parts": '{"type": "pull", "parts": 1000, "samples": 480}',
+    "too many samples": '{"type": "pull", "parts": 1, "samples": 1000000}',
+    "no parts": '{"type": "pull", "parts": 0, "samples": 480}',
+    "half a part": '{"type": "pull", "parts": 0.5, "samples": 480}',
+    "a text for a number": '{"type": "pull", "parts": "1", "samples": 480}',
+    "NaN parts": '{"type": "pull", "parts": NaN, "samples": 480}',
+    "NaN": '{"type": "scene", "revision": 9, "overrides": {"slider.length": NaN}}',
+    "infinity": '{"type": "scene", "revision": 9, "overrides": {"slider.length": 1e999}}',
+    "a list for a number": '{"type": "scene", "revision": 9, "overrides": {"slider.length": [1]}}',
+    "a long key": json.dumps({"type": "scene", "revision": 9, "overrides": {"a" * 200: 1.0}}),
+    "many keys": json.dumps({"type": "scene", "revision": 9, "overrides": {f"a{k}": 1.0 for k in range(99)}}),
+    "a long text": json.dumps({"type": "scene", "revision": 9, "text": " " * 70_000}),
+    "a source there is not": '{"type": "listen", "source": "light"}',
+    "a file there is not": '{"type": "save", "format": "../x"}',
+    "deep": '{"type":' + "[" * 20_000,
+    "half a character": '{"type": "\\ud800"}',
+}
+
+
+@pytest.mark.parametrize("text", BAD.values(), ids=BAD)
+def test_a_message_that_is_none_is_told_in_one_line_and_all_goes_on(talk, text):
+    talk.scene()
+    talk.play(480)
+    talk.socket.send(text)
+    (problem,) = talk.until("problem")["problems"]
+    assert problem
+    assert "\n" not in problem
+    assert len(problem) < 300
+    assert talk.play(480).parts[0].clock == pytest.approx(0.02)
+
+
+def test_a_number_without_end_is_refused(talk):
+    talk.socket.send('{"type": "scene", "revision": 9, "overrides": {"slider.length": 1' + 400 * "0" + "}}")
+    assert talk.until("problem", "refused")["problems"]
+    assert talk.scene()["type"] == "scene"
+
+
+def test_bytes_are_no_message(talk):
+    talk.socket.send(b"\x00\x01")
+    (problem,) = talk.until("problem")["problems"]
+    assert "text" in problem
+    assert talk.scene()["type"] == "scene"
+
+
+def test_nothing_is_played_before_a_scene_is_chosen(talk):
+    for message in ({"type": "pull", "parts": 1, "samples": 480}, {"type": "restart"}, {"type": "no map"}):
+        talk.say(**message)
+        assert talk.until("problem")["problems"] == ["scene must be given first"]
+
+
+def test_a_message_too_large_closes_the_socket_and_the_server_lives_on(server):
+    with conversation(server) as talk:
+        talk.until("hello")
+        talk.socket.send(json.dumps({"type": "restart", "filled": "x" * 200_000}))
+        with pytest.raises(ConnectionClosed) as closed:
+            talk.hear()
+        assert closed.value.rcvd.code == 1009
+    with conversation(server) as talk:
+        assert talk.until("hello")["type"] == "hello"
