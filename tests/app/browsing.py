@@ -19,8 +19,8 @@ class Browsing(AbstractContextManager["Browsing"]):
         self.context.set_default_timeout(1000.0 * WAIT)
         self.complains = True
 
-    def open(self, hash: str = "", intro: bool = False) -> Any:
-        """Open the page, its introduction read unless asked for, and wait until it plays."""
+    def open(self, hash: str = "", intro: bool = False, map: bool = False) -> Any:
+        """Open the page, its introduction read and its map left out unless asked for, and wait until it plays."""
         if not intro:
             self.context.add_init_script("localStorage.setItem('visited', '1')")
         page = self.context.new_page()
@@ -28,6 +28,9 @@ class Browsing(AbstractContextManager["Browsing"]):
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.goto(self.server.address + hash)
         until(page, PLAYS)
+        if not map:
+            # A map takes a processor for a while.
+            page.evaluate("document.getElementById('map-on').click()")
         return page
 
     def __exit__(self, *raised: Any) -> None:

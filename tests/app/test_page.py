@@ -294,7 +294,7 @@ def test_other_sources_are_heard(browsing):
 
 
 def test_the_map_comes_and_leads(browsing):
-    page = browsing.open()
+    page = browsing.open(map=True)
     until(page, "document.getElementById('map-words').textContent.includes('computed')")
     box = page.locator("#map").bounding_box()
     assert json.loads(json.dumps(page.evaluate("stridula.scene.now.overrides"))) == {}
