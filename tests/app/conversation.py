@@ -36,6 +36,18 @@ class Part:
     track: np.ndarray
 
 
+def parts_of(data: bytes) -> list[Part]:
+    """Return the parts that lie one after the other in an answer."""
+    found, at = [], 0
+    while at < len(data):
+        samples, seen, nodes, points = (int(number) for number in np.frombuffer(data, "<f8", 4, at + 24))
+        count = samples + 5 * seen + 1 + 2 * nodes + points
+        found.append(unpacked(data[at : at + 64 + 4 * count]))
+        at += 64 + 4 * (count + count % 2)
+    assert at == len(data)
+    return found
+
+
 def unpacked(data: bytes) -> Part:
     head = np.frombuffer(data, "<f8", 8)
     revision, _, stroke, samples, seen, nodes, points = (int(number) for number in head[:7])
@@ -89,6 +101,14 @@ class Conversation:
                 return message
             self.others.append(message)
 
+    def bytes(self) -> bytes:
+        """Return the first bytes."""
+        while True:
+            message = self.hear()
+            if isinstance(message, bytes):
+                return message
+            self.others.append(message)
+
     def asks(self, type: str, *answers: str, **words: Any) -> Any:
         self.say(type, **words)
         return self.until(*answers)
@@ -108,8 +128,8 @@ class Conversation:
             size = min(each, samples)
             parts = min(MOST_PARTS, samples // size)
             self.others = []
-            assert self.asks("pull", "pulled", parts=parts, samples=size)["parts"] == parts
-            played.parts += [unpacked(one) for one in self.others if isinstance(one, bytes)]
+            self.say("pull", parts=parts, samples=size)
+            played.parts += parts_of(self.bytes())
             played.stops += [one for one in self.others if isinstance(one, dict) and one["type"] == "stroke"]
             samples -= parts * size
         self.others = before

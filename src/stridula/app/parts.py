@@ -83,7 +83,7 @@ def packed(part: Part) -> bytes:
     Eight numbers in double precision: revision, clock, stroke, samples, samples of the pictures, nodes of the slider,
     points of the track, place of the tip. Then in single precision the sound; for the pictures normal force, tangential
     force, status, place of the tip and its velocity; height of the tip, displacements of the nodes, deflections of the
-    track. All little-endian.
+    track. All little-endian; a zero at the end where they are odd in number, so that parts can lie one after the other.
     """
     samples = len(part.sound)
     thinned = THINNED if samples % THINNED == 0 else 1
@@ -96,6 +96,7 @@ def packed(part: Part) -> bytes:
     counts = [samples, samples // thinned, len(shapes.slider), len(shapes.track)]
     head = np.array([part.revision, part.clock, part.stroke, *counts, shapes.place], dtype="<f8")
     body = [part.sound, *seen, [shapes.height], shapes.slider.ravel(), shapes.track]
+    body += [np.zeros(sum(map(len, body)) % 2)]
     return head.tobytes() + np.concatenate(body).astype("<f4").tobytes()
 
 

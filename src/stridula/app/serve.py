@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import gc
 import ipaddress
 import logging
 import socket
@@ -51,6 +52,9 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
     listening = _bound(host, port)
     use_one_thread()
     _get_ready()
+    # What is there now stays: to look for garbage in it would stop the sound.
+    gc.collect()
+    gc.freeze()
     shown = f"[{host}]" if ":" in host else host
     address = f"http://{shown}:{listening.getsockname()[1]}/"
     print(f"stridula plays at {address} (Ctrl-C stops it)", flush=True)

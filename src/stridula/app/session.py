@@ -25,6 +25,8 @@ from .theory import theory
 
 # A page may be ahead of time by so much [s], and play at most so much faster than time goes.
 AHEAD, FASTEST = 1.0, 1.5
+# After so many parts other pages have their turn.
+PARTS_AT_ONCE = 4
 # Quiet time after a change before linear theory is asked [s].
 PAUSE = 0.25
 # Code of a socket that closed without one.
@@ -136,12 +138,17 @@ class Session:
         if early > 0.0:
             await asyncio.sleep(early / FASTEST)
         self._played = max(self._played + wanted, round((since - AHEAD) * FASTEST * RATE))
-        for part in await asyncio.to_thread(_played, instrument, pull):
-            if isinstance(part, Stop):
-                await self._tell("stroke", why=part.why, goes_on=part.goes_on)
-            else:
-                await _sent(self.socket.send_bytes(part))
-        await self._tell("pulled", parts=pull.parts)
+        parts: list[bytes] = []
+        for number in range(pull.parts):
+            # Marched here and not in a thread: to change threads takes as long as a part.
+            for part in instrument.play(pull.samples):
+                if isinstance(part, Stop):
+                    await self._tell("stroke", why=part.why, goes_on=part.goes_on)
+                else:
+                    parts.append(packed(part))
+            if number % PARTS_AT_ONCE == PARTS_AT_ONCE - 1:
+                await asyncio.sleep(0)
+        await _sent(self.socket.send_bytes(b"".join(parts)))
 
     async def _save(self, instrument: Instrument, save: Save) -> None:
         last, played, steps = instrument.last_seconds, instrument.played, instrument.live.ratio
@@ -194,12 +201,6 @@ async def _sent(sending: Coroutine[Any, Any, None]) -> None:
         await sending
     except RuntimeError:
         raise WebSocketDisconnect(GONE) from None
-
-
-def _played(instrument: Instrument, pull: Pull) -> list[bytes | Stop]:
-    """Return the next parts as they go to the page, and what ended strokes."""
-    parts = [part for _ in range(pull.parts) for part in instrument.play(pull.samples)]
-    return [part if isinstance(part, Stop) else packed(part) for part in parts]
 
 
 def _described(played: Playable, instrument: Instrument | None) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -260,7 +261,7 @@ class Blocks:
         on_a_plate = self.contacts.spans[:, at.CROSS_WAVES].any()
         return len(self.contacts.constants) == 1 and not self.modes.matrices.size and not on_a_plate
 
-    @property
+    @cached_property
     def heard(self) -> tuple[int, ...]:
         """Signals that a load or a probe takes; the others need not be known."""
         taken = np.flatnonzero(self.probes.direct.any(axis=0))

@@ -1,12 +1,13 @@
 // The page: what the server says is shown, what one does is said to the server.
 import { Controls } from "./controls.js";
 import { RegimeMap } from "./map.js";
+import { parts } from "./parts.js";
 import { Pictures, short } from "./pictures.js";
 import { Scene } from "./scene.js";
 import { Sound } from "./sound.js";
 
 const $ = (id) => document.getElementById(id);
-const stream = new Worker("stream.js");
+const stream = new Worker("stream.js", { type: "module" });
 const say = (message) => stream.postMessage({ say: message });
 const pictures = new Pictures();
 const scene = new Scene(changed);
@@ -21,7 +22,7 @@ let skipped = false;
 let badLink = false;
 
 stream.onmessage = ({ data }) => {
-  if (data.part) part(data.part);
+  if (data.parts) came(data.parts);
   else if (data.told) told(data.told);
   else if (data.file) save(data.file);
   else if (data.lost) lost(data);
@@ -119,12 +120,14 @@ function theory({ equilibrium, modes }) {
   $("theory").textContent = `Linear theory: ${words[equilibrium] ?? equilibrium}; ${growing ? `vibrations grow at ${growing}.` : "no vibration grows."}`;
 }
 
-function part(data) {
-  const [number, , , samples] = new Float64Array(data, 0, 8);
-  stats.samples += samples;
-  stats.played = Math.max(stats.played, number);
-  pictures.take(data);
-  stats.level = pictures.level;
+function came(data) {
+  for (const part of parts(data)) {
+    const [number, , , samples] = part.head;
+    stats.samples += samples;
+    stats.played = Math.max(stats.played, number);
+    pictures.take(part);
+    stats.level = pictures.level;
+  }
 }
 
 function lost({ code, reason }) {

@@ -143,6 +143,11 @@ export class RegimeMap {
   draw(colours) {
     const scale = Math.min(2, window.devicePixelRatio || 1);
     const { clientWidth, clientHeight } = this.canvas;
+    const sides = [this.side("x"), this.side("y")];
+    // It is drawn again where something of it changed.
+    const shown = JSON.stringify([clientWidth, clientHeight, scale, colours.line, this.cells.size, this.known, sides, this.controls.values]);
+    if (shown === this.shown) return;
+    this.shown = shown;
     if (this.canvas.width !== Math.round(clientWidth * scale) || this.canvas.height !== Math.round(clientHeight * scale)) {
       this.canvas.width = Math.round(clientWidth * scale);
       this.canvas.height = Math.round(clientHeight * scale);
@@ -152,7 +157,7 @@ export class RegimeMap {
     draw.clearRect(0, 0, clientWidth, clientHeight);
     draw.font = "12px system-ui, sans-serif";
     const { left, top, width, height } = this.#frame();
-    const [a, b] = [this.side("x"), this.side("y")];
+    const [a, b] = sides;
     if (!a || !b) return;
     const [w, h] = [width / POINTS, height / POINTS];
     for (const [row, regimes] of this.cells) {

@@ -36,9 +36,8 @@ export class Pictures {
   }
 
   // Take over a part.
-  take(data) {
-    const [, clock, stroke, samples, seen, nodes, points, place] = new Float64Array(data, 0, 8);
-    const values = new Float32Array(data, 64);
+  take({ head, values }) {
+    const [, clock, stroke, samples, seen, nodes, points, place] = head;
     let at = 0;
     const next = (count) => values.subarray(at, (at += count));
     const sound = next(samples);
@@ -88,12 +87,16 @@ export class Pictures {
     return found.reverse();
   }
 
+  // The beams in every frame, the others in turns.
   draw() {
     if (!this.scene || !this.shapes) return;
     this.#beams();
-    this.#timeline();
-    this.#phase();
-    this.#spectrogram();
+    this.turn = !this.turn;
+    if (this.turn) this.#timeline();
+    else {
+      this.#phase();
+      this.#spectrogram();
+    }
   }
 
   #begin(name) {

@@ -1,10 +1,13 @@
 // The thread that speaks with the server: it asks for the next parts in time, hands sound to the player and pictures to
 // the page, so that neither waits for the other.
+import { parts } from "./parts.js";
+
 const PART = 480; // Samples of a part while live.
+const FEWEST = 2; // Parts asked for at once.
 const RATE = 48000;
-const BUFFER = 0.05; // Sound kept ahead [s]; more after a drop-out, and less again after a while without one.
-const MOST_BUFFER = 0.11;
-const MORE = 0.02; // How much more after a drop-out [s].
+const BUFFER = 0.07; // Sound kept ahead [s]; more after a drop-out, and less again after a while without one.
+const MOST_BUFFER = 0.1;
+const MORE = 0.01; // How much more after a drop-out [s].
 const CALM = 20000; // Time without a drop-out after which half of that is let go [ms].
 const RETRY = 1000; // Time between attempts to come back [ms].
 const FRAME = 1000 / 60;
@@ -65,7 +68,7 @@ function connect() {
     file = null;
     clock = performance.now();
   };
-  socket.onmessage = ({ data }) => (typeof data === "string" ? told(JSON.parse(data)) : part(data));
+  socket.onmessage = ({ data }) => (typeof data === "string" ? told(JSON.parse(data)) : came(data));
   socket.onclose = ({ code, reason }) => {
     hasScene = false;
     postMessage({ lost: true, code, reason });
@@ -91,11 +94,6 @@ function told(message) {
     file = message;
     return;
   }
-  if (message.type === "pulled") {
-    asked = 0;
-    feed();
-    return;
-  }
   if (message.type === "scene" || message.type === "refused") {
     hasScene = hasScene || message.type === "scene";
     answered = true;
@@ -109,21 +107,23 @@ function told(message) {
   feed();
 }
 
-function part(data) {
+// What comes as bytes is a file that was announced, or the parts that were asked for.
+function came(data) {
   if (file) {
     postMessage({ file: { ...file, data } }, [data]);
     file = null;
     return;
   }
-  const head = new Float64Array(data, 0, 8);
-  const [revision, , , samples] = head;
-  const sound = new Float32Array(data, 64, samples);
-  if (player && pace.mode === "live") {
-    const own = sound.slice();
-    player.postMessage({ sound: own, revision }, [own.buffer]);
+  asked = 0;
+  for (const { at, head } of parts(data)) {
+    const [revision, , , samples] = head;
+    if (!player || pace.mode !== "live") break;
+    const sound = new Float32Array(data, at + 64, samples).slice();
+    player.postMessage({ sound, revision }, [sound.buffer]);
     left += samples;
   }
-  postMessage({ part: data }, [data]);
+  postMessage({ parts: data }, [data]);
+  feed();
 }
 
 // Ask for what is missing.
@@ -134,10 +134,10 @@ function feed() {
     if (!player) left = Math.max(0, left - ((now - clock) * RATE) / 1000);
     clock = now;
     const missing = buffer * RATE - left;
-    if (missing >= PART) {
-      const parts = Math.min(10, Math.floor(missing / PART));
-      if (!player) left += parts * PART;
-      pull(parts, PART);
+    if (missing >= FEWEST * PART) {
+      const count = Math.min(10, Math.floor(missing / PART));
+      if (!player) left += count * PART;
+      pull(count, PART);
     }
     return;
   }
@@ -151,10 +151,10 @@ function feed() {
   }
 }
 
-function pull(parts, samples) {
+function pull(count, samples) {
   if (asked) return;
-  asked = parts * samples;
-  say({ type: "pull", parts, samples });
+  asked = count * samples;
+  say({ type: "pull", parts: count, samples });
 }
 
 setInterval(() => {
