@@ -10,7 +10,8 @@ import pytest
 
 import stridula as st
 from stridula.analysis.regimes import REGIMES
-from stridula.app.maps import MapMaker
+from stridula.app.beside import Beside
+from stridula.app.maps import rows
 from stridula.app.messages import Map
 from stridula.app.playable import playable
 
@@ -76,17 +77,17 @@ def test_a_map_given_up_as_it_begins_begins_no_process(turns):
     wanted = Map.model_validate({"type": "map", "x": ACROSS, "y": UP, "points": 2})
 
     async def given_up() -> None:
-        maker = MapMaker()
+        beside = Beside()
 
         async def asked() -> None:
-            async for _ in maker.rows(played, wanted):
+            async for _ in rows(beside, played, wanted):
                 pass
 
         task = asyncio.create_task(asked())
         for _ in range(turns):
             await asyncio.sleep(0)
         task.cancel()
-        maker.close()
+        beside.close()
         for _ in range(20):
             await asyncio.sleep(0.01)
 

@@ -14,7 +14,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from .maps import MapMaker
+from .beside import Beside
 from .session import Session
 
 PAGE = files(__package__).joinpath("page")
@@ -39,7 +39,7 @@ class Pages:
     """The pages that are open, and what they share."""
 
     def __init__(self) -> None:
-        self.open, self.maps = 0, MapMaker()
+        self.open, self.beside = 0, Beside()
 
     async def socket(self, socket: WebSocket) -> None:
         """Play for a page until it goes."""
@@ -53,11 +53,11 @@ class Pages:
         self.open += 1
         try:
             with suppress(WebSocketDisconnect):
-                await Session(socket, self.maps).run()
+                await Session(socket, self.beside).run()
         finally:
             self.open -= 1
             if not self.open:
-                self.maps.close()
+                self.beside.close()
 
 
 def create_app(is_open: bool = False) -> ASGIApp:

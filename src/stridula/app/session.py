@@ -13,15 +13,15 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from ..scenarios.errors import ScenarioError
 from ..version import __version__
 from . import controls
+from .beside import Beside
 from .instrument import PATIENCE, RATE, Instrument
 from .last_seconds import KEPT
-from .maps import MapMaker
+from .maps import rows
 from .messages import Listen, Map, Message, NoMap, Pull, Repeat, Restart, Save, Scene, message_of
 from .parts import Stop, packed
 from .playable import Playable, playable
 from .presets import presets
 from .sources import SOURCES
-from .theory import theory
 
 # A page may be ahead of time by so much [s], and play at most so much faster than time goes.
 AHEAD, FASTEST = 1.0, 1.5
@@ -40,12 +40,12 @@ class Session:
     ----------
     socket : WebSocket
         Where it speaks.
-    maps : MapMaker
-        Who computes its maps.
+    beside : Beside
+        Who computes its maps and linear theory.
     """
 
-    def __init__(self, socket: WebSocket, maps: MapMaker) -> None:
-        self.socket, self.maps = socket, maps
+    def __init__(self, socket: WebSocket, beside: Beside) -> None:
+        self.socket, self.beside = socket, beside
         self.instrument: Instrument | None = None
         self.source, self.repeats = "pressure", True
         self._tasks: dict[str, asyncio.Task[None]] = {}
@@ -174,15 +174,16 @@ class Session:
 
     async def _rows(self, played: Playable, wanted: Map) -> None:
         with suppress(WebSocketDisconnect):
-            async for row, found in self.maps.rows(played, wanted):
+            async for row, found in rows(self.beside, played, wanted):
                 await self._tell("map row", x=wanted.x.key, y=wanted.y.key, row=row, regimes=found)
             await self._tell("map done")
 
     async def _theory(self, played: Playable, revision: int) -> None:
         await asyncio.sleep(PAUSE)
-        found = await asyncio.to_thread(theory, played.system)
-        with suppress(WebSocketDisconnect):
-            await self._tell("theory", revision=revision, **found)
+        found = await self.beside.ask("theory", tables=played.tables)
+        if found is not None:
+            with suppress(WebSocketDisconnect):
+                await self._tell("theory", revision=revision, **found)
 
     def _do(self, name: str, what: Coroutine[Any, Any, None]) -> None:
         """Do something beside what is played, in place of what was done under this name before."""

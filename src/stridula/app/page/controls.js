@@ -43,7 +43,7 @@ export class Controls {
     });
     slide.addEventListener("change", () => (moving = false));
     number.addEventListener("change", () => {
-      if (number.value.trim() === "" || !Number.isFinite(Number(number.value))) this.show(this.values);
+      if (number.value.trim() === "" || !Number.isFinite(Number(number.value))) this.show(this.values, true);
       else this.scene.value(control.key, si(Number(number.value), control));
     });
     this.rows.set(control.key, { row, control, show: (value) => this.#show(value, slide, number, control) });
@@ -79,11 +79,12 @@ export class Controls {
   }
 
   // Show the values in SI that are played.
-  show(values) {
+  show(values, again = false) {
+    const before = this.values ?? {};
     this.values = values;
     for (const [key, { row, show }] of this.rows) {
       row.hidden = !(key in values);
-      if (key in values) show(values[key]);
+      if (key in values && (again || values[key] !== before[key])) show(values[key]);
     }
   }
 

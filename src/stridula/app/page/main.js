@@ -2,7 +2,7 @@
 import { Controls } from "./controls.js";
 import { RegimeMap } from "./map.js";
 import { parts } from "./parts.js";
-import { Pictures, short } from "./pictures.js";
+import { Pictures, STATES, short } from "./pictures.js";
 import { Scene } from "./scene.js";
 import { Sound } from "./sound.js";
 
@@ -94,9 +94,20 @@ function shown(message) {
   if (own && ![...$("case").options].some((one) => one.value === "")) $("case").append(new Option("Your own", ""));
   if (!own) [...$("case").options].filter((one) => one.value === "").forEach((one) => one.remove());
   $("case").value = own ? "" : scene.now.case;
-  $("case-words").textContent = own ? message.description || message.title : preset.description;
-  if (document.activeElement !== $("toml")) $("toml").value = `# ${scene.command()}\n${message.toml}`;
-  $("numbers").textContent = `${message.modes} modes, ${message.steps} steps of ${short(1e6 * message.step)} µs a sample. `;
+  write("case-words", own ? message.description || message.title : preset.description);
+  showToml();
+  write("numbers", `${message.modes} modes, ${message.steps} steps of ${short(1e6 * message.step)} µs a sample. `);
+}
+
+// Write where something changed: what is written is laid out again.
+function write(id, text) {
+  if ($(id).textContent !== text) $(id).textContent = text;
+}
+
+// The text is long: it is written where it is seen.
+function showToml() {
+  if (!$("scenario").open || !described || document.activeElement === $("toml")) return;
+  $("toml").value = `# ${scene.command()}\n${described.toml}`;
 }
 
 function refused(message) {
@@ -272,6 +283,7 @@ $("volume").addEventListener("input", listen);
 $("save-wav").addEventListener("click", () => say({ type: "save", format: "wav" }));
 $("save-nc").addEventListener("click", () => say({ type: "save", format: "nc" }));
 $("save-png").addEventListener("click", savePictures);
+$("scenario").addEventListener("toggle", showToml);
 $("toml-apply").addEventListener("click", () => scene.set({ case: "", text: $("toml").value, overrides: {} }));
 $("toml-copy").addEventListener("click", () => copied($("toml").value, "scenario"));
 $("toml-save").addEventListener("click", () => download(new Blob([$("toml").value]), "scenario.toml"));
@@ -307,6 +319,14 @@ async function copied(text, what) {
     problem([`The browser does not let this page copy the ${what}: copy it from the ${what === "link" ? "address bar" : "field below"}.`]);
   }
 }
+
+// Words beside the pictures change slowly enough to be read.
+setInterval(() => {
+  if (!pictures.much) return;
+  const shares = pictures.shares.map((share, i) => `${STATES[i]} ${Math.round(100 * share)} %`);
+  write("shares", shares.join(", "));
+  write("exaggeration", `deflections ${pictures.much.toLocaleString("en")} times`);
+}, 250);
 
 setInterval(() => {
   stats.fps = stats.frames;

@@ -168,7 +168,7 @@ export class Pictures {
     draw.fillText(STATES[state], Math.min(cx + 14, width - 70), Math.max(14, cy - 14));
     draw.fillStyle = this.colours.soft;
     draw.fillText(`stroke ${this.stroke}, tip at ${(1000 * place).toFixed(1)} mm`, 8, height - 6);
-    document.getElementById("exaggeration").textContent = `deflections ${much.toLocaleString("en")} times`;
+    this.much = much;
   }
 
   #timeline() {
@@ -223,8 +223,6 @@ export class Pictures {
     draw.textAlign = "right";
     draw.fillText(`${short(1000 * span)} ms`, width - 6, height - 4);
     draw.textAlign = "left";
-    const shares = this.shares;
-    document.getElementById("shares").textContent = STATES.map((name, i) => `${name} ${Math.round(100 * shares[i])} %`).join(", ");
   }
 
   #phase() {

@@ -105,8 +105,9 @@ class Player extends AudioWorkletProcessor {
         this.port.postMessage({ revision });
       }
     }
-    if (this.stream) this.stream.postMessage({ played: samples, left: this.written - this.read });
-    if (++this.quanta % 16) return;
+    if (++this.quanta % 4) return;
+    if (this.stream) this.stream.postMessage({ left: this.written - this.read });
+    if (this.quanta % 16) return;
     this.port.postMessage({
       peak: this.loudest,
       level: Math.sqrt(this.power / (16 * samples)),

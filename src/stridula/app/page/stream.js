@@ -5,7 +5,7 @@ import { parts } from "./parts.js";
 const PART = 480; // Samples of a part while live.
 const FEWEST = 2; // Parts asked for at once.
 const RATE = 48000;
-const BUFFER = 0.07; // Sound kept ahead [s]; more after a drop-out, and less again after a while without one.
+const BUFFER = 0.08; // Sound kept ahead [s]; more after a drop-out, and less again after a while without one.
 const MOST_BUFFER = 0.1;
 const MORE = 0.01; // How much more after a drop-out [s].
 const CALM = 20000; // Time without a drop-out after which half of that is let go [ms].

@@ -1,0 +1,72 @@
+"""What is computed beside what is played, in a process of its own and of low priority: the sound comes first."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import sys
+from typing import Any
+
+# Longest line of an answer [bytes].
+LONGEST = 1_000_000
+
+
+class Beside:
+    """The process that computes maps and linear theory for the pages in turns; it is there while one is open."""
+
+    def __init__(self) -> None:
+        self._process: asyncio.subprocess.Process | None = None
+        self._turn = asyncio.Lock()
+        self._closed = 0
+
+    async def ask(self, what: str, **words: Any) -> Any:
+        """Return the answer to a question in its turn, None if the last page goes in between.
+
+        Parameters
+        ----------
+        what : str
+            ``regimes`` or ``theory``.
+        **words
+            Arguments of the function of that name in `beside_worker`.
+        """
+        # A question that nobody waits for any more is not begun, for it would begin the process.
+        await self._turn.acquire()
+        # Once begun it is computed to its end, so that answers keep their order.
+        line = json.dumps({"what": what, "words": words})
+        return await asyncio.shield(asyncio.ensure_future(self._answer(line, self._closed)))
+
+    def close(self) -> None:
+        """End the process."""
+        if self._process is not None and self._process.returncode is None:
+            with contextlib.suppress(ProcessLookupError):
+                self._process.kill()
+        self._process = None
+        self._closed += 1
+
+    async def _answer(self, line: str, closed: int) -> Any:
+        try:
+            if closed != self._closed:
+                return None
+            process = await self._started()
+            if closed != self._closed:
+                # The last page went while the process began.
+                self.close()
+                return None
+            assert process.stdin is not None
+            assert process.stdout is not None
+            with contextlib.suppress(ConnectionError):
+                process.stdin.write(line.encode() + b"\n")
+                await process.stdin.drain()
+            found = await process.stdout.readline()
+            return json.loads(found) if found else None
+        finally:
+            self._turn.release()
+
+    async def _started(self) -> asyncio.subprocess.Process:
+        if self._process is None or self._process.returncode is not None:
+            pipe = asyncio.subprocess.PIPE
+            self._process = await asyncio.create_subprocess_exec(
+                sys.executable, "-m", "stridula.app.beside_worker", stdin=pipe, stdout=pipe, limit=LONGEST
+            )
+        return self._process

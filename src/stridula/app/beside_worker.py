@@ -1,0 +1,95 @@
+"""The process beside what is played: a line of JSON for each question, one for each answer."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import signal
+import sys
+from collections.abc import Callable, Sequence
+from typing import Any
+
+# The sound comes first.
+NICENESS = 10
+# Modes that grow that are told at most.
+MOST = 12
+
+
+def regimes(tables: dict[str, Any], keys: Sequence[str], points: Sequence[Sequence[float]]) -> list[str]:
+    """Return the regime at some points, empty where there is none.
+
+    Parameters
+    ----------
+    tables : dict
+        A scenario in full.
+    keys : sequence of str
+        What is varied.
+    points : sequence of sequence of float
+        Their values at each point, in SI.
+    """
+    from ..scenarios.keys import located
+    from ..studies.measures import asked_for
+    from ..studies.sweeps import SAMPLE_RATE
+    from ..studies.task import Task
+
+    changed, places, problems = located(tables, dict(zip(keys, points[0], strict=True)))
+    if problems:
+        return [""] * len(points)
+    task = Task(changed, tuple(places[key] for key in keys), asked_for(["regime"]), SAMPLE_RATE, False)
+    return [str(outcome["values"].get("regime", "")) for outcome in task.outcomes(points)]
+
+
+def theory(tables: dict[str, Any]) -> dict[str, Any]:
+    """Return the equilibrium of a scenario, and the modes that grow about it.
+
+    Parameters
+    ----------
+    tables : dict
+        A scenario in full.
+
+    Returns
+    -------
+    dict
+        ``equilibrium`` as in `sliding_stability`, or why there is none; ``modes`` that grow, fastest first, with
+        ``frequency`` [Hz] and ``growth_rate`` [1/s].
+    """
+    import numpy as np
+
+    from ..analysis.stability import sliding_stability
+    from ..scenarios.load import scenario_of_tables
+
+    try:
+        found = sliding_stability(scenario_of_tables(tables).system)
+    except ValueError as error:
+        return {"equilibrium": str(error), "modes": []}
+    growth = found["growth_rate"].values
+    growing = [k for k in np.argsort(-growth) if bool(found["unstable"].values[k])][:MOST]
+    modes = [{"frequency": float(found["frequency"].values[k]), "growth_rate": float(growth[k])} for k in growing]
+    return {"equilibrium": str(found.attrs["equilibrium"]), "modes": modes}
+
+
+ANSWERS: dict[str, Callable[..., Any]] = {"regimes": regimes, "theory": theory}
+
+
+def main() -> None:
+    """Answer until nobody asks any more."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with contextlib.suppress(OSError, AttributeError):
+        os.nice(NICENESS)
+    # What is heavy is imported once it stands back.
+    from ..studies.task import use_one_thread
+
+    use_one_thread()
+    for line in sys.stdin:
+        asked = json.loads(line)
+        found = json.dumps(ANSWERS[asked["what"]](**asked["words"]))
+        try:
+            print(found, flush=True)
+        except BrokenPipeError:
+            # The server has gone in between; what is left unwritten would only be complained of.
+            os._exit(0)
+
+
+if __name__ == "__main__":
+    main()
