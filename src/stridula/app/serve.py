@@ -17,6 +17,7 @@ import uvicorn
 from ..studies.task import use_one_thread
 from .instrument import RATE, Instrument
 from .messages import LARGEST
+from .parts import Part, packed
 from .playable import PRESETS, playable
 from .server import create_app
 
@@ -84,8 +85,13 @@ def _get_ready() -> None:
     notice = threading.Timer(PATIENCE, print, [words], {"file": sys.stderr, "flush": True})
     notice.daemon = True
     notice.start()
+    # Under a force and under an imposed velocity; what changes friction, and what changes modes.
     for case in PRESETS[:3:2]:
-        list(Instrument(playable(case, None, {})).play(RATE // 100))
+        instrument = Instrument(playable(case, None, {}))
+        for number, key in enumerate(("contact.friction.coefficient", "slider.length")):
+            _ = [packed(part) for part in instrument.play(RATE // 100) if isinstance(part, Part)]
+            instrument.change(playable(case, None, {key: 0.5}), number)
+        list(instrument.play(RATE // 100))
     notice.cancel()
 
 
