@@ -77,9 +77,14 @@ class StreamedSound:
         phase = panel.angular_frequency * np.sqrt(1.0 - panel.damping**2) * interval
         self.numerators = [k * numerator(float(one)) for k, one in zip(decay, phase, strict=True)]
         self.poles = [[1.0, -2.0 * k * np.cos(one), k**2] for k, one in zip(decay, phase, strict=True)]
+        self.reach = self.path.shape[1] - 1 + first + self.delay - DEGREE
+        self.begin()
+
+    def begin(self) -> None:
+        """Let nothing have sounded yet."""
         self.memory = [np.zeros(len(one) - 1) for one in self.numerators]
         self.force, self.position = np.zeros(2 * LEAD), np.zeros(LEAD)
-        self.moved = np.zeros((len(kept), self.path.shape[1] - 1 + first + self.delay - DEGREE))
+        self.moved = np.zeros((len(self.numerators), self.reach))
         self.has_begun = False
 
     def feed(self, force: Array, position: Array) -> Array:

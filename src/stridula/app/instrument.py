@@ -93,7 +93,8 @@ class Instrument:
 
     def _begin_stroke(self) -> None:
         self.stroke, self.ended = self.stroke + 1, ""
-        self.source, self._must_blend, self._still = source_of(self.name, self.live), True, 0
+        self.source.begin()
+        self._must_blend, self._still = True, 0
 
     def _at_rest(self, chunk: LiveChunk) -> str:
         """Return why nothing more will come of this stroke, or nothing."""

@@ -45,6 +45,11 @@ class Pressure:
 
     def __init__(self, track: ModalBeam, interval: float, steps: int) -> None:
         self.sound = StreamedSound(track, (track.length / 2.0, 0.0, HEIGHT), interval, steps)
+        self.begin()
+
+    def begin(self) -> None:
+        """Let nothing have sounded yet."""
+        self.sound.begin()
         self.place: float | None = None
 
     def heard(self, chunk: LiveChunk) -> Array:
@@ -58,6 +63,9 @@ class Pressure:
 class Force:
     """The normal contact force."""
 
+    def begin(self) -> None:
+        """Forget nothing: nothing is known of what was before."""
+
     def heard(self, chunk: LiveChunk) -> Array:
         """Return the force over a chunk [N]."""
         return chunk.contact["normal_force"]
@@ -65,6 +73,9 @@ class Force:
 
 class Acceleration:
     """The acceleration of the middle of the track."""
+
+    def begin(self) -> None:
+        """Forget nothing: nothing is known of what was before."""
 
     def heard(self, chunk: LiveChunk) -> Array:
         """Return the acceleration over a chunk [m/s²]."""
