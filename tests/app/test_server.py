@@ -29,7 +29,9 @@ def test_the_page_may_load_and_speak_with_nothing_but_its_server(server):
     answer, content = server.get("/")
     policy = dict(part.strip().partition(" ")[::2] for part in answer.getheader("content-security-policy").split(";"))
     assert policy["default-src"] == policy["frame-ancestors"] == policy["base-uri"] == "'none'"
-    assert policy["script-src"] == policy["connect-src"] == policy["worker-src"] == "'self'"
+    assert policy["script-src"] == policy["worker-src"] == "'self'"
+    host = f"127.0.0.1:{server.port}"
+    assert policy["connect-src"].split() == ["'self'", f"ws://{host}", f"wss://{host}"]
     assert not any("unsafe" in words for words in policy.values())
     assert answer.getheader("x-content-type-options") == "nosniff"
     assert answer.getheader("referrer-policy") == "no-referrer"

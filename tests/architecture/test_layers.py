@@ -76,7 +76,7 @@ def test_kernels_import_only_numpy_numba_and_the_standard_library(path):
 def test_matplotlib_is_for_figures_only(path):
     """In plot, in the figures of papers and verification, and where the command line asks for picture formats."""
     module = module_of(path)
-    allowed = re.fullmatch(r"plot(\..*)?|papers\..*figures.*|verification\.figures|cli\.running", module)
+    allowed = re.fullmatch(r"plot(\..*)?|papers\..*figures.*|verification\.figures|cli\.outputs", module)
     if not allowed:
         assert "matplotlib" not in roots(imports(path))
 
