@@ -22,6 +22,15 @@ TRANSIENT = 0.1
 KEPT, GROWING = 0.5, 2.0
 # Ends of a run that cannot be believed.
 FAILED = ("not finite", "contact unsolved", "energy created")
+# What a record must have.
+NEEDED = (
+    "status_share",
+    "normal_force",
+    "tangential_force",
+    "damping_loss",
+    "impact_loss",
+    "friction_loss",
+)
 MEANINGS = {
     "regime": ("1", "regime of the contact"),
     "confidence": ("1", "confidence in the regime, 0.5 at a threshold"),
@@ -129,6 +138,9 @@ def signals_of(run: xr.Dataset) -> Signals:
     time = held["time"].values
     if time.size < 2:
         raise ValueError(f"run must have at least 2 samples, got {time.size}")
+    lacking = [name for name in NEEDED if name not in held]
+    if lacking:
+        raise ValueError(f"run must have {', '.join(NEEDED)}, got a record without {', '.join(lacking)}")
     return Signals(
         interval=float((time[-1] - time[0]) / (time.size - 1)),
         share=held["status_share"].values,

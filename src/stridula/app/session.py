@@ -133,11 +133,12 @@ class Session:
     async def _pull(self, instrument: Instrument, pull: Pull) -> None:
         """Play the next parts; a page that asks for more than time brings waits."""
         wanted = pull.parts * pull.samples
-        since = clock.monotonic() - self._began
-        early = (self._played + wanted) / RATE - AHEAD - since * FASTEST
+        allowed = round((clock.monotonic() - self._began) * FASTEST * RATE)
+        # What was not asked for in time is not made up for.
+        self._played = max(self._played, allowed) + wanted
+        early = (self._played - allowed) / RATE - AHEAD
         if early > 0.0:
             await asyncio.sleep(early / FASTEST)
-        self._played = max(self._played + wanted, round((since - AHEAD) * FASTEST * RATE))
         parts: list[bytes] = []
         for number in range(pull.parts):
             # Marched here and not in a thread: to change threads takes as long as a part.
