@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -44,7 +46,7 @@ class Pressure:
     """The sound pressure above the middle of a track."""
 
     def __init__(self, track: ModalBeam, interval: float, steps: int) -> None:
-        self.sound = StreamedSound(track, (track.length / 2.0, 0.0, HEIGHT), interval, steps)
+        self.sound = copy(_sound(track, interval, steps))
         self.begin()
 
     def begin(self) -> None:
@@ -58,6 +60,12 @@ class Pressure:
         before = np.concatenate([places[:1] if self.place is None else [self.place], places[:-1]])
         self.place = float(places[-1])
         return self.sound.feed(chunk.contact["normal_force"], (before + places) / 2.0)
+
+
+@lru_cache(maxsize=64)
+def _sound(track: ModalBeam, interval: float, steps: int) -> StreamedSound:
+    """Return the sound of a track before it is heard: to find its paths takes longer than a part of the sound."""
+    return StreamedSound(track, (track.length / 2.0, 0.0, HEIGHT), interval, steps)
 
 
 class Force:
