@@ -21,6 +21,7 @@ from pathlib import Path
 import numpy as np
 
 import machine
+from ratios import write_between
 
 CHROMIUM = "/usr/bin/chromium"
 ARGUMENTS = ("--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update")
@@ -109,15 +110,6 @@ def table(seen: dict[str, list[float]], minutes: float, with_map: bool) -> list[
     ]
 
 
-def write(target: Path, lines: list[str]) -> None:
-    """Replace what stands between the marks of a page."""
-    before, _, rest = target.read_text(encoding="utf-8").partition(BEGIN)
-    _, mark, after = rest.partition(END)
-    if not mark:
-        raise SystemExit(f"{target} must have the lines {BEGIN} and {END}")
-    target.write_text("\n".join([f"{before}{BEGIN}", "", *lines, "", f"{END}{after}"]), encoding="utf-8")
-
-
 def main() -> None:
     """Measure and print, and write if asked."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -128,7 +120,7 @@ def main() -> None:
     lines = table(played(asked.minutes, not asked.no_map), asked.minutes, not asked.no_map)
     print("\n".join(lines))
     if asked.write:
-        write(asked.write, lines)
+        write_between(BEGIN, END, asked.write, lines)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ import statistics
 import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 import machine
 
@@ -101,3 +102,12 @@ def show(title: str, lines: Lines) -> None:
     print("\n".join(machine.description()))
     for line in as_text(title, lines):
         print(line, flush=True)
+
+
+def write_between(begin: str, end: str, target: Path, lines: list[str]) -> None:
+    """Replace what stands between two marks of a page."""
+    before, _, rest = target.read_text(encoding="utf-8").partition(begin)
+    _, mark, after = rest.partition(end)
+    if not mark:
+        raise SystemExit(f"{target} must have the lines {begin} and {end}")
+    target.write_text("\n".join([f"{before}{begin}", "", *lines, "", f"{end}{after}"]), encoding="utf-8")

@@ -22,7 +22,7 @@ import real_time
 import scaling
 import speed_and_memory
 import startup
-from ratios import as_markdown, as_text
+from ratios import as_markdown, as_text, write_between
 
 # Memory first: see there.
 SECTIONS = (speed_and_memory, against_c, peer_speed, real_time, many_runs, maps, scaling, startup, gpu)
@@ -48,15 +48,6 @@ def measure() -> list[str]:
     return page
 
 
-def write(target: Path, page: list[str]) -> None:
-    """Replace what stands between the marks of a page."""
-    before, _, rest = target.read_text(encoding="utf-8").partition(BEGIN)
-    _, mark, after = rest.partition(END)
-    if not mark:
-        raise SystemExit(f"{target} must have the lines {BEGIN} and {END}")
-    target.write_text("\n".join([f"{before}{BEGIN}", "", *page, "", f"{END}{after}"]), encoding="utf-8")
-
-
 def main() -> None:
     """Measure, and write if asked to."""
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -64,7 +55,7 @@ def main() -> None:
     chosen = words.parse_args()
     page = measure()
     if chosen.write:
-        write(chosen.write, page)
+        write_between(BEGIN, END, chosen.write, page)
 
 
 if __name__ == "__main__":

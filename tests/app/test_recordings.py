@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -89,25 +90,26 @@ def test_the_record_opens_as_any_and_is_that_of_the_run(talk, tmp_path):
     assert record.attrs["stridula_version"] == st.__version__
 
 
-def test_the_record_runs_again_as_what_was_played_last(talk, tmp_path):
+def changed_on_the_way(talk: Conversation, folder: Path) -> Path:
+    """Return the record of a tenth of a second and, at more friction, another."""
     talk.scene("stable-sliding")
     talk.play(4800)
     talk.scene("stable-sliding", {FRICTION: 0.7})
     talk.play(4800)
-    file = tmp_path / "played.nc"
+    file = folder / "played.nc"
     file.write_bytes(talk.save("nc"))
+    return file
+
+
+def test_the_record_runs_again_as_what_was_played_last(talk, tmp_path):
+    file = changed_on_the_way(talk, tmp_path)
     again = st.load_scenario(file)
     assert again.system == st.load_scenario("stable-sliding", {FRICTION: 0.7}).system
     assert again.simulate(duration=0.01).attrs["ended"] == "finished"
 
 
 def test_the_record_says_what_was_changed_when(talk, tmp_path):
-    talk.scene("stable-sliding")
-    talk.play(4800)
-    talk.scene("stable-sliding", {FRICTION: 0.7})
-    talk.play(4800)
-    file = tmp_path / "played.nc"
-    file.write_bytes(talk.save("nc"))
+    file = changed_on_the_way(talk, tmp_path)
     changes = json.loads(st.load(file).attrs["changes"])
     assert [change["time"] for change in changes] == pytest.approx([0.0, 0.1])
     for change, friction in zip(changes, (0.5, 0.7), strict=True):

@@ -211,7 +211,7 @@ def test_what_is_refused_changes_nothing(monkeypatch):
 
 def test_energy_that_comes_from_nowhere_ends_it(monkeypatch):
     live, _ = played("squeal", chunks=5)
-    monkeypatch.setattr(live, "_first_energy", live._first_energy + 1.0)
+    monkeypatch.setattr(live._belief, "initial_energy", live._belief.initial_energy + 1.0)
     chunk, ended = live.advance(480)
     assert ended == "energy created"
     assert len(chunk.time) == 0

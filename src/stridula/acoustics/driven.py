@@ -106,12 +106,20 @@ def modal_forces(panel: Panel, pressing: Pressing) -> Array:
 def respond(panel: Panel, forces: Array, interval: float) -> Array:
     """Return the accelerations of modes under impulses ``interval * forces``, shape (modes, samples)."""
     found = np.empty_like(forces)
-    for row, force, angular, damping in zip(found, forces, panel.angular_frequency, panel.damping, strict=True):
+    for row, force, taps in zip(found, forces, filters(panel, interval), strict=True):
+        # The numerator reaches DEGREE samples ahead.
+        row[:] = lfilter(*taps, np.pad(force, (0, DEGREE), mode="edge"))[DEGREE:]
+    return found
+
+
+def filters(panel: Panel, interval: float) -> list[tuple[Array, list[float]]]:
+    """Return for each mode numerator and poles that make its accelerations, `DEGREE` samples late, of impulses."""
+    found = []
+    for angular, damping in zip(panel.angular_frequency, panel.damping, strict=True):
         decay = float(damping * angular * interval)
         phase = float(angular * np.sqrt(1.0 - damping**2) * interval)
         poles = [1.0, -2.0 * np.exp(-decay) * np.cos(phase), np.exp(-2.0 * decay)]
-        # The numerator reaches DEGREE samples ahead.
-        row[:] = lfilter(np.exp(-decay) * numerator(phase), poles, np.pad(force, (0, DEGREE), mode="edge"))[DEGREE:]
+        found.append((np.exp(-decay) * numerator(phase), poles))
     return found
 
 

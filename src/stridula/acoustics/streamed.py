@@ -11,7 +11,7 @@ from scipy.signal import lfilter
 from ..bodies import ModalBeam, ModalPlate
 from ..bodies.modes import Array
 from .air import Air
-from .driven import DEGREE, FASTEST, LEAD, numerator, undo_mean
+from .driven import DEGREE, FASTEST, LEAD, filters, undo_mean
 from .listeners import listeners_of
 from .panels import panel_of
 from .resampling import ATTENUATION, BANDWIDTH, bandwidth_of
@@ -73,18 +73,15 @@ class StreamedSound:
         self.delay = max(0, DEGREE - first)
         self.path = np.apply_along_axis(np.convolve, 1, path.taps.T, taps)
         self.spectra: dict[int, Array] = {}
-        decay = np.exp(-panel.damping * panel.angular_frequency * interval)
-        phase = panel.angular_frequency * np.sqrt(1.0 - panel.damping**2) * interval
-        self.numerators = [k * numerator(float(one)) for k, one in zip(decay, phase, strict=True)]
-        self.poles = [[1.0, -2.0 * k * np.cos(one), k**2] for k, one in zip(decay, phase, strict=True)]
+        self.filters = filters(panel, interval)
         self.reach = self.path.shape[1] - 1 + first + self.delay - DEGREE
         self.begin()
 
     def begin(self) -> None:
         """Let nothing have sounded yet."""
-        self.memory = [np.zeros(len(one) - 1) for one in self.numerators]
+        self.memory = [np.zeros(len(taps) - 1) for taps, _ in self.filters]
         self.force, self.position = np.zeros(2 * LEAD), np.zeros(LEAD)
-        self.moved = np.zeros((len(self.numerators), self.reach))
+        self.moved = np.zeros((len(self.filters), self.reach))
         self.has_begun = False
 
     def feed(self, force: Array, position: Array) -> Array:
@@ -112,7 +109,7 @@ class StreamedSound:
         modal = -(shapes * pressing[:, None]).T
         moved = np.empty_like(modal)
         for k, row in enumerate(modal):
-            moved[k], self.memory[k] = lfilter(self.numerators[k], self.poles[k], row, zi=self.memory[k])
+            moved[k], self.memory[k] = lfilter(*self.filters[k], row, zi=self.memory[k])
         return self._heard(moved)
 
     def _heard(self, moved: Array) -> Array:

@@ -116,22 +116,34 @@ def write_wav(
     sound = resampled(values, rate, float(sample_rate))
     peak = float(np.abs(sound).max())
     if isinstance(scale, str):
-        scale = peak * 10.0 ** (HEADROOM / 20.0) or 1.0
+        scale = normalised_scale(peak)
     largest = scale * (1.0 - 1.0 / STEPS)
     if subtype == "PCM_24" and peak > largest:
         raise ValueError(f"full_scale must be above the peak of {peak:.6g} Pa, got {scale!r} Pa: it would be clipped")
-    write(path, _encoded(sound / scale, sample_rate, subtype, scale, float(pressure["time"][0])))
+    comment = scale_comment(scale, float(pressure["time"][0]))
+    write(path, encoded(sound / scale, sample_rate, subtype, comment))
     duration = sound.shape[0] / sample_rate
     return SoundFile(str(path), sound.shape[1], sample_rate, duration, peak, scale, full_scale == NORMALISED)
 
 
-def _encoded(samples: Array, rate: int, subtype: str, scale: float, start: float) -> memoryview:
+def normalised_scale(peak: float) -> float:
+    """Return the full scale that a peak is `HEADROOM` below, 1 for silence."""
+    return peak * 10.0 ** (HEADROOM / 20.0) or 1.0
+
+
+def scale_comment(scale: float, start: float) -> str:
+    """Return the comment of a file whose full scale is a pressure [Pa] and that starts at a time [s]."""
+    return f"stridula: full_scale_pascal={scale!r} start_second={start!r}"
+
+
+def encoded(samples: Array, rate: int, subtype: str, comment: str) -> memoryview:
+    """Return samples over full scale, shape (samples, channels), as a WAV file with a comment."""
     import soundfile
 
     content = io.BytesIO()
     options = {"samplerate": rate, "channels": samples.shape[1], "format": "WAV", "subtype": subtype}
     with soundfile.SoundFile(content, "w", **options) as file:
-        file.comment = f"stridula: full_scale_pascal={scale!r} start_second={start!r}"
+        file.comment = comment
         # Whole numbers of our own rounding: 24 bits lie in the upper three bytes.
         file.write(np.rint(samples * STEPS).astype(np.int32) * 256 if subtype == "PCM_24" else samples)
     return content.getbuffer()

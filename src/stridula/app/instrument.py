@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 import numpy as np
 
@@ -47,8 +48,7 @@ class Instrument:
 
     def change(self, played: Playable, revision: int) -> bool:
         """Go on as another scenario and return whether the motion went on; else a stroke begins."""
-        before = self.live
-        track, steps = before.system.track, before.ratio
+        track, steps = self.live.system.track, self.live.ratio
         goes_on = self.live.change(played.system, played.probes, played.scenario.scheme)
         self.played, self.revision = played, revision
         self.last_seconds.changed(self.played_samples / RATE, played.toml)
@@ -141,6 +141,7 @@ class Instrument:
         return Shapes(place, height, moved - moved[0], np.asarray(deflection))
 
 
+@lru_cache(maxsize=64)
 def _sines(waves: int) -> Array:
     """Return the values of sines over a track, shape (points, waves)."""
     return np.sin(np.outer(np.linspace(0.0, np.pi, TRACK_POINTS), np.arange(1, waves + 1)))

@@ -11,16 +11,25 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..acoustics.wav import encoded, normalised_scale, scale_comment
 from ..bodies.modes import Array
-from ..records.variables import CONTACT, PROBES, STATUS, STATUS_SHARE, STATUS_WORDS, Variable
+from ..records.variables import (
+    CONTACT,
+    PROBES,
+    STATUS,
+    STATUS_SHARE,
+    STATUS_WORDS,
+    attributes_of,
+    described,
+    dominant_status,
+    status_attributes,
+)
 from ..version import __version__
 from .parts import Part
 from .playable import Playable
 from .sources import SOURCES
 
 KEPT = 10.0
-# Peak of a sound file below full scale.
-HEADROOM = 10.0 ** (-1.0 / 20.0)
 
 
 @dataclass(frozen=True)
@@ -89,20 +98,22 @@ class LastSeconds:
         first = round(parts[-1].clock * self.rate) - self._samples
         time = (first + np.arange(1, self._samples + 1)) / self.rate
         shares = np.concatenate([part.status_share for part in parts])
-        status = (2 - np.argmax(shares[:, ::-1], axis=1)).astype("i1")
-        flags = {"flag_values": np.arange(3, dtype="i1"), "flag_meanings": " ".join(STATUS_WORDS)}
         data: dict[str, Any] = {
-            variable.name: ("time", np.concatenate([part.contact[variable.name] for part in parts]), _words(variable))
+            variable.name: (
+                "time",
+                np.concatenate([part.contact[variable.name] for part in parts]),
+                attributes_of(variable),
+            )
             for variable in CONTACT
         }
-        data[STATUS.name] = ("time", status, {**_words(STATUS), **flags})
-        data[STATUS_SHARE.name] = (("time", "contact_status"), shares, _words(STATUS_SHARE))
+        data[STATUS.name] = ("time", dominant_status(shares), status_attributes())
+        data[STATUS_SHARE.name] = (("time", "contact_status"), shares, attributes_of(STATUS_SHARE))
         probe = np.concatenate([part.acceleration for part in parts])[:, None]
-        data["acceleration"] = (("time", "acceleration_probe"), probe, _words(PROBES["acceleration"]))
+        data["acceleration"] = (("time", "acceleration_probe"), probe, attributes_of(PROBES["acceleration"]))
         strokes = np.concatenate([np.full(len(part.sound), part.stroke, dtype="i4") for part in parts])
-        data["stroke"] = ("time", strokes, {"units": "1", "long_name": "number of the stroke"})
+        data["stroke"] = ("time", strokes, described("1", "number of the stroke"))
         coordinates: dict[str, Any] = {
-            "time": ("time", time, {"units": "s", "long_name": "time played at the end of the sample interval"}),
+            "time": ("time", time, described("s", "time played at the end of the sample interval")),
             "contact_status": ("contact_status", list(STATUS_WORDS)),
             "acceleration_probe": ("acceleration_probe", ["track centre y"]),
         }
@@ -130,8 +141,6 @@ class LastSeconds:
         ValueError
             If nothing was played yet.
         """
-        import soundfile
-
         self._check()
         name = self._parts[-1].source
         heard: list[Array] = []
@@ -141,25 +150,14 @@ class LastSeconds:
             heard.append(part.sound)
         sound = np.concatenate(heard[::-1]).astype(float)
         sound -= sound.mean() if name == "force" else 0.0
-        scale = float(np.abs(sound).max()) / HEADROOM or 1.0
-        source, content = SOURCES[name], io.BytesIO()
-        with soundfile.SoundFile(content, "w", self.rate, 1, subtype="PCM_24", format="WAV") as file:
-            if name == "pressure":
-                start = self._parts[-1].clock - len(sound) / self.rate
-                file.comment = f"stridula: full_scale_pascal={scale!r} start_second={start!r}"
-            else:
-                file.comment = f"stridula: {source.name.lower()}, full scale is {scale!r} {source.unit}"
-            file.write(sound / scale)
-        return content.getvalue()
+        scale = normalised_scale(float(np.abs(sound).max()))
+        if name == "pressure":
+            comment = scale_comment(scale, self._parts[-1].clock - len(sound) / self.rate)
+        else:
+            source = SOURCES[name]
+            comment = f"stridula: {source.name.lower()}, full scale is {scale!r} {source.unit}"
+        return bytes(encoded(sound[:, None] / scale, self.rate, "PCM_24", comment))
 
     def _check(self) -> None:
         if not self._parts:
             raise ValueError("something must have been played before it can be saved, got nothing yet")
-
-
-def _words(variable: Variable) -> dict[str, str]:
-    return {
-        "units": variable.units,
-        "long_name": variable.long_name,
-        "cell_methods": f"time: {variable.cell_methods}",
-    }

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..bodies.modes import Array
 from ..integration.live import LiveChunk
+from ..records.variables import dominant_status
 
 # Samples that become one in the pictures of the forces and of the phase portrait.
 THINNED = 4
@@ -89,15 +90,14 @@ def packed(part: Part) -> bytes:
     thinned = THINNED if samples % THINNED == 0 else 1
     contact, shapes = part.chunk.contact, part.shapes
     shares = part.chunk.status_share.reshape(-1, thinned, 3).mean(axis=1)
-    # Of equal shares the later state wins, as in records.
-    status = 2 - np.argmax(shares[:, ::-1], axis=1)
-    seen = [_means(contact["normal_force"], thinned), _means(contact["tangential_force"], thinned), status]
+    seen = [_means(contact["normal_force"], thinned), _means(contact["tangential_force"], thinned)]
+    seen += [dominant_status(shares)]
     seen += [contact["contact_position"][thinned - 1 :: thinned] - shapes.place, contact["slip_velocity"][::thinned]]
     counts = [samples, samples // thinned, len(shapes.slider), len(shapes.track)]
     head = np.array([part.revision, part.clock, part.stroke, *counts, shapes.place], dtype="<f8")
-    body = [part.sound, *seen, [shapes.height], shapes.slider.ravel(), shapes.track]
-    body += [np.zeros(sum(map(len, body)) % 2)]
-    return head.tobytes() + np.concatenate(body).astype("<f4").tobytes()
+    body = np.concatenate([part.sound, *seen, [shapes.height], shapes.slider.ravel(), shapes.track])
+    odd = np.zeros(len(body) % 2)
+    return head.tobytes() + np.concatenate([body, odd]).astype("<f4").tobytes()
 
 
 def _means(values: Array, count: int) -> Array:

@@ -10,11 +10,13 @@ from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from ..integration.live import LiveMarch
+from ..plot.colours import REGIME_COLOURS
 from ..scenarios.errors import ScenarioError
 from ..version import __version__
 from . import controls
 from .beside import Beside
-from .instrument import PATIENCE, RATE, Instrument
+from .instrument import RATE, Instrument
 from .last_seconds import KEPT
 from .maps import rows
 from .messages import Listen, Map, Message, NoMap, Pull, Repeat, Restart, Save, Scene, message_of
@@ -57,9 +59,9 @@ class Session:
             "hello",
             version=__version__,
             rate=RATE,
-            patience=PATIENCE,
             kept=KEPT,
             presets=presets(),
+            regimes=REGIME_COLOURS,
             sources={name: vars(source) for name, source in SOURCES.items()},
             **controls.described(),
         )
@@ -67,10 +69,8 @@ class Session:
             while True:
                 try:
                     await self._answer(message_of(await self._heard()))
-                except ScenarioError as error:
-                    await self._tell("problem", problems=list(error.problems))
                 except ValueError as error:
-                    await self._tell("problem", problems=[str(error)])
+                    await self._tell("problem", problems=_lines(error))
         finally:
             for task in self._tasks.values():
                 task.cancel()
@@ -110,25 +110,24 @@ class Session:
         """Play something else, if it can be played."""
         try:
             played = await asyncio.to_thread(playable, scene.case, scene.text, scene.overrides)
-            goes_on = await asyncio.to_thread(self._play, played, scene.revision)
+            live, goes_on = await asyncio.to_thread(self._play, played, scene.revision)
         except MemoryError:
             problems = ["scenario must fit into memory"]
-        except ScenarioError as error:
-            problems = list(error.problems)
         except ValueError as error:
-            problems = [str(error)]
+            problems = _lines(error)
         else:
-            await self._tell("scene", revision=scene.revision, goes_on=goes_on, **_described(played, self.instrument))
+            await self._tell("scene", revision=scene.revision, goes_on=goes_on, **_described(played, live))
             self._do("theory", self._theory(played, scene.revision))
             return
         await self._tell("refused", revision=scene.revision, problems=problems)
 
-    def _play(self, played: Playable, revision: int) -> bool:
+    def _play(self, played: Playable, revision: int) -> tuple[LiveMarch, bool]:
+        """Return what marches, and whether its motion went on."""
         if self.instrument is None:
             self.instrument = Instrument(played, self.source)
             self.instrument.revision, self.instrument.repeats = revision, self.repeats
-            return False
-        return self.instrument.change(played, revision)
+            return self.instrument.live, False
+        return self.instrument.live, self.instrument.change(played, revision)
 
     async def _pull(self, instrument: Instrument, pull: Pull) -> None:
         """Play the next parts; a page that asks for more than time brings waits."""
@@ -205,10 +204,14 @@ async def _sent(sending: Coroutine[Any, Any, None]) -> None:
         raise WebSocketDisconnect(GONE) from None
 
 
-def _described(played: Playable, instrument: Instrument | None) -> dict[str, Any]:
+def _lines(error: ValueError) -> list[str]:
+    """Return what is wrong, a line each."""
+    return list(error.problems) if isinstance(error, ScenarioError) else [str(error)]
+
+
+def _described(played: Playable, live: LiveMarch) -> dict[str, Any]:
     """Return what the page shows of what is played."""
     slider, track = played.system.slider, played.system.track
-    live = instrument.live if instrument is not None else None
     return {
         "title": played.scenario.title,
         "description": played.scenario.description,
@@ -216,7 +219,7 @@ def _described(played: Playable, instrument: Instrument | None) -> dict[str, Any
         "toml": played.toml,
         "slider": {"length": slider.length, "angle": slider.angle},
         "track": {"length": track.length},
-        "modes": len(live.position) if live else 0,
-        "step": live.step if live else 0.0,
-        "steps": live.ratio if live else 0,
+        "modes": len(live.position),
+        "step": live.step,
+        "steps": live.ratio,
     }

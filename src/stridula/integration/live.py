@@ -18,16 +18,17 @@ from ..checks import instance, positive
 from ..records import Probe
 from ..records.state import State
 from ..system import System
+from .belief import Belief
 from .blocks import Blocks, blocks_of
 from .carry_over import Before
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
-from .marches import Chunk, Imposed, March, imposed_on, march_of
+from .marches import Impositions, March, march_of
 from .run import CONTACT_COLUMN, ENERGY_COLUMN
 from .schemes import ExactModal, Scheme
 from .simulate import choose_timing
 from .start import rows_where_it_starts, state_at_start
-from .stops import ENDED, energy_created
+from .stops import ENDED
 
 # Share of the lowest frequency of vibration below which a mode yields as a free one does.
 SOFT = 0.3
@@ -82,7 +83,7 @@ class LiveMarch:
         If the system has several contacts, or one that does not move along a beam or a plate.
     """
 
-    # What marches, where it is, and what it had of energy; set again at every change.
+    # What marches and where it is; set again at every change.
     system: System
     probes: tuple[Probe, ...]
     scheme: Scheme
@@ -92,10 +93,8 @@ class LiveMarch:
     _arrays: Assembly
     _blocks: Blocks
     _march: March
-    _steady: Imposed | None
-    _last_energies: Array
-    _first_energy: float
-    _largest_energy: float
+    _impositions: Impositions
+    _belief: Belief
 
     def __init__(
         self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None, sample_rate: float = 48e3
@@ -127,9 +126,8 @@ class LiveMarch:
     def restart(self) -> None:
         """Put everything back to the start."""
         self._sample, self._gap = 0, self.system.contacts[0].gap
-        self._arrays = self._described
-        blocks = blocks_of(self._arrays, self.scheme, self.step)
-        self._go(state_at_start(self._arrays, self.scheme, self.step, blocks, GaussSeidel()))
+        self._lay_out(self._described)
+        self._go(state_at_start(self._arrays, self.scheme, self.step, self._blocks, GaussSeidel()))
         self._begin_probes()
 
     def advance(self, samples: int) -> tuple[LiveChunk, str]:
@@ -148,9 +146,9 @@ class LiveMarch:
             ``finished``, ``off the track``, ``not finite``, ``contact unsolved`` or ``energy created``; after all but
             the first, only `restart` helps.
         """
-        imposed = self._imposed(samples)
+        imposed = self._impositions.on(self._sample * self.ratio, samples * self.ratio)
         (chunk,) = self._march.advance([imposed], samples)
-        done, ended = self._believed(chunk)
+        done, ended = self._belief.of(chunk)
         time = (self._sample + np.arange(1, done + 1)) * self.interval
         self._sample += done
         record, energy = chunk.contacts[:done, 0].T, chunk.energies[:done].T
@@ -208,50 +206,26 @@ class LiveMarch:
             self._start_from(position, velocity, place, 0.0 if is_closed else self._gap)
         return True
 
-    def _believed(self, chunk: Chunk) -> tuple[int, int]:
-        """Return how many samples of a chunk can be believed, and what ended it."""
-        energies = np.ascontiguousarray(chunk.energies[: chunk.completed].T)
-        bad = np.flatnonzero(~np.isfinite(energies).all(axis=0))
-        if bad.size:
-            return int(bad[0]), at.NOT_FINITE
-        law = self.system.contacts[0].friction
-        known = self._first_energy, self._largest_energy, self._blocks.modes.energy_of_loads()
-        created = energy_created(energies, self._last_energies, *known, not law.state_units, not self._arrays.coupled)
-        if created is not None:
-            return created, at.ENERGY_CREATED
-        if chunk.completed:
-            self._last_energies = energies[:, -1].copy()
-            self._largest_energy = max(self._largest_energy, float(np.abs(energies[: at.DAMPING_LOSS + 1]).max()))
-        return chunk.completed, chunk.ended
-
     def _take(self, system: System, probes: Sequence[Probe], scheme: Scheme, arrays: Assembly) -> None:
         timing = choose_timing(arrays, scheme, self.interval, None, 1.0 / self.interval)
         self.system, self.probes, self.scheme = system, tuple(probes), scheme
-        self._described = arrays
-        self.step = timing.step
-        self.ratio = timing.ratio
+        self._described, self.step, self.ratio = arrays, timing.step, timing.ratio
 
     def _begin_probes(self) -> None:
         self._decimator, self._waiting = Decimator(self.ratio), np.zeros((0, len(self.probes)))
 
+    def _lay_out(self, arrays: Assembly) -> None:
+        """Let a system as flat arrays be what marches."""
+        self._arrays, self._blocks = arrays, blocks_of(arrays, self.scheme, self.step)
+        self._impositions = Impositions(arrays, self._blocks, self.step)
+
     def _go(self, state: State) -> None:
         """March on from a state."""
-        self._blocks = blocks_of(self._arrays, self.scheme, self.step)
         state.energies[:] = 0.0
         state.energies[at.STORED] = stored_energy(self._blocks.modes.block, self._blocks.modes.matrices, state.modal)
-        self._last_energies = state.energies.copy()
-        self._first_energy = self._largest_energy = float(state.energies[at.STORED])
+        stored = float(state.energies[at.STORED])
+        self._belief = Belief(self.system, self._arrays, self._blocks, state.energies, stored)
         self._march = march_of(self._blocks, state, self.step, self.ratio, GaussSeidel())
-        self._steady = None
-
-    def _imposed(self, samples: int) -> Imposed:
-        if not (self._blocks.is_simple and self._arrays.prescribed.is_steady):
-            first = self._sample * self.ratio
-            return imposed_on(self._arrays, self._blocks.heard, first, samples * self.ratio, self.step)
-        if self._steady is None:
-            whole = imposed_on(self._arrays, self._blocks.heard, 0, 1, self.step)
-            self._steady = Imposed(whole.signals, whole.motion[:1])
-        return self._steady
 
     def _low_passed(self, raw: Array, samples: int) -> Array:
         """Return as many samples of the probes as of the rest: while they wait for the low-pass, the first or zero."""
@@ -262,21 +236,19 @@ class LiveMarch:
         self._waiting = waiting[samples:]
         return waiting[:samples]
 
-    def _shift(self, place: float, position: Array) -> None:
-        """Let the tip be at a place now: the sum of its start, its own displacement and what is imposed."""
+    def _shifted(self, place: float, position: Array) -> Assembly:
+        """Return the system whose tip is at a place now: the sum of its start, its displacement and what is imposed."""
         described, (contact,) = self._described.motion, self._described.contacts
         imposed = described(np.array([self.time]), self.step)[0, 0, at.TIP_MOTION]
         offset = np.zeros(at.MOTIONS)
         offset[at.TIP_MOTION] = -imposed - contact.fixed[1] @ position
         here = replace(contact, contact=replace(contact.contact, at=place))
-        self._arrays = replace(
-            self._described, contacts=[here], motion=lambda times, step: described(times, step) + offset
-        )
+        return replace(self._described, contacts=[here], motion=lambda times, step: described(times, step) + offset)
 
     def _go_on(self, state: State, place: float, position: Array, velocity: Array, before: System) -> None:
         """March on in the same modes, under other forces and another friction."""
-        self._shift(place, position)
-        state.modal[at.D] += velocity * self.step - state.modal[at.D]
+        self._lay_out(self._shifted(place, position))
+        state.modal[at.D] = velocity * self.step
         law = self.system.contacts[0].friction
         if type(law) is not type(before.contacts[0].friction):
             state.carried[0, at.FRICTION_STATE] = law.state_at_start if law.state_units else 0.0
@@ -284,9 +256,8 @@ class LiveMarch:
 
     def _start_from(self, position: Array, velocity: Array, place: float, gap: float) -> None:
         """March on in other modes, the contact opened by a gap."""
-        self._shift(place, position)
-        position = position + self._opening(position, gap)
-        self._shift(place, position)
+        position = position + _opening(self._shifted(place, position), position, gap)
+        self._lay_out(self._shifted(place, position))
         now = self.time
         arrays = replace(
             self._arrays,
@@ -295,25 +266,24 @@ class LiveMarch:
             signals=[_later(signal, now) for signal in self._arrays.signals],
             motion=_later(self._arrays.motion, now),
         )
-        blocks = blocks_of(arrays, self.scheme, self.step)
-        self._put(state_at_start(arrays, self.scheme, self.step, blocks, GaussSeidel()), place)
+        self._put(state_at_start(arrays, self.scheme, self.step, self._blocks, GaussSeidel()), place)
 
     def _put(self, state: State, place: float) -> None:
         """March on from a state whose tip is at a place on the track."""
         state.carried[0, list(ON_THE_TRACK)] += place - state.carried[0, at.ABSCISSA]
         self._go(state)
 
-    def _opening(self, position: Array, gap: float) -> Array:
-        """Return the displacement that opens the contact to a gap as a force on it would, rigid motions first."""
-        arrays = self._arrays
-        row, size = rows_where_it_starts(arrays.contacts[0])[0], arrays.coupled
-        squared = np.diag(arrays.angular_frequency**2)
-        squared[:size, :size] = arrays.stiffness
-        vibrating = np.diag(squared)[np.diag(squared) > 0.0]
-        squared += SOFT**2 * (vibrating.min() if vibrating.size else 1.0) * np.eye(len(row))
-        yielded = np.linalg.solve(squared, row)
-        missing = gap - arrays.contacts[0].contact.gap - row @ position
-        return np.asarray(yielded * missing / (row @ yielded))
+
+def _opening(arrays: Assembly, position: Array, gap: float) -> Array:
+    """Return the displacement that opens the contact to a gap as a force on it would, rigid motions first."""
+    row, size = rows_where_it_starts(arrays.contacts[0])[0], arrays.coupled
+    squared = np.diag(arrays.angular_frequency**2)
+    squared[:size, :size] = arrays.stiffness
+    vibrating = np.diag(squared)[np.diag(squared) > 0.0]
+    squared += SOFT**2 * (vibrating.min() if vibrating.size else 1.0) * np.eye(len(row))
+    yielded = np.linalg.solve(squared, row)
+    missing = gap - arrays.contacts[0].contact.gap - row @ position
+    return np.asarray(yielded * missing / (row @ yielded))
 
 
 def _later(signal: Signal, now: float) -> Signal:

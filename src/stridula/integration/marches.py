@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -49,6 +49,33 @@ def imposed_on(arrays: Assembly, heard: Sequence[int], first: int, steps: int, s
     for j in heard:
         signals[:, j] = arrays.signals[j](times[1:-1], step)
     return Imposed(signals, arrays.motion(times, step))
+
+
+class Impositions:
+    """What is imposed on a system, stretch after stretch of its steps.
+
+    Parameters
+    ----------
+    arrays : Assembly
+        The system as flat arrays.
+    blocks : Blocks
+        The same as the march reads it.
+    step : float
+        Time step [s].
+    """
+
+    def __init__(self, arrays: Assembly, blocks: Blocks, step: float) -> None:
+        self.arrays, self.heard, self.step = arrays, blocks.heard, step
+        self.is_steady = blocks.is_simple and arrays.prescribed.is_steady
+
+    def on(self, first: int, steps: int) -> Imposed:
+        """Return what is imposed on `steps` steps from number `first` on, in one row where nothing varies."""
+        return self._steady if self.is_steady else imposed_on(self.arrays, self.heard, first, steps, self.step)
+
+    @cached_property
+    def _steady(self) -> Imposed:
+        imposed = imposed_on(self.arrays, self.heard, 0, 1, self.step)
+        return Imposed(imposed.signals, imposed.motion[:1])
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -19,14 +18,15 @@ from ..records.provenance import scenario_toml
 from ..records.state import State
 from ..system import System
 from ..version import __version__
+from .belief import Belief
 from .blocks import blocks_of
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
-from .marches import Chunk, Imposed, imposed_on
+from .marches import Chunk, Imposed, Impositions
 from .restart import imposed_at, moved_on, state_of
 from .schemes import Scheme
 from .start import state_at_start
-from .stops import ENDED, contact_words, energy_created
+from .stops import ENDED, contact_words
 from .timing import Timing
 
 CONTACT_COLUMN = {
@@ -69,7 +69,6 @@ class Run:
         self.system, self.arrays, self.scheme = system, arrays, scheme
         self.timing, self.probes, self.solve, self.title = timing, probes, solve, title
         self.blocks = blocks_of(arrays, scheme, timing.step)
-        self.dissipative = not any(contact.friction.state_units for contact in system.contacts)
         if start is None:
             self.state = state_at_start(arrays, scheme, timing.step, self.blocks, solve)
             self.first_step, self.initial_energy = 0, float(self.state.energies[at.STORED])
@@ -79,9 +78,8 @@ class Run:
             self.arrays = moved_on(start, system, arrays, self.blocks.modes, self.state, timing.step)
             self.first_step, self.initial_energy = int(start.attrs["last_step"]), float(start.attrs["initial_energy"])
             self.decimator = Decimator(timing.ratio, np.array(start["state_raw"].values, dtype=float))
-        self.last_energies = self.state.energies.copy()
-        self.largest_energy = float(np.abs(self.last_energies[: at.DAMPING_LOSS + 1]).max())
-        self.energy_of_loads = self.blocks.modes.energy_of_loads()
+        self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy)
+        self.impositions = Impositions(self.arrays, self.blocks, timing.step)
         self.energy_record = np.empty((at.ENERGIES, timing.samples))
         self.contact_record = np.empty((at.COLUMNS, len(system.contacts), timing.samples))
         self.probe_record = np.empty((timing.samples, len(probes)))
@@ -103,49 +101,16 @@ class Run:
 
     def imposed(self, first_sample: int, samples: int) -> Imposed:
         """Return what is imposed on the steps of some samples."""
-        if self.is_steady:
-            return self._steady
         ratio = self.timing.ratio
-        first, step = self.first_step + first_sample * ratio, self.timing.step
-        return imposed_on(self.arrays, self.blocks.heard, first, samples * ratio, step)
-
-    @property
-    def is_steady(self) -> bool:
-        """Whether what is imposed is the same at every step, and the march takes it once."""
-        return self.blocks.is_simple and self.arrays.prescribed.is_steady
-
-    @cached_property
-    def _steady(self) -> Imposed:
-        """What is imposed on every step, in one row."""
-        imposed = imposed_on(self.arrays, self.blocks.heard, self.first_step, 1, self.timing.step)
-        return Imposed(imposed.signals, imposed.motion[:1])
+        return self.impositions.on(self.first_step + first_sample * ratio, samples * ratio)
 
     def take(self, chunk: Chunk) -> None:
         """Record a chunk, up to what ends the run."""
         if self.ended != at.FINISHED:
             return
-        completed, self.ended = chunk.completed, chunk.ended
-        energies = np.ascontiguousarray(chunk.energies[:completed].T)
-        bad = np.flatnonzero(~np.isfinite(energies).all(axis=0))
-        if bad.size:
-            completed, self.ended = int(bad[0]), at.NOT_FINITE
-            energies = energies[:, :completed]
-        wrong = energy_created(
-            energies,
-            self.last_energies,
-            self.initial_energy,
-            self.largest_energy,
-            self.energy_of_loads,
-            self.dissipative,
-            not self.arrays.coupled,
-        )
-        if wrong is not None:
-            completed, self.ended = wrong, at.ENERGY_CREATED
-        elif completed:
-            self.largest_energy = max(self.largest_energy, float(np.abs(energies[: at.DAMPING_LOSS + 1]).max()))
-            self.last_energies = energies[:, -1].copy()
+        completed, self.ended = self.belief.of(chunk)
         kept = slice(self.done, self.done + completed)
-        self.energy_record[:, kept] = energies[:, :completed]
+        self.energy_record[:, kept] = chunk.energies[:completed].T
         self.contact_record[:, :, kept] = chunk.contacts[:completed].transpose(2, 1, 0)
         self.done += completed
         if self.probes:

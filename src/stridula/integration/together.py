@@ -22,7 +22,7 @@ def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher
     timing, done = runs[0].timing, 0
     vectors = -(-len(runs) // LANES)
     samples_per_chunk = max(1, STEPS_PER_CHUNK // (timing.ratio * vectors))
-    if all(run.is_steady and not run.probes for run in runs):
+    if all(run.impositions.is_steady and not run.probes for run in runs):
         # Nothing has a row for each step: chunks may be longer.
         samples_per_chunk = max(
             samples_per_chunk, min(SAMPLES_PER_CHUNK // vectors, 10 * STEPS_PER_CHUNK // timing.ratio)

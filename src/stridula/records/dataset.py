@@ -22,8 +22,10 @@ from .variables import (
     STATUS,
     STATUS_SHARE,
     STATUS_WORDS,
-    Variable,
+    attributes_of,
     described,
+    dominant_status,
+    status_attributes,
 )
 
 
@@ -52,20 +54,17 @@ def to_dataset(
     }
     along = ("time", "contact")
     data: dict[str, Any] = {
-        variable.name: (along, contact_columns[variable.name].T, _attributes(variable)) for variable in CONTACT
+        variable.name: (along, contact_columns[variable.name].T, attributes_of(variable)) for variable in CONTACT
     }
-    data |= {variable.name: ("time", energies[variable.name], _attributes(variable)) for variable in ENERGY}
-    flags = {"flag_values": np.arange(3, dtype=np.int8), "flag_meanings": " ".join(STATUS_WORDS)}
-    # Of equal shares the later state wins: sliding before sticking before separated.
-    dominant = 2 - np.argmax(status_share[..., ::-1], axis=-1)
-    data[STATUS.name] = (along, dominant.astype(np.int8), {**_attributes(STATUS), **flags})
-    data[STATUS_SHARE.name] = ((*along, "contact_status"), status_share, _attributes(STATUS_SHARE))
+    data |= {variable.name: ("time", energies[variable.name], attributes_of(variable)) for variable in ENERGY}
+    data[STATUS.name] = (along, dominant_status(status_share), status_attributes())
+    data[STATUS_SHARE.name] = ((*along, "contact_status"), status_share, attributes_of(STATUS_SHARE))
     for name in ("jammed_steps", "landings"):
         data[name] = (along, contact_columns[name].T.astype(np.int64), data[name][2])
     data |= _friction_state(system, contact_columns[FRICTION_STATE.name])
     if len(system.contacts) > 1:
         for variable in SOLVE:
-            data[variable.name] = ("time", energies[variable.name].astype(np.int64), _attributes(variable))
+            data[variable.name] = ("time", energies[variable.name].astype(np.int64), attributes_of(variable))
     else:
         data = {name: _of_the_one_contact(*given) for name, given in data.items()}
         del coordinates["contact"]
@@ -74,7 +73,7 @@ def to_dataset(
         if chosen:
             dimension = f"{kind}_probe"
             coordinates[dimension] = (dimension, [probe_label(probes[k], system) for k in chosen])
-            data[kind] = (("time", dimension), probe_values[:, chosen], _attributes(variable))
+            data[kind] = (("time", dimension), probe_values[:, chosen], attributes_of(variable))
     for name, dimensions, values, meaning in (
         ("state_modal", ("state_kind", "mode"), state.modal, "modal positions and increments at the end"),
         ("state_remainder", ("state_kind", "mode"), state.remainder, "what they lack in the units of the march"),
@@ -99,16 +98,8 @@ def _friction_state(system: System, values: Array) -> dict[str, Any]:
     if not any(units):
         return {}
     kept = np.where(np.array(units)[:, None] != "", values, np.nan).T
-    attributes = {**_attributes(FRICTION_STATE), "units": " or ".join(sorted(set(units) - {""}))}
+    attributes = {**attributes_of(FRICTION_STATE), "units": " or ".join(sorted(set(units) - {""}))}
     return {FRICTION_STATE.name: (("time", "contact"), kept, attributes)}
-
-
-def _attributes(variable: Variable) -> dict[str, str]:
-    return {
-        "units": variable.units,
-        "long_name": variable.long_name,
-        "cell_methods": f"time: {variable.cell_methods}",
-    }
 
 
 def probe_label(probe: Probe, system: System) -> str:

@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..bodies.modes import Array
 
 
 @dataclass(frozen=True)
@@ -78,3 +83,22 @@ PROBES = {
     "acceleration": Variable("acceleration", "m/s2", "acceleration at the probes", "low-pass"),
     "reaction": Variable("reaction", "N", "force of the root's support (its moment in N m)", "low-pass"),
 }
+
+
+def attributes_of(variable: Variable) -> dict[str, Any]:
+    """Return the attributes that a variable has in a Dataset."""
+    return described(variable.units, variable.long_name) | {"cell_methods": f"time: {variable.cell_methods}"}
+
+
+def status_attributes() -> dict[str, Any]:
+    """Return the attributes of the status, which say what its numbers mean."""
+    flags = {"flag_values": np.arange(3, dtype=np.int8), "flag_meanings": " ".join(STATUS_WORDS)}
+    return attributes_of(STATUS) | flags
+
+
+def dominant_status(share: Array) -> Array:
+    """Return the status that holds for the largest part of each interval, from the shares, shape (..., 3).
+
+    Of equal shares the later state wins: sliding before sticking before separated.
+    """
+    return (2 - np.argmax(share[..., ::-1], axis=-1)).astype(np.int8)

@@ -53,7 +53,7 @@ async function welcome(message) {
     $("case").replaceChildren(...hello.presets.map(({ name, title }) => new Option(title, name)));
     $("source").replaceChildren(...Object.entries(hello.sources).map(([name, { name: word, unit }]) => new Option(`${word} [${unit}]`, name)));
     controls = new Controls($("controls"), hello, scene);
-    map = new RegimeMap(scene, controls, say);
+    map = new RegimeMap(scene, controls, hello.regimes, say);
     await readLink();
     // Undo does not go back to before the link.
     scene.past = [];

@@ -4,20 +4,12 @@ import { short } from "./pictures.js";
 
 const POINTS = 16;
 const QUIET = 700; // Time without a change after which a map is computed [ms].
-const REGIMES = {
-  "stable sliding": "#cfe8f5",
-  sticking: "#b9b9b9",
-  "stick-slip": "#009e73",
-  squeal: "#d55e00",
-  judder: "#e69f00",
-  "off the track": "#f4f4f4",
-};
 // What tells regimes apart without colours.
 const SIGNS = { "stable sliding": "", sticking: "–", "stick-slip": "/", squeal: "~", judder: "×", "off the track": "·" };
 
 export class RegimeMap {
-  constructor(scene, controls, say) {
-    Object.assign(this, { scene, controls, say });
+  constructor(scene, controls, regimes, say) {
+    Object.assign(this, { scene, controls, regimes, say });
     this.canvas = document.getElementById("map");
     this.x = document.getElementById("map-x");
     this.y = document.getElementById("map-y");
@@ -42,7 +34,7 @@ export class RegimeMap {
     this.canvas.addEventListener("keydown", (event) => this.#key(event));
     const legend = document.getElementById("map-legend");
     legend.replaceChildren(
-      ...Object.entries(REGIMES).map(([name, colour]) => {
+      ...Object.entries(regimes).map(([name, colour]) => {
         const item = document.createElement("li");
         const key = Object.assign(document.createElement("span"), { className: "key" });
         key.style.background = colour;
@@ -163,7 +155,7 @@ export class RegimeMap {
     for (const [row, regimes] of this.cells) {
       regimes.forEach((name, column) => {
         const [x, y] = [left + column * w, top + height - (row + 1) * h];
-        draw.fillStyle = REGIMES[name] ?? colours.panel;
+        draw.fillStyle = this.regimes[name] ?? colours.panel;
         draw.fillRect(x, y, w + 0.5, h + 0.5);
         draw.fillStyle = "#1b1f24";
         draw.textAlign = "center";

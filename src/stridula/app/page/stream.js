@@ -115,10 +115,10 @@ function came(data) {
     return;
   }
   asked = 0;
-  for (const { at, head } of parts(data)) {
+  for (const { head, values } of parts(data)) {
     const [revision, , , samples] = head;
     if (!player || pace.mode !== "live") break;
-    const sound = new Float32Array(data, at + 64, samples).slice();
+    const sound = values.slice(0, samples);
     player.postMessage({ sound, revision }, [sound.buffer]);
     left += samples;
   }
