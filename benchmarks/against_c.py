@@ -75,8 +75,8 @@ class Pair:
         numbers = np.array(
             [*constants[: at.AMPLITUDE + 1], one.contact.friction.coefficient, w[0, 0], w[0, 1], w[1, 1]]
         )
-        loss = block[at.HALF_LOSS] * block[at.HALF_OVER_CH]
-        rows = apart([block[at.B], block[at.R], block[at.CH], block[at.HALF_OVER_CH], loss, one.fixed[1], one.fixed[0],
+        loss = block[at.HALF_LOSS] * block[at.HALF_OVER_LOAD]
+        rows = apart([block[at.B], block[at.R], block[at.LOAD], block[at.HALF_OVER_LOAD], loss, one.fixed[1], one.fixed[0],
                       self.blocks.modes.loads[0], self.blocks.probes.row[0, bending:axial], *state.modal,
                       *np.zeros((3, end))])  # fmt: skip
         sums, raw = np.zeros(10), np.empty(STEPS)

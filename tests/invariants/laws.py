@@ -63,25 +63,32 @@ def of_one(law, columns, state, step, small):
         yield "force at a distance"
     if np.any(normal[~closed] != 0) or np.any(tangential[~closed] != 0):
         yield "force while separated"
-    # The centred slip velocity from the second step on, and how well it is known.
-    centred = (slip[1:] + slip[:-1]) / (2 * step)
+    # The slip velocity that laws see, from the third step on, and how well it is known.
+    centred = (9 * slip[2:] + 6 * slip[1:-1] + slip[:-2]) / (16 * step)
     unsure = small / step
-    rest = slice(1, None)
+    rest = slice(2, None)
     if has_state(law):
         yield from of_state(law, normal[rest], tangential[rest], closed, state, centred, unsure, step)
         return
     stuck, sliding = status == STICKING, status == SLIDING
+    # In a step in which it turns round, forces are means over both senses.
+    turned = sliding & np.concatenate([[False], sliding[:-1] & (slip[1:] * slip[:-1] < 0)])
+    if np.any(np.abs(tangential[turned]) > curve(law, 0.0) * normal[turned] * (1 + 1e-12) + TOLERANCE * peak):
+        yield "turns outside the cone"
+    one_way = ~turned
+    sliding = sliding & one_way
     if np.any(np.abs(slip[stuck]) > small):
         yield "slip while sticking"
     if np.any((tangential * slip)[sliding] < -np.abs(tangential[sliding]) * small):
         yield "slides the wrong way"
-    if np.any((tangential * slip)[closed] < -np.abs(tangential[closed]) * small):
+    if np.any((tangential * slip)[closed & one_way] < -np.abs(tangential[closed & one_way]) * small):
         yield "friction gives energy"
-    was = np.concatenate([[True], stuck[:-1]])
+    # What sticks, and what stops, is held by the static coefficient; only what lands is not.
+    was = np.concatenate([[True], closed[:-1]])
     held = np.array([held_up_to(law, before) for before in was])
     # Viscous friction above the static one may bring a contact to rest: the ratio at the velocity seen holds, too.
     high = np.array([curve(law, abs(v) + unsure) for v in centred])
-    allowed = np.maximum(held, np.concatenate([[np.inf], high]))
+    allowed = np.maximum(held, np.concatenate([[np.inf, np.inf], high]))
     if np.any(np.abs(tangential[stuck]) > allowed[stuck] * normal[stuck] * (1 + 1e-12) + TOLERANCE * peak):
         yield "outside the cone"
     low_speed = np.maximum(np.sign(tangential[rest]) * centred - unsure, 0.0)
@@ -96,14 +103,14 @@ def of_one(law, columns, state, step, small):
 
 def of_state(law, normal, tangential, closed, state, centred, unsure, step):
     """Laws with internal state: the ratio of the law at velocity and state; not more energy than the state stores."""
-    before, after = state[:-1], state[1:]
-    for n in np.flatnonzero(closed[1:]):
+    before, after = state[1:-1], state[2:]
+    for n in np.flatnonzero(closed[2:]):
         ends = [ratio_with_state(law, before[n], centred[n] + d, step) for d in (-unsure, unsure)]
         margin = 1e-7 * max(np.abs(ends)) + TOLERANCE * normal.max() / normal[n]
         if not min(ends) - margin <= tangential[n] / normal[n] <= max(ends) + margin:
             yield "off the law"
             break
-    held = closed[1:]
+    held = closed[2:]
     stored = 0.5 * law.stiffness * (after**2 - before**2) if isinstance(law, st.LuGre) else 0.0 * after
     with np.errstate(divide="ignore", invalid="ignore"):
         given = tangential / normal * centred * step

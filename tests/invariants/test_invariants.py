@@ -281,9 +281,11 @@ def test_harness_rejects_friction_with_the_wrong_sign():
         )
         run = st.simulate(system, 200 * step, scheme=SCHEMES[0], step=step, sample_rate=1 / step, probes=[])
         slip, columns = step * 1.0, []
+        compliance = (step**2, 0.0, 0.0, step**2)
         for _ in range(200):
+            before = (2.0, slip, slip, 0.0, 10.0, 4.0)
             normal, tangential, status, _ = kernel.solve_contact.py_func(
-                -10.0 * step**2, slip, slip, step**2, 0.0, step**2, 0, numbers, 0, 0.0, slip, False, step
+                -10.0 * step**2, slip, 0.0, compliance, 0, numbers, 0, before, False, step
             )
             tangential *= sense
             slip -= tangential * step**2

@@ -2,11 +2,11 @@
 
 Written from the equations of the model in their two-position form, with one matrix for all modes of all bodies::
 
-    q[n+1] = A q[n] - B q[n-1] + L f[n] + C h g[n]
+    q[n+1] = A q[n] - B q[n-1] + L f[n]
 
-for loads f and contact forces g. The exact scheme takes its matrices from the exponential of the state matrix over
-a step forwards and one backwards. The contacts are solved together by trying every combination of their states, the
-velocities of sliding from root finding.
+for the forces f of loads and contacts. The exact scheme takes its matrices from the exponential of the state matrix
+over a step forwards and one backwards. The contacts are solved together by trying every combination of their states,
+the velocities of sliding from root finding.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from scipy.optimize import brentq, root
 import stridula as st
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
-KEPT = ["normal", "tangential", "status", "landings", "position", "gap", "height", "state", "solutions"]
+KEPT = ["normal", "tangential", "status", "landings", "share", "position", "gap", "height", "state", "solutions"]
 KEPT += ["stored", "drive", "contact", "friction", "convection", "damping"]
 
 
@@ -30,18 +30,18 @@ KEPT += ["stored", "drive", "contact", "friction", "convection", "damping"]
 
 
 def central(stiffness, damping, h):
-    """A, B, C, L of ``q'' + D q' + K q = f`` with centred differences."""
+    """A, B, L of ``q'' + D q' + K q = f`` with centred differences."""
     one = np.eye(len(stiffness))
     left = np.linalg.inv(one / h**2 + damping / (2 * h))
-    return left @ (2 * one / h**2 - stiffness), left @ (one / h**2 - damping / (2 * h)), left / h, left
+    return left @ (2 * one / h**2 - stiffness), left @ (one / h**2 - damping / (2 * h)), left
 
 
 def exact(stiffness, damping, h):
-    """A, B, C, L of exact motion: a step forwards and one backwards share the velocity in the middle."""
+    """A, B, L of exact motion: a step forwards and one backwards share the velocity in the middle."""
     e, f, j = transition(stiffness, damping, h)
     e_back, f_back, j_back = transition(stiffness, damping, -h)
     turn = np.linalg.solve(f_back.T, f.T).T
-    return e - turn @ e_back, -turn, f, j - turn @ j_back
+    return e - turn @ e_back, -turn, j - turn @ j_back
 
 
 def transition(stiffness, damping, h):
@@ -58,7 +58,7 @@ def transition(stiffness, damping, h):
 
 def before_start(scheme, stiffness, damping, h, q, v, f):
     """Position a step before the start, of motion through `q` with `v` under the constant force `f`."""
-    a, b, _, load = scheme(stiffness, damping, h)
+    a, b, load = scheme(stiffness, damping, h)
     if scheme is central:
         return np.linalg.solve(np.eye(len(q)) + b, a @ q + load @ f - 2 * h * v)
     e, by_velocity, by_force = transition(stiffness, damping, -h)
@@ -138,6 +138,39 @@ def state_of_new(law):
 # The contacts of one step.
 
 
+def states_of(before):
+    """What a contact may do: `given` is the ratio of its forces, where its motion at the start settles that."""
+    if before.given is not None:
+        return "open", "given"
+    return ("open", "slide with state") if has_state(before.law) else ("open", "stick", 1, -1, "back")
+
+
+def velocity_of(slip, before, h):
+    """Slip velocity between the last step and this one, from three slips; see the model."""
+    return (9 * slip + 6 * before.last_slip + before.earlier_slip) / (16 * h)
+
+
+def turned(gap, slip, own, before, let_go):
+    """Whether the slip of a contact ends within the step: then (holds, normal, tangential), else None.
+
+    It slides on for a share of the step; for the rest it is held, or slides back. Forces are means over the step.
+    """
+    if before.status != SLIDING or has_state(before.law) or before.last_slip == 0 or gap >= 0:
+        return None
+    ratio = np.sign(before.last_slip) * curve(before.law, 0.0)
+    stiff = own[0, 0] - np.array([ratio, -ratio]) * own[0, 1]
+    if stiff.min() <= 0:
+        return None
+    on, back = (-gap / one * np.array([1.0, r]) for one, r in zip(stiff, (ratio, -ratio), strict=True))
+    farther = slip + own[1] @ (on * [1, -1])
+    if farther * before.last_slip >= 0:
+        return None
+    share = before.last_slip / (before.last_slip - farther)
+    rest = np.linalg.solve(own, [-gap, before.last_slip - slip]) * [1, -1]
+    holds = abs(rest[1]) <= held_up_to(before.law, not let_go) * rest[0]
+    return holds, *(share * on + (1 - share) * (rest if holds else back))
+
+
 def solve_contacts(gaps, slips, strayed, w, before, h, guess=None, let_go=()):
     """Return every consistent (combination, list of (status, normal, tangential)) of the contacts.
 
@@ -146,10 +179,10 @@ def solve_contacts(gaps, slips, strayed, w, before, h, guess=None, let_go=()):
     `guess` that combination comes first, and the first that is consistent is enough. Contacts that `let_go` are held
     by their kinetic coefficient, and slide where they could also stick.
     """
-    states = [("open", "slide with state") if has_state(b.law) else ("open", "stick", 1, -1) for b in before]
+    states = [states_of(b) for b in before]
     found = []
     for combination in ([] if guess is None else [guess]) + list(product(*states)):
-        tried = forces_of(combination, gaps, slips, strayed, w, before, h)
+        tried = forces_of(combination, gaps, slips, strayed, w, before, h, let_go)
         if tried is None or not np.all(np.isfinite(tried)):
             continue
         forces = tried
@@ -165,10 +198,19 @@ def solve_contacts(gaps, slips, strayed, w, before, h, guess=None, let_go=()):
             if kind == "open":
                 outcome.append((SEPARATED, 0.0, 0.0))
                 continue
-            velocity = (slips[i] + w[2 * i + 1] @ forces + before[i].last_slip) / (2 * h)
+            if kind == "given":
+                outcome.append((SLIDING, normal, tangential))
+                continue
+            velocity = velocity_of(slips[i] + w[2 * i + 1] @ forces, before[i], h)
             if kind == "slide with state":
                 small = before[i].law.velocity
                 outcome.append((STICKING if abs(velocity) < small else SLIDING, normal, tangential))
+                continue
+            turn = turned(gap, slip, own, before[i], i in let_go)
+            if turn or kind == "back":
+                if not turn or (kind == "stick") != turn[0] or kind in (1, -1):
+                    break
+                outcome.append((STICKING if turn[0] else SLIDING, normal, tangential))
                 continue
             hold = np.linalg.solve(own, [-gap, -slip - strayed[i]])
             holds = (
@@ -188,17 +230,43 @@ def solve_contacts(gaps, slips, strayed, w, before, h, guess=None, let_go=()):
     return found
 
 
-def forces_of(combination, gaps, slips, strayed, w, before, h):
-    """Forces (N1, -T1, N2, ...) of a combination of states, or None; linear but for the velocities of sliding."""
+def forces_of(combination, gaps, slips, strayed, w, before, h, let_go):
+    """Forces (N1, -T1, N2, ...) of a combination of states, or None.
+
+    The ratio of a contact that turns round depends on the forces of the others: it is iterated.
+    """
+    backs = [i for i, kind in enumerate(combination) if kind == "back"]
+    ratios = dict.fromkeys(backs, 0.0)
+    for _ in range(100):
+        forces = forces_at(ratios, combination, gaps, slips, strayed, w, before, h)
+        if forces is None or not np.all(np.isfinite(forces)):
+            return None
+        found = {}
+        for i in backs:
+            others, pair = forces.copy(), slice(2 * i, 2 * i + 2)
+            others[pair] = 0.0
+            gap, slip = gaps[i] + w[2 * i] @ others, slips[i] + w[2 * i + 1] @ others
+            turn = turned(gap, slip, w[pair, pair], before[i], i in let_go)
+            if not turn:
+                return None
+            found[i] = turn[2] / turn[1]
+        if all(abs(found[i] - ratios[i]) <= 1e-16 for i in backs):
+            break
+        ratios = found
+    return forces
+
+
+def forces_at(ratios, combination, gaps, slips, strayed, w, before, h):
+    """Forces of a combination, those that turn round with given ratios; linear but for the velocities of sliding."""
     laws = [b.law for b in before]
     curved = [
         i
         for i, kind in enumerate(combination)
-        if kind not in ("open", "stick") and not isinstance(laws[i], (st.Coulomb, st.StaticKinetic))
+        if kind in ("slide with state", 1, -1) and not isinstance(laws[i], (st.Coulomb, st.StaticKinetic))
     ]
 
     def given(velocities):
-        ratios = dict(zip(curved, velocities, strict=True))
+        speeds = dict(zip(curved, velocities, strict=True))
         left, right = np.eye(len(w)), np.zeros(len(w))
         for i, kind in enumerate(combination):
             if kind == "open":
@@ -207,10 +275,14 @@ def forces_of(combination, gaps, slips, strayed, w, before, h):
             if kind == "stick":
                 left[2 * i + 1], right[2 * i + 1] = w[2 * i + 1], -slips[i] - strayed[i]
                 continue
-            if kind == "slide with state":
-                ratio = ratio_with_state(laws[i], before[i].state, ratios[i], h)
+            if kind == "given":
+                ratio = before[i].given
+            elif kind == "back":
+                ratio = ratios[i]
+            elif kind == "slide with state":
+                ratio = ratio_with_state(laws[i], before[i].state, speeds[i], h)
             else:
-                ratio = kind * curve(laws[i], max(kind * ratios.get(i, 0.0), 0.0))
+                ratio = kind * curve(laws[i], max(kind * speeds.get(i, 0.0), 0.0))
             left[2 * i + 1] = 0.0
             left[2 * i + 1, 2 * i : 2 * i + 2] = ratio, 1.0
         try:
@@ -220,12 +292,11 @@ def forces_of(combination, gaps, slips, strayed, w, before, h):
 
     def error(velocities):
         forces = given(velocities)
-        reached = [(slips[i] + w[2 * i + 1] @ forces + before[i].last_slip) / (2 * h) for i in curved]
-        return np.array(velocities) - reached
+        return np.array(velocities) - [velocity_of(slips[i] + w[2 * i + 1] @ forces, before[i], h) for i in curved]
 
     if not curved:
         return given([])
-    free = [(slips[i] + before[i].last_slip) / (2 * h) for i in curved]
+    free = [velocity_of(slips[i], before[i], h) for i in curved]
     if len(curved) == 1:
         sense = combination[curved[0]]
         if sense in (1, -1) and sense * error([0.0])[0] >= 0:
@@ -336,13 +407,15 @@ class Touch:
     def __init__(self, contact, matrices):
         self.contact, self.matrices = contact, matrices
         a = contact.inclination
-        self.normal, self.tangent = np.array([-np.sin(a), np.cos(a)]), np.array([np.cos(a), np.sin(a)])
+        self.upright, self.tangent = np.array([-np.sin(a), np.cos(a)]), np.array([np.cos(a), np.sin(a)])
         self.tip = matrices.trace(contact.tip)
         self.along_beam = isinstance(contact.track, st.ModalBeam)
         self.along_plate = isinstance(contact.track, st.ModalPlate)
         self.law = contact.friction
         self.status, self.state, self.anchor = SEPARATED, state_of_new(self.law), 0.0
-        self.material = self.place = self.place_before = self.last_slip = 0.0
+        self.material = self.place = self.place_before = self.last_slip = self.earlier_slip = 0.0
+        self.normal = self.tangential = self.closed = self.gap = 0.0
+        self.given = None
 
     def rows(self, x):
         """Rows of gap and of tangential displacement with the track at abscissa `x`, and slopes of the track."""
@@ -375,7 +448,7 @@ class Touch:
             sx, cx, sy, cy = np.sin(a * place[0]), np.cos(a * place[0]), np.sin(b * place[1]), np.cos(b * place[1])
             against[0, flat] = u * sx * cy + v * cx * sy
             slopes[0, flat] = along[0] * a * (u * cx * cy - v * sx * sy) + along[1] * b * (v * cx * cy - u * sx * sy)
-        return self.normal @ (self.tip - against), self.tangent @ (self.tip - against), slopes
+        return self.upright @ (self.tip - against), self.tangent @ (self.tip - against), slopes
 
     def motions(self, t):
         """Imposed motions: of the tip and of the track along the tangent, and of the gap."""
@@ -389,8 +462,8 @@ class Touch:
         other = self.contact.track
         if isinstance(other, st.RigidTrack):
             track += other.velocity * other.history.integral(t)[0] * self.tangent
-            track += other.normal_velocity * other.normal_history.integral(t)[0] * self.normal
-        return self.tangent @ tip, self.tangent @ track, self.normal @ (tip - track)
+            track += other.normal_velocity * other.normal_history.integral(t)[0] * self.upright
+        return self.tangent @ tip, self.tangent @ track, self.upright @ (tip - track)
 
     def abscissa(self, q, t):
         """Abscissa of the tip; of a frozen contact, displacement against the other point."""
@@ -403,10 +476,13 @@ class Touch:
 def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
     """March `steps` steps of `h` [s] and return everything; contact columns of shape (steps, contacts)."""
     m = Matrices(system)
-    a, b, c, load = scheme(m.stiffness, m.damping, h)
+    a, b, load = scheme(m.stiffness, m.damping, h)
     force, q, velocity = m.loads(h)
-    impulse = np.linalg.solve(c, load)
+    inverse = np.linalg.inv(load)
     touches = [Touch(contact, m) for contact in system.contacts]
+
+    def kinetic(d):
+        return d @ inverse @ (d + b @ d) / 4
 
     def begin(q_before):
         """What the contacts carry at the start; return those that are closed."""
@@ -425,9 +501,15 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
                 new = state_of_new(one.law)
                 one.state = 2 * new - state_after(one.law, new, speed, h / 2)
                 one.state = max(one.state, new / 2) if isinstance(one.law, st.RateAndState) else one.state
-            one.closed = one.contact.gap + gap_row @ q == 0.0
-            one.status = STICKING if one.closed and speed == 0.0 else SEPARATED
-        return [one for one in touches if one.closed]
+            one.earlier_slip = 3 * one.last_slip - 2 * h * speed
+            one.gap = one.contact.gap + gap_row @ q
+            one.status = STICKING if one.gap == 0.0 and speed == 0.0 else SEPARATED
+            one.given = None
+            if has_state(one.law):
+                one.given = ratio_with_state(one.law, one.state, speed, h)
+            elif speed != 0.0:
+                one.given = np.sign(speed) * curve(one.law, abs(speed))
+        return [one for one in touches if one.gap == 0.0]
 
     def start_under(f, q=q, velocity=velocity):
         return before_start(scheme, m.stiffness, m.damping, h, q, velocity, f)
@@ -438,15 +520,20 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         # Forces of closed contacts that act before the start as they do in the first step.
         rows = np.array([row for one in closed for row in one.rows(one.contact.at)[:2]])
         still = np.zeros(m.size)
-        answers = np.array([h * c @ row - b @ start_under(row, still, still) for row in rows])
+        answers = np.array([load @ row - b @ start_under(row, still, still) for row in rows])
         first = a @ q - b @ q_before + load @ force(0.0)
         moved = [np.subtract(one.motions(h), one.motions(0.0)) for one in closed]
         gaps = [one.contact.gap + rows[2 * i] @ first + moved[i][2] for i, one in enumerate(closed)]
         slips = [rows[2 * i + 1] @ (first - q) + moved[i][0] - moved[i][1] for i in range(len(closed))]
-        _, found = solve_contacts(gaps, slips, [0.0] * len(closed), answers @ rows.T, closed, h)[0]
+        _, found = solve_contacts(gaps, slips, [0.0] * len(closed), rows @ answers.T, closed, h)[0]
         pushes = np.array([value for _, normal, tangential in found for value in (normal, -tangential)])
         q_before = start_under(force(0.0) + pushes @ rows)
         begin(q_before)
+        for one, (status, one.normal, one.tangential) in zip(closed, found, strict=True):
+            one.closed = float(status != SEPARATED)
+            one.status = one.status or status
+    for one in touches:
+        one.given = None
 
     out = SimpleNamespace(**{name: [] for name in KEPT})
     guess = None
@@ -468,12 +555,12 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         ]
         strayed = [one.material - one.anchor if one.status == STICKING else 0.0 for one in touches]
         # Every combination is tried at one step in ten, to count those that are consistent.
-        found = solve_contacts(gaps, slips, strayed, h * rows @ c @ rows.T, touches, h, guess if n % 10 else None)
+        found = solve_contacts(gaps, slips, strayed, rows @ load @ rows.T, touches, h, guess if n % 10 else None)
         if not found:
             # A foot that slides may be brought back under its static limit by the answer of another: it lets go.
             feet = range(len(touches))
             for let_go in (subset for size in range(1, len(feet) + 1) for subset in combinations(feet, size)):
-                found = solve_contacts(gaps, slips, strayed, h * rows @ c @ rows.T, touches, h, None, let_go)
+                found = solve_contacts(gaps, slips, strayed, rows @ load @ rows.T, touches, h, None, let_go)
                 if found:
                     break
         out.solutions.append(len(found))
@@ -482,12 +569,24 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         guess, found = found[0][0], found[0][1]
         forces = np.array([value for _, normal, tangential in found for value in (normal, -tangential)])
         push = rows.T @ forces
-        q_new = trial + h * c @ push
+        q_new = trial + load @ push
 
         middle = (q_new - q_before) / 2
-        work["drive"] += impulse @ f @ middle / h
+        work["drive"] += f @ middle
         work["contact"] += push @ middle
-        landings = []
+        landings, shares = [], []
+        for i, (one, (status, normal, tangential)) in enumerate(zip(touches, found, strict=True)):
+            w = (rows @ load @ rows.T)[2 * i : 2 * i + 2, 2 * i : 2 * i + 2]
+            gap = gaps[i] + rows[2 * i] @ (q_new - trial)
+            closed = one.closed
+            if one.status != SEPARATED and status == SEPARATED:
+                missing = gap / (w[0, 0] - one.tangential / one.normal * w[0, 1])
+                closed = max(0.0, closed - missing / (one.normal + missing))
+            shares.append([1 - closed, closed * (one.status == STICKING), closed * (one.status == SLIDING)])
+            alone = gap - w[0] @ [normal, -tangential]
+            one.closed = 0.0 if status == SEPARATED else 1.0 if one.status != SEPARATED else alone / (alone - one.gap)
+            one.gap = gap
+        out.share.append(shares)
         for one, motion, trace, (status, normal, tangential) in zip(touches, motions, traces, found, strict=True):
             tip, track, lift = np.subtract(motion, one.motions(now - h)) / 2
             frame = tangential * (tip - track) - normal * lift
@@ -495,27 +594,27 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             work["contact"] -= frame
             material = one.contact.at + motion[0] - motion[1] + trace[1] @ q_new
             slip, place = material - one.material, one.abscissa(q_new, then)
-            work["friction"] += tangential * slip
+            work["friction"] += tangential * slip if has_state(one.law) else abs(tangential * slip)
             slope = (normal * trace[2][1] - tangential * trace[2][0]) @ q_new
             work["convection"] += slope * (place - one.place_before) / 2
             if status == STICKING and one.status != STICKING:
                 one.anchor = one.material
             if has_state(one.law):
-                velocity_seen = (slip + one.last_slip) / (2 * h)
+                velocity_seen = velocity_of(slip, one, h)
                 one.state = (
                     state_of_new(one.law) if status == SEPARATED else state_after(one.law, one.state, velocity_seen, h)
                 )
             landings.append(int(one.status == SEPARATED and status != SEPARATED))
-            one.status, one.material, one.last_slip = status, material, slip
+            one.status, one.material, one.last_slip, one.earlier_slip = status, material, slip, one.last_slip
+            one.normal, one.tangential = normal, tangential
             one.place_before, one.place = one.place, place
         d = q_new - q
         if scheme is central:
             work["damping"] += middle @ m.damping @ middle / h
             stored = (d @ d / h**2 + q_new @ m.stiffness @ q) / 2
         else:
-            inverse, one_ = np.linalg.inv(c), np.eye(m.size)
-            work["damping"] += middle @ inverse @ (one_ - b) @ middle / h
-            stored = d @ inverse @ (one_ + b) @ d / (4 * h) + q_new @ inverse @ (one_ - a + b) @ q / (2 * h)
+            work["damping"] += middle @ inverse @ (d - b @ (q - q_before)) - kinetic(d) + kinetic(q - q_before)
+            stored = kinetic(d) + q_new @ m.stiffness @ q / 2
         out.stored.append(stored)
         for name, value in work.items():
             getattr(out, name).append(value)
@@ -534,7 +633,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         heights = []
         for one, motion in zip(touches, motions, strict=True):
             frozen = isinstance(one.contact.track, st.BodyPoint)
-            row = one.rows(0.0)[0] if frozen else one.normal @ one.tip
+            row = one.rows(0.0)[0] if frozen else one.upright @ one.tip
             heights.append(one.contact.gap + motion[2] + row @ q_new)
         out.height.append(heights)
         q_before, q = q, q_new

@@ -32,14 +32,15 @@ def compliance(turn, flat):
     return w
 
 
-def coulomb(gap, slip, w_nn, w_nt, w_tt, mu):
-    """The kernel's solve under Coulomb's law, which needs neither velocity nor state nor what was before."""
+def coulomb(gap, slip, w, mu, last_slip=0.0):
+    """The kernel's solve under Coulomb's law, of a contact that slid by `last_slip` in the step before."""
     laws = np.array([[mu] + [0.0] * (layout.LAW_PARAMETERS - 1)])
-    return solve_contact(gap, slip, slip, w_nn, w_nt, w_tt, layout.COULOMB, laws, 0, 0.0, 0.0, False, 1.0)
+    before = (float(SLIDING if last_slip else SEPARATED), last_slip, last_slip, 0.0, 0.0, 0.0)
+    return solve_contact(gap, slip, 0.0, tuple(w.ravel()), layout.COULOMB, laws, 0, before, False, 1.0)
 
 
-def solve(gap, slip, w, mu):
-    normal, tangential, status, jammed = coulomb(gap, slip, w[0, 0], w[0, 1], w[1, 1], mu)
+def solve(gap, slip, w, mu, last_slip=0.0):
+    normal, tangential, status, jammed = coulomb(gap, slip, w, mu, last_slip)
     after = np.array([gap, slip]) + w @ [normal, -tangential]
     return normal, tangential, status, jammed, after[0], after[1]
 
@@ -149,19 +150,65 @@ def test_harness_rejects_a_wrong_solve():
     for _ in range(200):
         w = compliance(random.uniform(0, np.pi), random.uniform(0.05, 0.5))
         gap, slip, mu = -random.uniform(), random.uniform(-1, 1), random.uniform(0, 2)
-        normal, tangential, *_ = coulomb(gap, slip, w[0, 0], -w[0, 1], w[1, 1], mu)
+        normal, tangential, *_ = coulomb(gap, slip, w * [[1, -1], [-1, 1]], mu)
         _, right_normal, right_tangential = contact_states(gap, slip, w, mu)[0]
         wrong += abs(normal - right_normal) + abs(tangential - right_tangential) > 1e-6
     assert wrong > 150
 
 
-@given(lengths, lengths, turns, flats, frictions)
+@given(lengths, lengths, turns, flats, frictions, lengths.filter(bool))
 @settings(max_examples=400, deadline=None)
-def test_the_solve_without_branches_is_the_same(gap, slip, turn, flat, mu):
+def test_the_solve_without_branches_is_the_same(gap, slip, turn, flat, mu, last_slip):
     w = compliance(turn, flat)
-    assume(clear_of_borders(gap, slip, w, mu))
-    arguments = (float(gap), float(slip), w[0, 0], w[0, 1], w[1, 1], float(mu))
-    normal, tangential, status, jammed = coulomb(*arguments)
-    other = solves.coulomb(*arguments)
-    assert other[2:] == (status, jammed)
-    np.testing.assert_allclose(other[:2], (normal, tangential), rtol=1e-6, atol=1e-12 * (abs(normal) + abs(tangential)))
+    assume(clear_of_borders(gap, slip, w, mu) and clear_of_borders(gap, slip - last_slip, w, mu))
+    normal, tangential, status, jammed = coulomb(gap, slip, w, mu, last_slip)
+    rows = tuple(w.ravel())
+    other = solves.coulomb(float(gap), float(slip), rows, float(mu))
+    turned = solves.turned_round(float(gap), float(slip), float(last_slip), rows, float(mu), *other[:3])
+    assert turned[2] == status
+    if turned == other[:3]:
+        assert other[3] == jammed
+    scale = abs(normal) + abs(tangential)
+    np.testing.assert_allclose(turned[:2], (normal, tangential), rtol=1e-6, atol=1e-12 * scale)
+
+
+@given(lengths, lengths, turns, flats, frictions.filter(bool), lengths.filter(bool))
+@settings(max_examples=600, deadline=None)
+def test_a_slip_that_ends_within_the_step(gap, slip, turn, flat, mu, last_slip):
+    """One state is found, that of the twin, whose forces close the gap and lie in the cone.
+
+    It either sticks, and does not slip, or slides back, and then against the sense of the slip before.
+    """
+    w = compliance(turn, flat)
+    assume(clear_of_borders(gap, slip, w, mu) and clear_of_borders(gap, slip - last_slip, w, mu))
+    found = contact_states(gap, slip, w, mu, last_slip)
+    assume(len(found) == 1)
+    normal, tangential, status, _, gap_after, slip_after = solve(gap, slip, w, mu, last_slip)
+    assert status == found[0][0]
+    scale = abs(normal) + abs(tangential) + abs(gap) + abs(slip) + abs(last_slip)
+    assert (normal, tangential) == pytest.approx(found[0][1:], abs=ROUND_OFF * scale)
+    assert abs(tangential) <= mu * normal + ROUND_OFF * scale
+    assert gap_after >= -ROUND_OFF * scale
+    if status == STICKING:
+        assert abs(slip_after) <= ROUND_OFF * scale
+    if status == SLIDING and abs(tangential) < mu * normal - ROUND_OFF * scale:
+        assert slip_after * last_slip <= ROUND_OFF * scale * abs(last_slip)
+
+
+def test_a_block_that_turns_round_moves_as_its_two_parabolas():
+    """Mass m under a push F, friction mu N, h = 1: v = d before, then v' = (F -+ mu N)/m up to and after its stop.
+
+    Over a step about the stop the velocity goes from d to (1 - d / (F + mu N)) times -(F - mu N), whatever the share;
+    without the treatment it is 0 or d - (F - mu N).
+    """
+    mass, push, mu, normal = 2.0, 3.0, 0.5, 1.6
+    w = np.array([[1.0, 0.0], [0.0, 1.0 / mass]])
+    for share in (0.05, 0.3, 0.5, 0.9, 0.99):
+        last = share * (push + mu * normal) / mass
+        slip = last - push / mass
+        pressed, tangential, status, _, gap_after, slip_after = solve(-normal, slip, w, mu, last)
+        assert (pressed, gap_after, status) == (pytest.approx(normal), pytest.approx(0.0, abs=1e-15), SLIDING)
+        assert slip_after == pytest.approx(-(1 - share) * (push - mu * normal) / mass)
+        assert tangential == pytest.approx(mu * normal * (2 * share - 1))
+    # A push below the cone holds it where it stops.
+    assert solve(-normal, 0.1 - 0.7 / mass, w, mu, 0.1)[2] == STICKING

@@ -63,6 +63,10 @@ def disagreements(run, trail) -> dict[str, float]:
     status = run.status.values.reshape(trail.status.shape)
     if np.any(status != trail.status):
         found["status"] = float(np.mean(status != trail.status))
+    # A share is a ratio of gaps or forces of one step.
+    off = np.abs(run.status_share.values.reshape(trail.share.shape) - trail.share).max()
+    if off > 1e-5:
+        found["status_share"] = off
     landings = run.landings.values.reshape(trail.landings.shape)
     if np.any(landings != trail.landings):
         found["landings"] = float(np.mean(landings != trail.landings))

@@ -63,6 +63,8 @@ def test_kernel_and_twin_agree_at_every_step(name, scheme, form):
     assert set(run.status.values) - {0}, "no contact in the steps compared: the case tests nothing"
     np.testing.assert_array_equal(run.status.values, trail.status)
     np.testing.assert_array_equal(run.landings.values, trail.landings)
+    # A share is a ratio of gaps or forces, whose errors are those of COLUMNS relative to what they are in a step.
+    np.testing.assert_allclose(run.status_share.values, trail.share, atol=1e-5)
     assert disagreements(run, trail) == {}
     position, before = trail.last[1], trail.last[0]
     scale = np.abs(position).max()
@@ -112,13 +114,13 @@ def test_stored_energy_is_the_energy_of_an_oscillation():
     for step, tolerance in ((1e-4, 2e-2), (1e-5, 2e-4), (1e-6, 2e-6)):
         k = st.ExactModal().coefficients(angular, 0 * angular, step)
         block = np.zeros((layout.COEFFICIENT_ROWS, 1))
-        block[layout.R], block[layout.HALF_OVER_CH] = k.r, 0.5 / (k.c * step)
+        block[layout.R], block[layout.HALF_OVER_LOAD] = k.r, 0.5 / k.load
         energies = []
         for t in np.linspace(0.0, 3e-3, 7):
             now, before = (amplitude * np.sin(angular * s) for s in (t, t - step))
             energies.append(stored_energy(block, np.zeros((layout.MATRICES, 0, 0)), np.array([now, now - before])))
         np.testing.assert_allclose(energies, energies[0], rtol=1e-9)
-        # sin²(wh/2)/(wh/2)² and sin(wh)/(wh) differ from 1 by (wh)²/12 and (wh)²/6.
+        # It is that times cos²(wh/2), which differs from 1 by (wh)²/4.
         assert energies[0] == pytest.approx(0.5 * (angular[0] * amplitude) ** 2, rel=tolerance)
 
 

@@ -1,7 +1,7 @@
 """A slow twin of the march, written from the equations of the model in their two-position form.
 
-For every mode ``q[n+1] = a q[n] - b q[n-1] + c p[n]`` with the impulse ``p[n]`` of drives and contact, sines by np.sin,
-the contact by trying each of its states in turn, and everything kept in lists.
+For every mode ``q[n+1] = a q[n] - b q[n-1] + l f[n]`` with the modal force ``f[n]`` of drives and contact, sines by
+np.sin, the contact by trying each of its states in turn, and everything kept in lists.
 """
 
 from __future__ import annotations
@@ -14,26 +14,24 @@ import stridula as st
 
 
 def central(w, z, h):
-    """Coefficients a, b, c of ``q'' + 2 z w q' + w² q = p/h`` with centred differences; impulse of a unit force."""
-    return (2 - w**2 * h**2) / (1 + z * w * h), (1 - z * w * h) / (1 + z * w * h), h / (1 + z * w * h), h + 0 * w
+    """Coefficients a, b, l of ``q'' + 2 z w q' + w² q = f`` with centred differences."""
+    return (2 - w**2 * h**2) / (1 + z * w * h), (1 - z * w * h) / (1 + z * w * h), h**2 / (1 + z * w * h)
 
 
 def exact(w, z, h):
-    """Coefficients a, b, c of exact free motion; a unit constant force moves the rest point to 1/w² exactly."""
+    """Coefficients a, b, l of exact free motion; a unit constant force moves the rest point to 1/w² exactly."""
     wd = w * np.sqrt(1 - z**2)
     rigid = w == 0
     a = 2 * np.exp(-z * w * h) * np.cos(wd * h)
     b = np.exp(-2 * z * w * h)
-    c = np.where(rigid, h, np.exp(-z * w * h) * np.sin(wd * h) / np.where(rigid, 1, wd))
-    impulse = np.where(rigid, h, (1 - a + b) / np.where(rigid, 1, w**2 * c))
-    return a, b, c, impulse
+    return a, b, np.where(rigid, h**2, (1 - a + b) / np.where(rigid, 1, w**2))
 
 
-def position_before(scheme, w, z, h, velocity, force, a, b, c, impulse):
+def position_before(scheme, w, z, h, velocity, force, b, load):
     """q[-1] of a motion that starts at 0 with `velocity` under a constant `force`."""
     if scheme is central:
-        # Two equations: q[1] = -b q[-1] + c p and (q[1] - q[-1]) / 2h = v.
-        return (c * impulse * force - 2 * h * velocity) / (1 + b)
+        # Two equations: q[1] = -b q[-1] + l f and (q[1] - q[-1]) / 2h = v.
+        return (load * force - 2 * h * velocity) / (1 + b)
     before = np.empty_like(w)
     for k in range(w.size):
         if w[k] == 0:
@@ -47,11 +45,23 @@ def position_before(scheme, w, z, h, velocity, force, a, b, c, impulse):
     return before
 
 
-def contact_states(gap, slip, w, mu):
+def contact_states(gap, slip, w, mu, last_slip=0.0):
     """Return every consistent (status, normal force, tangential force), each state tried on its own.
 
-    `w` is the compliance, shape (2, 2); the relative displacement (along y, along x) grows by ``w @ (N, -T)``.
+    `w` is the compliance, shape (2, 2); the relative displacement (along y, along x) grows by ``w @ (N, -T)``. A
+    contact that slid by `last_slip` in the step before may come to rest within this one. Then it slid on for a share
+    of the step, and for the rest it sticks or slides back: forces are those of both parts, by their shares.
     """
+    if last_slip and gap < 0:
+        sense = np.sign(last_slip)
+        on, farther = slide(gap, slip, w, sense * mu)
+        back, _ = slide(gap, slip, w, -sense * mu)
+        if on[0] > 0 and back[0] > 0 and farther * sense < 0:
+            share = last_slip / (last_slip - farther)
+            normal, minus_tangential = np.linalg.solve(w, [-gap, last_slip - slip])
+            holds = abs(minus_tangential) <= mu * normal
+            rest = np.array([normal, -minus_tangential]) if holds else back
+            return [(1 if holds else 2, *(share * on + (1 - share) * rest))]
     found = []
     if gap >= 0:
         found.append((0, 0.0, 0.0))
@@ -59,14 +69,19 @@ def contact_states(gap, slip, w, mu):
     if gap < 0 and normal >= 0 and abs(minus_tangential) <= mu * normal:
         found.append((1, normal, -minus_tangential))
     for sense in (1, -1):
-        stiff = w[0, 0] - sense * mu * w[0, 1]
-        if stiff == 0 or gap >= 0:
+        if gap >= 0:
             continue
-        normal = -gap / stiff
-        slip_after = slip + w[1] @ [normal, -sense * mu * normal]
-        if normal > 0 and sense * slip_after > 0:
-            found.append((2, normal, sense * mu * normal))
+        forces, slip_after = slide(gap, slip, w, sense * mu)
+        if forces[0] > 0 and sense * slip_after > 0:
+            found.append((2, *forces))
     return found
+
+
+def slide(gap, slip, w, ratio):
+    """Forces of a contact that slides with a ratio of the forces, no normal force if it jams, and the slip after."""
+    stiff = w[0, 0] - ratio * w[0, 1]
+    forces = -gap / stiff * np.array([1.0, ratio]) if stiff > 0 else np.zeros(2)
+    return forces, slip + w[1] @ (forces * [1, -1])
 
 
 @dataclass
@@ -77,6 +92,7 @@ class Trail:
     tangential: list = field(default_factory=list)
     status: list = field(default_factory=list)
     landings: list = field(default_factory=list)
+    share: list = field(default_factory=list)
     position: list = field(default_factory=list)
     height: list = field(default_factory=list)
     gap: list = field(default_factory=list)
@@ -132,6 +148,14 @@ def drives_of(system, slider, track, held, h):
     return force, velocity
 
 
+def closed_until(closed, status, normal, tangential, gap, w):
+    """Share of the step before in which a contact of that `status` was closed, that ends as the force turns round."""
+    if status == 0 or gap < 0:
+        return closed
+    missing = gap / (w[0, 0] - tangential / normal * w[0, 1])
+    return max(0.0, closed - missing / (normal + missing))
+
+
 def march(system: st.System, scheme, h: float, steps: int) -> Trail:
     """March `steps` steps of `h` [s] and return everything."""
     rod, bar, mu = system.slider, system.track, system.contact.friction.coefficient
@@ -142,7 +166,7 @@ def march(system: st.System, scheme, h: float, steps: int) -> Trail:
     z = np.concatenate([slider.damping, track.damping])
     bending, axial = bar.harmonics
     tip = np.hstack([rod.trace(0.0, held), np.zeros((2, track.count))])
-    a, b, c, impulse = scheme(w, z, h)
+    a, b, load = scheme(w, z, h)
     force, velocity = drives_of(system, slider, track, held, h)
 
     def track_rows(x):
@@ -164,14 +188,16 @@ def march(system: st.System, scheme, h: float, steps: int) -> Trail:
 
     out = Trail()
     q = np.zeros(w.size)
-    q_before = position_before(scheme, w, z, h, velocity, force(0.0), a, b, c, impulse)
+    q_before = position_before(scheme, w, z, h, velocity, force(0.0), b, load)
     material, anchor, status = system.contact.at, None, 0
     x = system.contact.at
     x_before = x + tip[0] @ q_before - (imposed(h) - imposed(0.0))
     drive = contact = friction = convection = damping = 0.0
+    last_slip = last_normal = last_tangential = closed = 0.0
+    gap_before = system.contact.gap
     for n in range(steps):
-        p_drive = impulse * force(n * h)
-        trial = a * q - b * q_before + c * p_drive
+        driving = force(n * h)
+        trial = a * q - b * q_before + load * driving
         x_trial = system.contact.at + imposed((n + 1) * h) + tip[0] @ trial
         rows, slopes = track_rows(x_trial)
         gap_row, slip_row = tip[1] - rows[1], tip[0] - rows[0]
@@ -180,32 +206,34 @@ def march(system: st.System, scheme, h: float, steps: int) -> Trail:
         target = anchor if status == 1 else material
         compliance = np.array(
             [
-                [np.sum(gap_row * c * h * gap_row), np.sum(gap_row * c * h * slip_row)],
-                [np.sum(slip_row * c * h * gap_row), np.sum(slip_row * c * h * slip_row)],
+                [np.sum(gap_row * load * gap_row), np.sum(gap_row * load * slip_row)],
+                [np.sum(slip_row * load * gap_row), np.sum(slip_row * load * slip_row)],
             ]
         )
-        states = contact_states(gap, material_trial - target, compliance, mu)
+        states = contact_states(gap, material_trial - target, compliance, mu, last_slip if status == 2 else 0.0)
+        closed = closed_until(closed, status, last_normal, last_tangential, gap, compliance)
+        out.share.append([1 - closed, closed * (status == 1), closed * (status == 2)])
         was, (status, normal, tangential) = status, states[0]
+        closed = 0.0 if status == 0 else 1.0 if was else gap / (gap - gap_before)
         if status == 1 and was != 1:
             anchor = material
         push = gap_row * normal - slip_row * tangential
-        q_new = trial + c * h * push
-        p_contact = h * push
+        q_new = trial + load * push
 
         material_new = system.contact.at + imposed((n + 1) * h) + slip_row @ q_new
         x_new = system.contact.at + imposed((n + 1) * h) + tip[0] @ q_new
-        work = (q_new - q_before) / (2 * h)
+        middle = (q_new - q_before) / 2
         frame = tangential * (imposed((n + 1) * h) - imposed((n - 1) * h)) / 2
-        drive += p_drive @ work + frame
-        contact += p_contact @ work - frame
-        friction += tangential * (material_new - material)
+        drive += driving @ middle + frame
+        contact += push @ middle - frame
+        friction += abs(tangential * (material_new - material))
         convection += (normal * slopes[1] - tangential * slopes[0]) @ q_new * (x_new - x_before) / 2
         if scheme is central:
-            damping += np.sum(2 * z * w * work**2) * h
+            damping += np.sum(2 * z * w * middle**2) / h
             stored = np.sum((q_new - q) ** 2 / h**2 + w**2 * q_new * q) / 2
         else:
-            damping += np.sum((1 - b) * (q_new - q_before) ** 2 / (4 * c * h))
-            stored = np.sum(((1 + b) / 2 * (q_new - q) ** 2 + (1 - a + b) * q_new * q) / (2 * c * h))
+            damping += np.sum((1 - b) * middle**2 / load)
+            stored = np.sum(((1 + b) / 2 * (q_new - q) ** 2 + (1 - a + b) * q_new * q) / (2 * load))
 
         out.normal.append(normal)
         out.tangential.append(tangential)
@@ -221,6 +249,8 @@ def march(system: st.System, scheme, h: float, steps: int) -> Trail:
         out.convection.append(convection)
         out.damping.append(damping)
         out.consistent_states.append(len(states))
+        last_slip, last_normal, last_tangential = material_new - material, normal, tangential
+        gap_before = out.gap[-1]
         x_before, x, material = x, x_new, material_new
         q_before, q = q, q_new
     out.last = (q_before, q)

@@ -93,7 +93,11 @@ def error(law, scheme, step, duration=0.04):
 @BOTH
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_order_in_smooth_sliding_is_two(law, scheme):
-    order = np.log2(error(law, scheme, 2e-5) / error(law, scheme, 1e-5))
+    if isinstance(scheme, st.ExactModal) and isinstance(law, (st.Coulomb, st.StaticKinetic)):
+        # A constant force is exact.
+        assert error(law, scheme, 4e-4) < 1e-12
+        return
+    order = np.log2(error(law, scheme, 1e-5) / error(law, scheme, 5e-6))
     assert order == pytest.approx(2.0, abs=0.1)
 
 
@@ -102,11 +106,11 @@ class LateVelocity(st.CentralDifference):
 
     def coupled_coefficients(self, stiffness, damping, step):
         k = super().coupled_coefficients(stiffness, 0 * damping, step)
-        return type(k)(b=k.b - step * damping, r=k.r, c=k.c, load=k.load)
+        return type(k)(b=k.b - step * damping, r=k.r, load=k.load)
 
     def coefficients(self, angular, damping, step):
         k = super().coefficients(angular, 0 * damping, step)
-        return type(k)(b=k.b - 2 * damping * angular * step, r=k.r, c=k.c, load=k.load)
+        return type(k)(b=k.b - 2 * damping * angular * step, r=k.r, load=k.load)
 
 
 @pytest.mark.parametrize("law", [LAWS["coulomb"], LAWS["stribeck"]])

@@ -34,6 +34,8 @@ def violations(run, mu: float) -> set[str]:
     small_gap = SUM * np.abs(run.contact_height.values).max()
     small_slip = SUM * np.abs(run.contact_position.values).max()
     closed, stuck, sliding = normal > 0, status == STICKING, status == SLIDING
+    # In a step in which the slip turns round, forces are means over both senses.
+    sliding &= ~np.concatenate([[False], sliding[:-1] & (slip[1:] * slip[:-1] < 0)])
     laws = {
         "normal force below zero": normal.min() < 0,
         "gap below zero": gap.min() < -small_gap,

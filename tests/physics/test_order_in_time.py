@@ -96,7 +96,6 @@ class OneSided(st.CentralDifference):
         return type(k)(
             b=1 - 2 * damping * angular * step,
             r=(angular * step) ** 2,
-            c=step + 0 * angular,
             load=step**2 + 0 * angular,
         )
 

@@ -136,11 +136,13 @@ def centre_acceleration(track, run, droop=1.0) -> np.ndarray:
 def test_the_track_moves_again_as_it_did_in_the_march(squeal):
     """Where each step is a sample: but for the band above 5/12 of the rate, which is not undone, the very same.
 
-    The probe is a second difference over steps h, which takes ``sinc²(f h)`` of each mode.
+    The probe is a second difference over steps h, which takes ``sinc²(f h)`` of each mode. In the march a force moves a
+    mode as one that is there for good, ``tan(w h / 2) / (w h / 2)`` as much as the impulse that it is.
     """
     track, run = squeal
     assert run.attrs["steps_per_sample"] == 1
-    droop = np.sinc(panel_of(track).angular_frequency * run.attrs["step"] / (2.0 * pi)) ** 2
+    half = panel_of(track).angular_frequency * run.attrs["step"] / 2.0
+    droop = np.sinc(half / pi) ** 2 * np.tan(half) / half
     found, probe = centre_acceleration(track, run, droop), run.acceleration.values[:, 0]
     spectra = [np.fft.rfft(values * np.hanning(values.size)) for values in (found, probe)]
     low = np.fft.rfftfreq(probe.size, run.attrs["sample_interval"]) < 20e3

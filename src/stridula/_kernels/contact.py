@@ -6,18 +6,23 @@ import numba
 
 from . import layout as at
 from .friction import (
+    STRICT,
     holding_ratio,
     least_ratio,
+    ratio_and_slope,
     set_valued,
     sliding_ratio,
     speed_scale,
     state_ratio,
     sticking_speed,
 )
+from .lanes import choose, magnitude
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
-# Whether a contact that would stick is held by the static coefficient.
-FREE, HELD, LET_GO = 0, 1, 2
+# Steps of Newton's method for a slip speed; the bracketed search takes over from what they do not find.
+NEWTON = 12
+# Relative step of Newton's method whose square is round-off.
+QUADRATIC = 1e-9
 # Trials of a root search; each at least halves the bracket in the end.
 TRIALS = 200
 # Relative distance over which the slope of a ratio is seen.
@@ -26,107 +31,228 @@ NEARBY = 1e-6
 HALVINGS = 60
 
 
-@numba.njit(cache=True, inline="always")
-def solve_contact(gap, slip, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, grip, step):
+@numba.njit(inline="always", **STRICT)
+def solve_contact(gap, slip, strayed, w, law, laws, i, before, let_go, step):
     """Return (normal force, tangential force, status, jammed) that close `gap` under a law of friction.
 
-    `gap` is the gap [m] at the end of the step without contact force, `slip` how far the tip is then from where
-    sticking would hold it, `freed` how far it is from where it was. The compliances [m/N] are the relative
-    displacement of the tip against the track for unit forces (on the tip and its opposite on the track). The
-    tangential force acts on the track along the tangent. Velocity-dependent laws see the centred slip velocity. `grip`
-    says whether the static coefficient holds, or whether of two consistent states sliding is taken.
+    `gap` is the gap [m] at the end of the step without contact force, `slip` how far the tip moves along the track in
+    the step without it, `strayed` how far a stick is from its anchor. The compliance `w` [m/N], rows (nn, nt, tn, tt),
+    is the relative displacement of the tip against the track for unit forces (on the tip and its opposite on the
+    track), the first index that of the displacement. The tangential force acts on the track along the tangent. `before`
+    are status, slips of the last two steps, the later first, internal state and both forces of the last step.
+    Velocity-dependent laws see the slip velocity of `velocity_at`. A contact that was let go is no longer held by its
+    static coefficient, and of two consistent states slides.
     """
     if gap >= 0.0:
         return 0.0, 0.0, SEPARATED, False
     if not set_valued(law):
-        return slide_with_state(gap, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, step)
-    if law == at.COULOMB and w_tt > 0.0:
-        return solve_coulomb(gap, slip, w_nn, w_nt, w_tt, laws[i, 0])
-    if w_tt == 0.0:
-        return slide_as_prescribed(gap, slip, freed, w_nn, law, laws, i, last_slip, step)
-    normal, tangential = sticking_forces(gap, slip, w_nn, w_nt, w_tt)
+        return slide_with_state(gap, slip, w, law, laws, i, before, step)
+    if w[3] == 0.0:
+        return slide_as_prescribed(gap, slip, strayed, w[0], law, laws, i, before, step)
+    if law == at.COULOMB:
+        normal, tangential, status, jammed = solve_coulomb(gap, slip + strayed, w, laws[i, 0])
+    else:
+        normal, tangential, status, jammed = stick_or_slide(gap, slip, strayed, w, law, laws, i, before, let_go, step)
+    last_slip = before[1]
+    if before[0] == SLIDING and (status == STICKING or tangential * last_slip < 0.0):
+        ratio = sliding_ratio(law, laws, i, 0.0)
+        held = holding_ratio(law, laws, i, not let_go)
+        turns, pressed, turned, slides = turn_round(gap, slip, last_slip, w, ratio, held)
+        if turns:
+            return pressed, turned, SLIDING if slides else STICKING, False
+    return normal, tangential, status, jammed
+
+
+@numba.njit(**STRICT)
+def stick_or_slide(gap, slip, strayed, w, law, laws, i, before, let_go, step):
+    """Return the contact under a law with a static coefficient, or whose ratio depends on the slip speed."""
+    normal, tangential = sticking_forces(gap, slip + strayed, w)
     sense = 1.0 if tangential >= 0.0 else -1.0
-    held = holding_ratio(law, laws, i, grip == HELD)
-    velocity = 0.0
+    held = holding_ratio(law, laws, i, before[0] == STICKING and not let_go)
+    ratio, travelled = sense * sliding_ratio(law, laws, i, 0.0), sense
     if abs(tangential) <= held * normal:
-        if grip == LET_GO and law > at.STATIC_KINETIC:
-            velocity = slipping_velocity(gap, freed, w_nn, w_nt, w_tt, law, laws, i, last_slip, sense, step)
-        if sense * (2.0 * step * velocity - last_slip) <= 0.0 or velocity == 0.0:
-            return normal, tangential, STICKING, w_nn - sense * held * w_nt <= 0.0
+        velocity = 0.0
+        if let_go and law > at.STATIC_KINETIC:
+            velocity = slipping_velocity(gap, slip, w, law, laws, i, before, sense, step)
+            ratio = sense * sliding_ratio(law, laws, i, abs(velocity))
+            travelled = slip_at(velocity, before, step)
+        if velocity == 0.0 or sense * travelled <= 0.0:
+            return normal, tangential, STICKING, w[0] - sense * held * w[1] <= 0.0
     elif law > at.STATIC_KINETIC:
-        velocity = slip_velocity(gap, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, sense, step)
-        if sense * (2.0 * step * velocity - last_slip) < 0.0:
+        velocity, ratio = sliding_velocity(gap, slip, w, law, laws, i, before, sense, step)
+        if sense * slip_at(velocity, before, step) < 0.0:
             # Viscous friction above the static one brings it to rest within the step.
             return normal, tangential, STICKING, False
-    ratio = sliding_ratio(law, laws, i, abs(velocity))
-    normal = -gap / (w_nn - sense * ratio * w_nt)
-    return normal, sense * ratio * normal, SLIDING, False
+    normal = -gap / (w[0] - ratio * w[1])
+    return normal, ratio * normal, SLIDING, False
 
 
-@numba.njit(cache=True)
-def sticking_forces(gap, slip, w_nn, w_nt, w_tt):
+@numba.njit(**STRICT)
+def sticking_forces(gap, slip, w):
     """Return the normal and the tangential force that close `gap` and undo `slip`."""
-    determinant = w_nn * w_tt - w_nt * w_nt
-    return (w_nt * slip - w_tt * gap) / determinant, (w_nn * slip - w_nt * gap) / determinant
+    w_nn, w_nt, w_tn, w_tt = w
+    determinant = w_nn * w_tt - w_nt * w_tn
+    return (w_nt * slip - w_tt * gap) / determinant, (w_nn * slip - w_tn * gap) / determinant
 
 
-@numba.njit(cache=True)
-def solve_coulomb(gap, slip, w_nn, w_nt, w_tt, mu):
+@numba.njit(**STRICT)
+def solve_coulomb(gap, slip, w, mu):
     """Return the contact that closes `gap` below zero under one coefficient of friction."""
-    normal, tangential = sticking_forces(gap, slip, w_nn, w_nt, w_tt)
+    normal, tangential = sticking_forces(gap, slip, w)
     sense = 1.0 if tangential >= 0.0 else -1.0
-    free = w_nn - sense * mu * w_nt
+    free = w[0] - sense * mu * w[1]
     if abs(tangential) <= mu * normal:
         return normal, tangential, STICKING, free <= 0.0
     normal = -gap / free
     return normal, sense * mu * normal, SLIDING, False
 
 
-@numba.njit(cache=True)
-def slide_as_prescribed(gap, slip, freed, w_nn, law, laws, i, last_slip, step):
+@numba.njit(**STRICT)
+def turn_round(gap, slip, last_slip, w, ratio, held):
+    """Return the contact of a slip that comes to an end within the step, as numbers of runs.
+
+    It slides on for the share of the step until it stops; for the rest it is held, or slides back where that takes more
+    than the ratio `held`. The forces are means over the step. Where the slip does not end, or would jam, `turns` is
+    false and the rest has no meaning.
+
+    Returns
+    -------
+    turns : bool
+        Whether the slip ends within the step.
+    normal, tangential : float
+        Forces [N].
+    slides : bool
+        Whether it slides back.
+    """
+    w_nn, w_nt, w_tn, w_tt = w
+    along = choose(last_slip < 0.0, -ratio, ratio)
+    free_on, free_back = w_nn - along * w_nt, w_nn + along * w_nt
+    on, back = -gap / free_on, -gap / free_back
+    farther = slip + (w_tn - along * w_tt) * on
+    share = last_slip / (last_slip - farther)
+    # Held from where it stops: what the last slip brings along is used up until then.
+    undone, area = slip - last_slip, 1.0 / (w_nn * w_tt - w_nt * w_tn)
+    pressed, needed = (w_nt * undone - w_tt * gap) * area, (w_nn * undone - w_tn * gap) * area
+    slides = magnitude(needed) > held * pressed
+    left = 1.0 - share
+    normal = share * on + left * choose(slides, back, pressed)
+    tangential = share * along * on + left * choose(slides, -along * back, needed)
+    clear = choose(free_on < free_back, free_on, free_back)
+    turns = choose(clear > 0.0, farther * last_slip, 0.0) < 0.0
+    return turns, normal, tangential, slides
+
+
+@numba.njit(**STRICT)
+def slide_as_prescribed(gap, slip, strayed, w_nn, law, laws, i, before, step):
     """Return the contact of bodies that no force moves along the tangent: the slip is what it is."""
+    status, last_slip = before[0], before[1]
     normal = -gap / w_nn
-    if abs(freed) == 0.0 or slip == 0.0:
+    if slip == 0.0 or slip + strayed == 0.0:
         return normal, 0.0, STICKING, False
-    ratio = sliding_ratio(law, laws, i, abs(freed + last_slip) / (2.0 * step))
-    return normal, math.copysign(ratio * normal, freed), SLIDING, False
+    ratio = sliding_ratio(law, laws, i, abs(velocity_at(slip, before, step)))
+    if status == SLIDING and last_slip * slip < 0.0:
+        # Sliding on until it stops, back from then on.
+        ratio *= (slip + last_slip) / (slip - last_slip)
+    return normal, math.copysign(1.0, slip) * ratio * normal, SLIDING, False
 
 
-@numba.njit(cache=True)
-def slide_with_state(gap, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, step):
+@numba.njit(inline="always", **STRICT)
+def velocity_at(slip, before, step):
+    """Return the slip velocity at the middle of the last step and this one, of second order.
+
+    Of the velocities that three slips give it is the one that best damps a sawtooth from step to step, to which their
+    mean would be blind: under stiff friction it falls to a third in each.
+    """
+    return (9.0 * slip + 6.0 * before[1] + before[2]) / (16.0 * step)
+
+
+@numba.njit(inline="always", **STRICT)
+def slip_at(velocity, before, step):
+    """Return the slip in a step at whose beginning the slip velocity is `velocity`."""
+    return (16.0 * step * velocity - 6.0 * before[1] - before[2]) / 9.0
+
+
+@numba.njit(**STRICT)
+def velocity_under(ratio, gap, slip, w, before, step):
+    """Return the slip velocity under a ratio of forces that closes the gap, endless where that jams."""
+    w_nn, w_nt, w_tn, w_tt = w
+    free = w_nn - ratio * w_nt
+    if free <= 0.0:
+        return -math.copysign(math.inf, ratio)
+    return velocity_at(slip - gap / free * (w_tn - ratio * w_tt), before, step)
+
+
+@numba.njit(**STRICT)
+def sliding_velocity(gap, slip, w, law, laws, i, before, sense, step):
+    """Return slip velocity and ratio of forces of a contact that slides under a law whose ratio depends on the speed.
+
+    Newton's method for the speed, from the one that the ratio of the last step leads to.
+    """
+    w_nn, w_nt, w_tn, w_tt = w
+    at_rest = sense * velocity_under(sense * sliding_ratio(law, laws, i, 0.0), gap, slip, w, before, step)
+    if at_rest <= 0.0:
+        return 0.0, sense * sliding_ratio(law, laws, i, 0.0)
+    ratio = sense * before[5] / before[4] if before[4] > 0.0 else sliding_ratio(law, laws, i, 0.0)
+    speed = sense * velocity_under(sense * ratio, gap, slip, w, before, step)
+    area = (w_nn * w_tt - w_nt * w_tn) * 9.0 / (16.0 * step)
+    for _ in range(NEWTON):
+        if not 0.0 < speed < math.inf:
+            break
+        ratio, slope = ratio_and_slope(law, laws, i, speed)
+        free = w_nn - sense * ratio * w_nt
+        if free <= 0.0:
+            break
+        normal = -gap / free
+        reached = sense * velocity_at(slip + normal * (w_tn - sense * ratio * w_tt), before, step)
+        steepness = 1.0 + normal / free * area * slope
+        if steepness <= 0.0:
+            break
+        change = (reached - speed) / steepness
+        speed += change
+        if abs(change) <= QUADRATIC * speed:
+            return sense * speed, sense * (ratio + slope * change)
+    velocity = slip_velocity(gap, slip, w, law, laws, i, before, sense, step)
+    return velocity, sense * sliding_ratio(law, laws, i, abs(velocity))
+
+
+@numba.njit(**STRICT)
+def slide_with_state(gap, slip, w, law, laws, i, before, step):
     """Return the contact under a law with internal state, which never sticks exactly."""
-    velocity = slip_velocity(gap, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, 0.0, step)
+    w_nn, w_nt, w_tn, w_tt = w
+    state = before[3]
+    velocity = slip_velocity(gap, slip, w, law, laws, i, before, 0.0, step)
     status = STICKING if abs(velocity) < sticking_speed(law, laws, i) else SLIDING
     # Where the ratio is flat in the velocity it gives the forces to round-off, where it is steep, in creep, the motion.
     ratio = state_ratio(law, laws, i, state, velocity, step)
-    led_to = velocity_under(ratio, gap, freed, w_nn, w_nt, w_tt, last_slip, step)
+    led_to = velocity_under(ratio, gap, slip, w, before, step)
     nearby = state_ratio(law, laws, i, state, velocity * (1.0 + NEARBY), step)
-    change = velocity_under(nearby, gap, freed, w_nn, w_nt, w_tt, last_slip, step) - led_to
+    change = velocity_under(nearby, gap, slip, w, before, step) - led_to
     if abs(change) <= abs(NEARBY * velocity):
         normal = -gap / (w_nn - ratio * w_nt)
         return normal, ratio * normal, status, False
-    slip = 2.0 * step * velocity - last_slip
-    tangential = (freed - w_nt / w_nn * gap - slip) / (w_tt - w_nt * w_nt / w_nn)
+    travelled = slip_at(velocity, before, step)
+    tangential = (slip - w_tn / w_nn * gap - travelled) / (w_tt - w_nt * w_tn / w_nn)
     normal = (w_nt * tangential - gap) / w_nn
     return normal, tangential, status, False
 
 
-@numba.njit(cache=True)
-def slip_velocity(gap, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, sense, step):
-    """Return the centred slip velocity that the forces at that velocity lead to.
+@numba.njit(**STRICT)
+def slip_velocity(gap, slip, w, law, laws, i, before, sense, step):
+    """Return the slip velocity that the forces at that velocity lead to.
 
     `sense` is that of a law which was found to slide, 0 for a law with internal state. The root is bracketed and found
     by false position (Illinois), with the velocity as ``scale sinh(y)``, so that creep and sliding are on one line.
     """
+    state = before[3]
     ratio = ratio_at(law, laws, i, state, 0.0, sense, step)
-    at_rest = velocity_under(ratio, gap, freed, w_nn, w_nt, w_tt, last_slip, step)
+    at_rest = velocity_under(ratio, gap, slip, w, before, step)
     if sense == 0.0:
         sense = 1.0 if at_rest >= 0.0 else -1.0
     elif sense * at_rest <= 0.0:
         return 0.0
     reach = abs(at_rest)
     if math.isinf(reach):
-        reach = max(abs(freed) + abs(last_slip), 1e-300) / (2.0 * step)
+        reach = max(abs(slip) + abs(before[1]), 1e-300) / (2.0 * step)
     if reach == 0.0:
         return 0.0
     scale = speed_scale(law, laws, i, state)
@@ -136,7 +262,7 @@ def slip_velocity(gap, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, 
         velocity = sense * reach
         ratio = ratio_at(law, laws, i, state, velocity, sense, step)
         high = math.asinh(reach / scale)
-        above = reach - sense * velocity_under(ratio, gap, freed, w_nn, w_nt, w_tt, last_slip, step)
+        above = reach - sense * velocity_under(ratio, gap, slip, w, before, step)
         if above >= 0.0:
             break
         low, below, reach = high, above, 2.0 * reach
@@ -150,7 +276,7 @@ def slip_velocity(gap, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, 
             y = secant if low < secant < high else y
         velocity = sense * scale * math.sinh(y)
         ratio = ratio_at(law, laws, i, state, velocity, sense, step)
-        error = sense * (velocity - velocity_under(ratio, gap, freed, w_nn, w_nt, w_tt, last_slip, step))
+        error = sense * (velocity - velocity_under(ratio, gap, slip, w, before, step))
         if abs(error) <= 4e-16 * abs(velocity):
             break
         if error > 0.0:
@@ -164,14 +290,14 @@ def slip_velocity(gap, freed, w_nn, w_nt, w_tt, law, laws, i, state, last_slip, 
     return velocity
 
 
-@numba.njit(cache=True)
-def slipping_velocity(gap, freed, w_nn, w_nt, w_tt, law, laws, i, last_slip, sense, step):
+@numba.njit(**STRICT)
+def slipping_velocity(gap, slip, w, law, laws, i, before, sense, step):
     """Return the largest slip velocity that a weakening law leads to where it could also stick, 0 if none."""
-    highest = sense * velocity_under(sense * least_ratio(law, laws, i), gap, freed, w_nn, w_nt, w_tt, last_slip, step)
+    highest = sense * velocity_under(sense * least_ratio(law, laws, i), gap, slip, w, before, step)
     low, high = 0.0, highest
     for _ in range(HALVINGS):
         ratio = sense * sliding_ratio(law, laws, i, max(high, 0.0))
-        if high - sense * velocity_under(ratio, gap, freed, w_nn, w_nt, w_tt, last_slip, step) < 0.0:
+        if high - sense * velocity_under(ratio, gap, slip, w, before, step) < 0.0:
             low, high = high, 2.0 * high
             break
         high *= 0.5
@@ -180,14 +306,14 @@ def slipping_velocity(gap, freed, w_nn, w_nt, w_tt, law, laws, i, last_slip, sen
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         ratio = sense * sliding_ratio(law, laws, i, middle)
-        if middle < sense * velocity_under(ratio, gap, freed, w_nn, w_nt, w_tt, last_slip, step):
+        if middle < sense * velocity_under(ratio, gap, slip, w, before, step):
             low = middle
         else:
             high = middle
     return sense * low
 
 
-@numba.njit(cache=True)
+@numba.njit(**STRICT)
 def ratio_at(law, laws, i, state, velocity, sense, step):
     """Return tangential over normal force at a slip velocity, at rest about to slide in `sense`."""
     if set_valued(law):
@@ -195,10 +321,17 @@ def ratio_at(law, laws, i, state, velocity, sense, step):
     return state_ratio(law, laws, i, state, velocity, step)
 
 
-@numba.njit(cache=True)
-def velocity_under(ratio, gap, freed, w_nn, w_nt, w_tt, last_slip, step):
-    """Return the centred slip velocity under a ratio of forces that closes the gap, endless where that jams."""
-    free = w_nn - ratio * w_nt
-    if free <= 0.0:
-        return -math.copysign(math.inf, ratio)
-    return (freed - gap / free * (w_nt - ratio * w_tt) + last_slip) / (2.0 * step)
+@numba.njit(inline="always", **STRICT)
+def landed_share(gap_before, gap):
+    """Return the share of a step that is left when an open contact closes; without it `gap` would be reached."""
+    return choose(gap < 0.0, gap, -1.0) / (choose(gap < 0.0, gap, -1.0) - gap_before)
+
+
+@numba.njit(inline="always", **STRICT)
+def closed_share(normal, tangential, gap, w_nn, w_nt):
+    """Return the share of the step before that a contact was still closed in which is open now.
+
+    The force went from `normal` through zero to what it would take to hold the contact closed, at the same ratio.
+    """
+    free = w_nn - tangential / normal * w_nt
+    return normal / (normal + gap / choose(free > 0.0, free, w_nn))

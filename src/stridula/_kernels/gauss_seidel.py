@@ -6,8 +6,8 @@ import numba
 import numpy as np
 
 from . import layout as at
-from .contact import FREE, HELD, LET_GO, SEPARATED, SLIDING, STICKING, solve_contact
-from .friction import set_valued
+from .contact import SEPARATED, SLIDING, STICKING, solve_contact
+from .friction import STRICT, set_valued
 
 # Sweeps between two direct solves of the states that the sweeps have found.
 SWEEPS_PER_DIRECT_SOLVE = 8
@@ -17,13 +17,20 @@ PATIENCE = 24
 ROUND_OFF = 1e-14
 
 
-@numba.njit(cache=True, inline="always")
+@numba.njit(inline="always", **STRICT)
 def displacement(compliance, row, j, forces):
     """Return the relative displacement along a row of the compliance that contact `j` makes."""
     return compliance[row, 2 * j] * forces[j, 0] - compliance[row, 2 * j + 1] * forces[j, 1]
 
 
-@numba.njit(cache=True, inline="always")
+@numba.njit(inline="always", **STRICT)
+def own_compliance(compliance, i):
+    """Return the compliance of contact `i` for its own forces, row by row."""
+    n, t = 2 * i, 2 * i + 1
+    return compliance[n, n], compliance[n, t], compliance[t, n], compliance[t, t]
+
+
+@numba.njit(inline="always", **STRICT)
 def strayed(carried, i):
     """Return how far contact `i` is from the anchor of its stick."""
     if int(carried[i, at.STATUS]) != STICKING:
@@ -31,31 +38,25 @@ def strayed(carried, i):
     return carried[i, at.MATERIAL] - carried[i, at.ANCHOR]
 
 
-@numba.njit(cache=True)
-def solve_one(i, gap, slip, w_nn, w_nt, w_tt, contacts, laws, carried, let_go, step):
+@numba.njit(**STRICT)
+def solve_one(i, gap, slip, w, contacts, laws, carried, let_go, step):
     """Return (normal force, tangential force, status, jammed) of contact `i`.
 
     `slip` is how far the tip moves along the track's material in the step without contact force.
     """
-    was_sticking = int(carried[i, at.STATUS]) == STICKING
-    return solve_contact(
-        gap,
-        slip + strayed(carried, i),
-        slip,
-        w_nn,
-        w_nt,
-        w_tt,
-        int(contacts[i, at.LAW]),
-        laws,
-        i,
-        carried[i, at.FRICTION_STATE],
+    before = (
+        carried[i, at.STATUS],
         carried[i, at.LAST_SLIP],
-        LET_GO if let_go else (HELD if was_sticking else FREE),
-        step,
+        carried[i, at.EARLIER_SLIP],
+        carried[i, at.FRICTION_STATE],
+        carried[i, at.LAST_NORMAL],
+        carried[i, at.LAST_TANGENTIAL],
     )
+    law = int(contacts[i, at.LAW])
+    return solve_contact(gap, slip, strayed(carried, i), w, law, laws, i, before, let_go, step)
 
 
-@numba.njit(cache=True)
+@numba.njit(**STRICT)
 def solve_all(gaps, slips, compliance, contacts, laws, carried, step, tolerance, sweeps, forces, statuses, jammed):
     """Solve every contact in turn until no force changes; return (sweeps made, error estimated from the changes).
 
@@ -82,9 +83,7 @@ def solve_all(gaps, slips, compliance, contacts, laws, carried, step, tolerance,
                 i,
                 gap,
                 slip,
-                compliance[2 * i, 2 * i],
-                compliance[2 * i, 2 * i + 1],
-                compliance[2 * i + 1, 2 * i + 1],
+                own_compliance(compliance, i),
                 contacts,
                 laws,
                 carried,
@@ -116,7 +115,7 @@ def solve_all(gaps, slips, compliance, contacts, laws, carried, step, tolerance,
     return sweeps, error
 
 
-@numba.njit(cache=True)
+@numba.njit(**STRICT)
 def solve_states(gaps, slips, compliance, contacts, carried, forces, statuses):
     """Put the forces of given states into `forces`, ratios of sliding contacts kept, unless the states admit none."""
     count = gaps.size
@@ -146,7 +145,7 @@ def solve_states(gaps, slips, compliance, contacts, carried, forces, statuses):
         forces[i, 0], forces[i, 1] = right[2 * i], right[2 * i + 1]
 
 
-@numba.njit(cache=True)
+@numba.njit(**STRICT)
 def eliminate(matrix, right):
     """Solve a linear system in place by Gauss's elimination with row pivots; return whether it is regular."""
     size = right.size

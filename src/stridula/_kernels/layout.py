@@ -1,12 +1,12 @@
 """Where each number lives in the flat arrays of the march."""
 
 # Rows of the coefficient block, one column a mode; those of coupled modes are matrices instead.
-B, R, CH, HALF_OVER_CH, HALF_LOSS = range(5)
+B, R, LOAD, HALF_OVER_LOAD, HALF_LOSS = range(5)
 COEFFICIENT_ROWS = 5
 
 # Matrices of the coupled modes, which come first among the modes.
-KEPT, STIFFNESS, MOBILITY, IMPULSE, LOSS, KINETIC, ELASTIC = range(7)
-MATRICES = 7
+KEPT, STIFFNESS, MOBILITY, IMPULSE, LOSS, TURN, KINETIC, ELASTIC = range(8)
+MATRICES = 8
 
 # Rows of the state block.
 Q, D = range(2)
@@ -42,15 +42,29 @@ COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, LUGRE, AGING, SLIP = range(
 LAW_PARAMETERS = 8
 
 # Scalars that each contact carries from step to step: material abscissa of the tip, anchor of the stick, last status,
-# tip's abscissa at the last two steps, last slip, internal state of the law, forces of the last step.
-MATERIAL, ANCHOR, STATUS, ABSCISSA, ABSCISSA_BEFORE, LAST_SLIP, FRICTION_STATE, LAST_NORMAL, LAST_TANGENTIAL = range(9)
-CARRIED = 9
+# tip's abscissa at the last two steps, last slip and the one before, internal state of the law, forces and gap of the
+# last step, share of the last step in which it was closed if it still is.
+(
+    MATERIAL,
+    ANCHOR,
+    STATUS,
+    ABSCISSA,
+    ABSCISSA_BEFORE,
+    LAST_SLIP,
+    EARLIER_SLIP,
+    FRICTION_STATE,
+    LAST_NORMAL,
+    LAST_TANGENTIAL,
+    LAST_GAP,
+    CLOSED_SHARE,
+) = range(12)
+CARRIED = 12
 
 # Columns of the energy record, one row a sample; all but the stored energy are carried from step to step.
 STORED, DRIVE_WORK, CONTACT_WORK, FRICTION_LOSS, CONVECTION_WORK, DAMPING_LOSS, ITERATIONS, UNSOLVED = range(8)
 ENERGIES = 8
 
-# Columns of the record of a contact, one row a sample.
+# Columns of the record of a contact, one row a sample: shares of the time, and the status of the most steps last.
 (
     NORMAL_FORCE,
     TANGENTIAL_FORCE,
@@ -64,8 +78,9 @@ ENERGIES = 8
     JAMMED,
     LANDINGS,
     LAW_STATE,
-) = range(12)
-COLUMNS = 12
+    DOMINANT,
+) = range(13)
+COLUMNS = 13
 
 # Kinds of probe rows: on positions, on centred velocities, on second differences.
 DISPLACEMENT, VELOCITY, ACCELERATION = range(3)

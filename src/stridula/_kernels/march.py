@@ -6,7 +6,7 @@ import numba
 import numpy as np
 
 from . import layout as at
-from .contact import SEPARATED, STICKING
+from .contact import SEPARATED, STICKING, closed_share, landed_share, velocity_at
 from .friction import next_state, set_valued
 from .gauss_seidel import displacement, solve_all
 from .traces import FASTMATH, harmonics
@@ -17,7 +17,7 @@ UNBELIEVABLE = 1e-3
 
 @numba.njit(cache=True, fastmath=FASTMATH, nogil=True)
 def stored_energy(block, matrices, state):
-    """Return the energy half a step ago, ``[(1+b)/2 d² + r q[n] q[n-1]] / (2 c h)`` summed over the modes."""
+    """Return the energy half a step ago, ``[(1+b)/2 d² + r q[n] q[n-1]] / (2 l)`` summed over the modes."""
     energy = 0.0
     coupled = matrices.shape[1]
     for k in range(coupled):
@@ -28,7 +28,7 @@ def stored_energy(block, matrices, state):
         energy += kinetic * state[at.D, k] + elastic * state[at.Q, k]
     for k in range(state.shape[1]):
         q, d = state[at.Q, k], state[at.D, k]
-        energy += ((1.0 - block[at.HALF_LOSS, k]) * d * d + block[at.R, k] * q * (q - d)) * block[at.HALF_OVER_CH, k]
+        energy += ((1.0 - block[at.HALF_LOSS, k]) * d * d + block[at.R, k] * q * (q - d)) * block[at.HALF_OVER_LOAD, k]
     return energy
 
 
@@ -105,19 +105,24 @@ def set_products(contacts, spans, half_waves, shares, i, place, rows, waves, slo
 
 @numba.njit(cache=True, fastmath=FASTMATH, inline="always")
 def set_compliance(block, matrices, rows, response, compliance):
-    """Put the relative displacements of all contacts for unit forces on each into `compliance`."""
+    """Put the relative displacements of all contacts for unit forces on each into `compliance`.
+
+    It is symmetric but where stiffness and damping of coupled modes do not commute.
+    """
+    coupled = matrices.shape[1] > 0
     for i in range(rows.shape[0]):
         for side in range(2):
             for k in range(response.size):
-                response[k] = block[at.CH, k] * rows[i, side, k]
+                response[k] = block[at.LOAD, k] * rows[i, side, k]
             for k in range(matrices.shape[1]):
                 for j in range(matrices.shape[1]):
                     response[k] += matrices[at.MOBILITY, k, j] * rows[i, side, j]
-            for j in range(i + 1):
+            for j in range(rows.shape[0] if coupled else i + 1):
                 for other in range(2):
                     value = along(rows, j, other, response, 0, response.size)
-                    compliance[2 * i + side, 2 * j + other] = value
                     compliance[2 * j + other, 2 * i + side] = value
+                    if not coupled:
+                        compliance[2 * i + side, 2 * j + other] = value
 
 
 @numba.njit(cache=True, fastmath=FASTMATH, inline="always")
@@ -139,7 +144,7 @@ def correct(block, matrices, state, push, new):
             new[k] += matrices[at.MOBILITY, k, j] * push[j]
     exchanged = 0.0
     for k in range(new.size):
-        new[k] += block[at.CH, k] * push[k]
+        new[k] += block[at.LOAD, k] * push[k]
         exchanged += push[k] * (new[k] + state[at.D, k])
     return 0.5 * exchanged
 
@@ -151,13 +156,13 @@ def work_of_loads_and_damping(block, matrices, state, load, new):
     given = lost = 0.0
     for k in range(new.size):
         both = new[k] + state[at.D, k]
-        given += load[k] * both * block[at.HALF_OVER_CH, k]
-        lost += block[at.HALF_LOSS, k] * both * both * block[at.HALF_OVER_CH, k]
+        given += load[k] * both * block[at.HALF_OVER_LOAD, k]
+        lost += block[at.HALF_LOSS, k] * both * both * block[at.HALF_OVER_LOAD, k]
     for k in range(coupled):
         impulse = loss = 0.0
         for j in range(coupled):
             impulse += matrices[at.IMPULSE, k, j] * load[j]
-            loss += matrices[at.LOSS, k, j] * (new[j] + state[at.D, j])
+            loss += matrices[at.LOSS, k, j] * (new[j] + state[at.D, j]) - matrices[at.TURN, k, j] * state[at.D, j]
         given += impulse * (new[k] + state[at.D, k])
         lost += loss * (new[k] + state[at.D, k])
     return given, lost
@@ -175,6 +180,16 @@ def convecting_force(spans, i, slopes, normal, tangential, state, new):
     for k in range(first_axial, spans[i, at.AXIAL_END]):
         stretch += slopes[i, k - first_stretched] * (state[at.Q, k] + new[k])
     return tangential * stretch - normal * bend
+
+
+@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
+def closed_before(carried, i, status, gap, w):
+    """Return the share of the last step in which contact `i` was closed; `status` and `gap` are those of this step."""
+    closed = carried[i, at.CLOSED_SHARE]
+    normal, tangential = carried[i, at.LAST_NORMAL], carried[i, at.LAST_TANGENTIAL]
+    if status != SEPARATED or int(carried[i, at.STATUS]) == SEPARATED or normal <= 0.0:
+        return closed
+    return max(0.0, closed - 1.0 + closed_share(normal, tangential, gap, w[2 * i, 2 * i], w[2 * i, 2 * i + 1]))
 
 
 @numba.njit(cache=True, fastmath=FASTMATH, inline="always")
@@ -244,7 +259,7 @@ def march(
     forces, statuses = np.zeros((n_contacts, 2)), np.zeros(n_contacts, dtype=np.int64)
     jammed = np.zeros(n_contacts, dtype=np.bool_)
     w = compliance.copy()
-    sums = np.zeros((n_contacts, at.COLUMNS))
+    sums, steps_in = np.zeros((n_contacts, at.COLUMNS)), np.zeros((n_contacts, 3), dtype=np.int64)
     first_material = np.empty(n_contacts)
     drive, contact = energies[at.DRIVE_WORK], energies[at.CONTACT_WORK]
     friction, convection = energies[at.FRICTION_LOSS], energies[at.CONVECTION_WORK]
@@ -252,7 +267,7 @@ def march(
 
     n = 0
     for sample in range(record.shape[0]):
-        sums[:] = 0.0
+        sums[:], steps_in[:] = 0.0, 0
         most_sweeps = unsolved = 0
         for i in range(n_contacts):
             first_material[i] = carried[i, at.MATERIAL]
@@ -292,12 +307,13 @@ def march(
                     material += along(rows, i, at.TANGENTIAL, position, spans[i, at.AXIAL], spans[i, at.AXIAL_END])
                 gaps[i], slips[i], places[i] = gap, material - carried[i, at.MATERIAL], place
 
-            touching = False
+            touching = opening = False
             for i in range(n_contacts):
                 touching = touching or gaps[i] < 0.0
+                opening = opening or int(carried[i, at.STATUS]) != SEPARATED
+            if n_harmonic and (touching or opening):
+                set_compliance(block, matrices, rows, work, w)
             if touching:
-                if n_harmonic:
-                    set_compliance(block, matrices, rows, work, w)
                 for i in range(n_contacts):
                     forces[i, 0], forces[i, 1] = 0.0, 0.0
                 made, error = solve_all(
@@ -337,26 +353,31 @@ def march(
                         place += rows[i, at.TANGENTIAL, k] * (state[at.Q, k] + new[k])
                 before = carried[i, at.MATERIAL]
                 material = before + slip
-                status = statuses[i]
-                if status == SEPARATED:
-                    sums[i, at.SEPARATED] += 1
-                else:
-                    if int(carried[i, at.STATUS]) == SEPARATED:
+                status, was = statuses[i], int(carried[i, at.STATUS])
+                closed = closed_before(carried, i, status, gap, w)
+                sums[i, at.SEPARATED] += 1.0 - closed
+                if was != SEPARATED:
+                    sums[i, at.STICKING if was == STICKING else at.SLIDING] += closed
+                steps_in[i, status] += 1
+                closed = 0.0
+                if status != SEPARATED:
+                    closed = 1.0
+                    if was == SEPARATED:
                         sums[i, at.LANDINGS] += 1
+                        closed = landed_share(carried[i, at.LAST_GAP], gap - displacement(w, 2 * i, i, forces))
                     if status == STICKING:
-                        sums[i, at.STICKING] += 1
                         sums[i, at.JAMMED] += jammed[i]
-                        if int(carried[i, at.STATUS]) != STICKING:
+                        if was != STICKING:
                             carried[i, at.ANCHOR] = before
-                    else:
-                        sums[i, at.SLIDING] += 1
                     tip = 0.5 * (motion[n + 2, i, at.TIP_MOTION] - motion[n, i, at.TIP_MOTION])
                     track = 0.5 * (motion[n + 2, i, at.TRACK_MOTION] - motion[n, i, at.TRACK_MOTION])
                     lift = 0.5 * (motion[n + 2, i, at.GAP_MOTION] - motion[n, i, at.GAP_MOTION])
                     driven = tangential * (tip - track) - normal * lift
                     contact -= driven
                     drive += driven
-                    friction += tangential * slip
+                    # In a step in which the slip turns round, its mean force and the slip have opposite signs.
+                    given_back = not set_valued(int(contacts[i, at.LAW]))
+                    friction += tangential * slip if given_back else abs(tangential * slip)
                     if spans[i, at.BENDING_END] > spans[i, at.BENDING]:
                         slope = convecting_force(spans, i, slopes, normal, tangential, state, new)
                         convection += slope * 0.5 * (place - carried[i, at.ABSCISSA_BEFORE])
@@ -367,10 +388,13 @@ def march(
                     if status == SEPARATED:
                         carried[i, at.FRICTION_STATE] = laws[i, at.LAW_PARAMETERS - 1]
                     else:
-                        velocity = (slip + carried[i, at.LAST_SLIP]) / (2.0 * step)
+                        slips_before = status, carried[i, at.LAST_SLIP], carried[i, at.EARLIER_SLIP]
+                        velocity = velocity_at(slip, slips_before, step)
                         old = carried[i, at.FRICTION_STATE]
                         carried[i, at.FRICTION_STATE] = next_state(law, laws, i, old, velocity, step)
-                carried[i, at.STATUS], carried[i, at.MATERIAL], carried[i, at.LAST_SLIP] = status, material, slip
+                carried[i, at.STATUS], carried[i, at.MATERIAL] = status, material
+                carried[i, at.EARLIER_SLIP], carried[i, at.LAST_SLIP] = carried[i, at.LAST_SLIP], slip
+                carried[i, at.LAST_GAP], carried[i, at.CLOSED_SHARE] = gap, closed
                 carried[i, at.ABSCISSA_BEFORE], carried[i, at.ABSCISSA] = carried[i, at.ABSCISSA], place
                 carried[i, at.LAST_NORMAL], carried[i, at.LAST_TANGENTIAL] = normal, tangential
                 gaps[i] = gap
@@ -405,4 +429,6 @@ def march(
             record[sample, i, at.JAMMED] = sums[i, at.JAMMED]
             record[sample, i, at.LANDINGS] = sums[i, at.LANDINGS]
             record[sample, i, at.LAW_STATE] = carried[i, at.FRICTION_STATE]
+            # Of equal numbers of steps the later state wins.
+            record[sample, i, at.DOMINANT] = 2 - np.argmax(steps_in[i, ::-1])
     return record.shape[0], at.FINISHED

@@ -3,7 +3,7 @@
 A block is as wide as a vector: eight modes of one run, filled up with zeros, or one mode of eight runs. The fixed modes
 come first, then the bending and the axial harmonics of the track. All that is known of a block lies together.
 
-States are scaled by the root of the mobility, ``q / sqrt(c h)``, and so are loads and rows: a unit force adds its row
+States are scaled by the root of the mobility, ``q / sqrt(l)``, and so are loads and rows: a unit force adds its row
 to the increment, and the energy half a step ago is ``[(1 + b) / 2 d² + r q[n] q[n-1]] / 2``. A step is completed, under
 the forces of its contact, when the next one is tried, so that the modes are read once a step.
 """

@@ -6,7 +6,7 @@ import numba
 
 from . import layout as at
 from .block_rows import LOADS, NORMAL, WAVES, D, Q
-from .contact import SLIDING, STICKING
+from .contact import SLIDING, STICKING, closed_share, landed_share, velocity_at
 from .friction import set_valued
 from .lanes import anywhere, choose, everywhere, magnitude, read, spread, total, write
 from .mode_rows import (
@@ -17,7 +17,7 @@ from .mode_rows import (
     stored_energy,
     work_of_unit_load,
 )
-from .solves import coulomb, next_states, solve
+from .solves import coulomb, next_states, solve, turned_round
 from .traces import IN_ORDER, set_harmonics
 from .vectors import LANES
 
@@ -134,12 +134,13 @@ def steps(
     material, anchor = read(carried, at.MATERIAL, run, zero), read(carried, at.ANCHOR, run, zero)
     status, last_slip = read(carried, at.STATUS, run, zero), read(carried, at.LAST_SLIP, run, zero)
     place, place_before = read(carried, at.ABSCISSA, run, zero), read(carried, at.ABSCISSA_BEFORE, run, zero)
-    law_state = read(carried, at.FRICTION_STATE, run, zero)
+    earlier_slip, law_state = read(carried, at.EARLIER_SLIP, run, zero), read(carried, at.FRICTION_STATE, run, zero)
     drive, contact = read(energies, at.DRIVE_WORK, run, zero), read(energies, at.CONTACT_WORK, run, zero)
     friction, convection = read(energies, at.FRICTION_LOSS, run, zero), read(energies, at.CONVECTION_WORK, run, zero)
     damping = read(energies, at.DAMPING_LOSS, run, zero)
-    normal, tangential, gap, advance = zero, zero, zero, zero
-    ended, completed = zero, zero
+    normal, tangential = read(carried, at.LAST_NORMAL, run, zero), read(carried, at.LAST_TANGENTIAL, run, zero)
+    gap, closed = read(carried, at.LAST_GAP, run, zero), read(carried, at.CLOSED_SHARE, run, zero)
+    advance, ended, completed = zero, zero, zero
     varying, moving, with_state = signals.shape[0] > 1, motion.shape[0] > 1, not set_valued(law)
     kinds, spans, _, _, last_seen = probes
     for i in range(kinds.size):
@@ -150,6 +151,7 @@ def steps(
     n, pending, sines = 0, False, WAVES
     for sample in range(record.shape[0]):
         normals, tangentials, jams, landings, sticking, sliding = zero, zero, zero, zero, zero, zero
+        stuck_steps, slid_steps = zero, zero
         first_material = material
         for i in range(steps_per_sample):
             if differ(signals, n, loads, run, runs, zero):
@@ -203,26 +205,39 @@ def steps(
                 convection += slope * advance
                 keep_probes(rows, probes, signals, loads, n - 1, run, runs, normal, tangential, raw, zero)
 
-            normal, tangential, new_status, jammed = zero, zero, zero, zero
-            gap = choose(ended > 0.0, zero, new_gap)
+            before = (status, last_slip, earlier_slip, law_state, normal, tangential)
+            stuck, touched = magnitude(status - STICKING) < 0.5, status > 0.5 * STICKING
+            last_gap, gap = gap, choose(ended > 0.0, zero, new_gap)
+            if anywhere(choose(touched, gap, -1.0) >= 0.0):
+                left = closed - 1.0 + closed_share(normal, tangential, gap, w_nn, w_nt)
+                closed = choose(choose(touched, gap, -1.0) < 0.0, closed, choose(left < 0.0, zero, left))
+            sticking += choose(stuck, closed, zero)
+            sliding += choose(stuck, zero, closed)
+            normal, tangential, new_status, jammed, closed = zero, zero, zero, zero, zero
             if anywhere(gap < 0.0):
-                stuck = magnitude(status - STICKING) < 0.5
                 strayed = choose(stuck, material - anchor, zero)
+                w = (w_nn, w_nt, w_nt, w_tt)
                 if law == at.COULOMB and everywhere(choose(ended > 0.0, 1.0, w_tt) > 0.0):
-                    normal, tangential, new_status, jammed = coulomb(gap, slip + strayed, w_nn, w_nt, w_tt, coefficient)
+                    normal, tangential, new_status, jammed = coulomb(gap, slip + strayed, w, coefficient)
+                    slid = choose(status > SLIDING - 0.5, last_slip, zero)
+                    on = choose(new_status > SLIDING - 0.5, tangential * slid, zero) > 0.0
+                    if anywhere(choose(on, zero, choose(gap < 0.0, magnitude(slid), zero)) > 0.0):
+                        normal, tangential, new_status = turned_round(
+                            gap, slip, slid, w, coefficient, normal, tangential, new_status
+                        )
                 else:
-                    normal, tangential, new_status, jammed = solve(
-                        gap, slip, strayed, w_nn, w_nt, w_tt, law, laws, run, law_state, last_slip, status, step
-                    )
+                    normal, tangential, new_status, jammed = solve(gap, slip, strayed, w, law, laws, run, before, step)
+                closed = choose(touched, 1.0, landed_share(last_gap, gap))
+                closed = choose(gap < 0.0, closed, zero)
                 gap += w_nn * normal - w_nt * tangential
                 slip += w_nt * normal - w_tt * tangential
                 new_place += w_nt * normal - fixed_tt * tangential
                 sticks = magnitude(new_status - STICKING) < 0.5
                 anchor = choose(sticks, choose(stuck, anchor, material), anchor)
-                sticking += choose(sticks, 1.0, 0.0)
-                sliding += choose(new_status > SLIDING - 0.5, 1.0, 0.0)
+                stuck_steps += choose(sticks, 1.0, 0.0)
+                slid_steps += choose(new_status > SLIDING - 0.5, 1.0, 0.0)
                 jams += jammed
-                landings += choose(status < 0.5 * STICKING, choose(new_status > 0.5 * STICKING, 1.0, 0.0), 0.0)
+                landings += choose(touched, 0.0, choose(new_status > 0.5 * STICKING, 1.0, 0.0))
                 if moving:
                     tip_motion = centred(motion, n, at.TIP_MOTION * runs + run, zero)
                     track_motion = centred(motion, n, at.TRACK_MOTION * runs + run, zero)
@@ -230,14 +245,15 @@ def steps(
                     driven = tangential * (tip_motion - track_motion) - normal * lift
                     contact -= driven
                     drive += driven
-                friction += tangential * slip
+                # In a step in which the slip turns round, its mean force and the slip have opposite signs.
+                friction += tangential * slip if with_state else magnitude(tangential * slip)
                 normals += normal
                 tangentials += tangential
             if with_state:
-                velocity = (slip + last_slip) / (2.0 * step)
+                velocity = velocity_at(slip, before, step)
                 law_state = next_states(law, laws, run, new_status, law_state, velocity, step)
             material += slip
-            status, last_slip = new_status, slip
+            status, last_slip, earlier_slip = new_status, slip, last_slip
             advance = 0.5 * (new_place - place_before)
             place_before, place = place, new_place
             n += 1
@@ -290,6 +306,10 @@ def steps(
         write(record, sample, at.JAMMED * runs + run, jams)
         write(record, sample, at.LANDINGS * runs + run, landings)
         write(record, sample, at.LAW_STATE * runs + run, law_state)
+        apart_steps = steps_per_sample - stuck_steps - slid_steps
+        dominant = choose(stuck_steps < apart_steps, 0.0, float(STICKING))
+        most = choose(stuck_steps < apart_steps, apart_steps, stuck_steps)
+        write(record, sample, at.DOMINANT * runs + run, choose(slid_steps < most, dominant, float(SLIDING)))
 
     write(stops, COMPLETED, run, choose(ended > 0.0, completed, float(record.shape[0])))
     write(stops, ENDED, run, ended)
@@ -299,6 +319,9 @@ def steps(
     keep(carried, at.ABSCISSA, run, ended, place, zero)
     keep(carried, at.ABSCISSA_BEFORE, run, ended, place_before, zero)
     keep(carried, at.LAST_SLIP, run, ended, last_slip, zero)
+    keep(carried, at.EARLIER_SLIP, run, ended, earlier_slip, zero)
+    keep(carried, at.LAST_GAP, run, ended, gap, zero)
+    keep(carried, at.CLOSED_SHARE, run, ended, closed, zero)
     keep(carried, at.FRICTION_STATE, run, ended, law_state, zero)
     keep(carried, at.LAST_NORMAL, run, ended, normal, zero)
     keep(carried, at.LAST_TANGENTIAL, run, ended, tangential, zero)

@@ -4,15 +4,15 @@ import numba
 from numba.extending import overload
 
 from . import layout as at
-from .contact import FREE, HELD, STICKING, solve_contact
+from .contact import solve_contact, turn_round
 from .friction import next_state, set_valued
 from .lanes import choose, lane, magnitude, spread, with_lane
 from .vectors import LANES, VECTOR
 
 
-def solve(gap, slip, strayed, w_nn, w_nt, w_tt, law, laws, run, state, last_slip, status, step):
+def solve(gap, slip, strayed, w, law, laws, run, before, step):
     """Return normal force, tangential force, status and whether it is jammed, all as numbers of runs."""
-    return solve_one_run(gap, slip, strayed, w_nn, w_nt, w_tt, law, laws, run, state, last_slip, status, step)
+    return solve_one_run(gap, slip, strayed, w, law, laws, run, before, step)
 
 
 def next_states(law, laws, run, status, state, velocity, step):
@@ -21,13 +21,14 @@ def next_states(law, laws, run, status, state, velocity, step):
 
 
 @numba.njit(cache=True, inline="always")
-def coulomb(gap, slip, w_nn, w_nt, w_tt, mu):
+def coulomb(gap, slip, w, mu):
     """Do `solve` under Coulomb's law without branches; `slip` is how far the tip is from where sticking would hold it.
 
     The same as `contact.solve_coulomb`, to which a test holds it.
     """
-    share = 1.0 / (w_nn * w_tt - w_nt * w_nt)
-    held = (w_nn * slip - w_nt * gap) * share
+    w_nn, w_nt, w_tn, w_tt = w
+    share = 1.0 / (w_nn * w_tt - w_nt * w_tn)
+    held = (w_nn * slip - w_tn * gap) * share
     pressed = (w_nt * slip - w_tt * gap) * share
     directed = choose(held < 0.0, -mu, mu)
     free = w_nn - directed * w_nt
@@ -44,15 +45,22 @@ def coulomb(gap, slip, w_nn, w_nt, w_tt, mu):
     )
 
 
+@numba.njit(cache=True, inline="always")
+def turned_round(gap, slip, last_slip, w, mu, normal, tangential, status):
+    """Return forces and status under Coulomb's law where the slip comes to an end within the step, else as given.
+
+    `last_slip` is zero of contacts that did not slide.
+    """
+    turns, pressed, turned, slides = turn_round(gap, slip, last_slip, w, mu, mu)
+    turns = choose(turns, choose(gap < 0.0, magnitude(last_slip), 0.0), 0.0) > 0.0
+    normal, tangential = choose(turns, pressed, normal), choose(turns, turned, tangential)
+    return normal, tangential, choose(turns, choose(slides, 2.0, 1.0), status)
+
+
 @numba.njit(cache=True)
-def solve_one_run(gap, slip, strayed, w_nn, w_nt, w_tt, law, laws, run, state, last_slip, status, step):
+def solve_one_run(gap, slip, strayed, w, law, laws, run, before, step):
     """Do `solve` for one run."""
-    stuck = abs(status - STICKING) < 0.5
-    held = slip + (strayed if stuck else 0.0)
-    grip = HELD if stuck else FREE
-    normal, tangential, new, jammed = solve_contact(
-        gap, held, slip, w_nn, w_nt, w_tt, law, laws, run, state, last_slip, grip, step
-    )
+    normal, tangential, new, jammed = solve_contact(gap, slip, strayed, w, law, laws, run, before, False, step)
     return normal, tangential, float(new), 1.0 if jammed else 0.0
 
 
@@ -67,23 +75,27 @@ def next_state_of_run(law, laws, run, status, state, velocity, step):
 
 
 @numba.njit(cache=True)
-def solve_runs(gap, slip, strayed, w_nn, w_nt, w_tt, law, laws, run, state, last_slip, status, step):
+def solve_runs(gap, slip, strayed, w, law, laws, run, before, step):
     """Do `solve` for vectors of runs."""
     normal, tangential, new, jammed = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    status, last_slip, earlier_slip, state, last_normal, last_tangential = before
     for i in range(LANES):
         one = solve_one_run(
             lane(gap, i),
             lane(slip, i),
             lane(strayed, i),
-            lane(w_nn, i),
-            lane(w_nt, i),
-            lane(w_tt, i),
+            (lane(w[0], i), lane(w[1], i), lane(w[2], i), lane(w[3], i)),
             law,
             laws,
             run + i,
-            lane(state, i),
-            lane(last_slip, i),
-            lane(status, i),
+            (
+                lane(status, i),
+                lane(last_slip, i),
+                lane(earlier_slip, i),
+                lane(state, i),
+                lane(last_normal, i),
+                lane(last_tangential, i),
+            ),
             step,
         )
         normal, tangential = with_lane(normal, i, one[0]), with_lane(tangential, i, one[1])
@@ -103,11 +115,11 @@ def next_states_of_runs(law, laws, run, status, state, velocity, step):
 
 
 @overload(solve)
-def _overload_solve(gap, slip, strayed, w_nn, w_nt, w_tt, law, laws, run, state, last_slip, status, step):
+def _overload_solve(gap, slip, strayed, w, law, laws, run, before, step):
     chosen = solve_runs if gap is VECTOR else solve_one_run
 
-    def implementation(gap, slip, strayed, w_nn, w_nt, w_tt, law, laws, run, state, last_slip, status, step):
-        return chosen(gap, slip, strayed, w_nn, w_nt, w_tt, law, laws, run, state, last_slip, status, step)
+    def implementation(gap, slip, strayed, w, law, laws, run, before, step):
+        return chosen(gap, slip, strayed, w, law, laws, run, before, step)
 
     return implementation
 

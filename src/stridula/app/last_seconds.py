@@ -21,7 +21,6 @@ from ..records.variables import (
     STATUS_WORDS,
     attributes_of,
     described,
-    dominant_status,
     status_attributes,
 )
 from ..version import __version__
@@ -106,7 +105,8 @@ class LastSeconds:
             )
             for variable in CONTACT
         }
-        data[STATUS.name] = ("time", dominant_status(shares), status_attributes())
+        status = np.concatenate([part.contact[STATUS.name] for part in parts]).astype(np.int8)
+        data[STATUS.name] = ("time", status, status_attributes())
         data[STATUS_SHARE.name] = (("time", "contact_status"), shares, attributes_of(STATUS_SHARE))
         probe = np.concatenate([part.acceleration for part in parts])[:, None]
         data["acceleration"] = (("time", "acceleration_probe"), probe, attributes_of(PROBES["acceleration"]))

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..bodies.modes import Array
-from ..checks import non_negative, positive
+from ..checks import finite, non_negative, positive
 from .coulomb import check_static
 from .linearised import Linearised
 from .weakening import stribeck_curve, stribeck_slope
@@ -42,17 +42,19 @@ class LuGre:
         Damping of the bristles, sigma1 [s/m].
     viscous : float, optional
         Rise with speed, sigma2 [s/m].
+    initial_state : float, optional
+        Deflection of the bristles at the start [m]; in steady sliding at v it is ``sign(v) g(v) / stiffness``.
     """
 
     law: ClassVar[str] = "lugre"
     state_units: ClassVar[str] = "m"
-    state_at_start: ClassVar[float] = 0.0
     static: float
     kinetic: float
     velocity: float
     stiffness: float
     damping: float = 0.0
     viscous: float = 0.0
+    initial_state: float = 0.0
 
     def __post_init__(self) -> None:
         check_static(self.static, positive("kinetic", self.kinetic))
@@ -60,6 +62,12 @@ class LuGre:
         positive("stiffness", self.stiffness)
         non_negative("damping", self.damping)
         non_negative("viscous", self.viscous)
+        finite("initial_state", self.initial_state)
+
+    @property
+    def state_at_start(self) -> float:
+        """Deflection of the bristles at the start [m]; those of a contact that lands later are straight."""
+        return self.initial_state
 
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s], 0 at rest."""

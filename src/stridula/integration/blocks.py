@@ -44,8 +44,8 @@ class Recurrence:
     def mobility(self, rows: Array) -> Array:
         """Return the displacement of every mode at the end of a step for unit forces on rows, shape (..., modes)."""
         size = self.matrices.shape[1]
-        moved = self.block[at.CH] * rows
-        moved[..., :size] = rows[..., :size] @ self.matrices[at.MOBILITY]
+        moved = self.block[at.LOAD] * rows
+        moved[..., :size] = rows[..., :size] @ self.matrices[at.MOBILITY].T
         return np.asarray(moved)
 
     def free(self, position: Array, increment: Array) -> Array:
@@ -60,7 +60,7 @@ class Recurrence:
         size = self.matrices.shape[1]
         coupled = self.loads[:, :size]
         with np.errstate(over="ignore"):
-            energy = np.sum(self.loads**2 * self.block[at.HALF_OVER_CH])
+            energy = np.sum(self.loads**2 * self.block[at.HALF_OVER_LOAD])
             return float(energy + np.sum(coupled @ self.matrices[at.IMPULSE] * coupled))
 
 
@@ -74,25 +74,29 @@ def recurrence(arrays: Assembly, scheme: Scheme, step: float) -> Recurrence:
     """
     k = scheme.coefficients(arrays.angular_frequency, arrays.damping, step)
     block = np.zeros((at.COEFFICIENT_ROWS, arrays.mode_count))
-    block[at.B], block[at.R], block[at.CH] = k.b, k.r, k.c * step
-    block[at.HALF_OVER_CH] = 0.5 / block[at.CH]
+    block[at.B], block[at.R], block[at.LOAD] = k.b, k.r, k.load
+    block[at.HALF_OVER_LOAD] = 0.5 / block[at.LOAD]
     block[at.HALF_LOSS] = (1.0 - k.b) / 2.0
     size = arrays.coupled
     matrices, loads = np.zeros((at.MATRICES, size, size)), arrays.loads * k.load
     if size:
         c = scheme.coupled_coefficients(arrays.stiffness, arrays.dissipation, step)
-        mobility = 0.5 * (c.c + c.c.T)
-        if np.linalg.eigvalsh(mobility)[0] <= 0.0:
+        inverse = np.linalg.inv(c.load)
+        kept = inverse @ c.b
+        kinetic, lost, turned = _symmetric(inverse + kept), _symmetric(inverse - kept), inverse + kept
+        if min(np.linalg.eigvalsh(form)[0] for form in (_symmetric(c.load), kinetic - 0.5 * arrays.stiffness)) <= 0.0:
             raise ValueError(f"step must be shorter for the coupled modes of this system, got {step!r} s")
-        inverse, one = np.linalg.inv(c.c), np.eye(size)
         block[:, :size] = 0.0
-        matrices[at.KEPT], matrices[at.STIFFNESS], matrices[at.MOBILITY] = c.b, c.r, c.c * step
-        matrices[at.IMPULSE] = inverse / (2.0 * step)
-        matrices[at.LOSS] = inverse @ (one - c.b) / (4.0 * step)
-        matrices[at.KINETIC] = inverse @ (one + c.b) / (4.0 * step)
-        matrices[at.ELASTIC] = inverse @ c.r / (2.0 * step)
+        matrices[at.KEPT], matrices[at.STIFFNESS], matrices[at.MOBILITY] = c.b, c.r, c.load
+        matrices[at.IMPULSE], matrices[at.ELASTIC] = inverse / 2.0, arrays.stiffness / 2.0
+        matrices[at.KINETIC], matrices[at.LOSS] = kinetic / 4.0, lost / 4.0
+        matrices[at.TURN] = (turned - turned.T) / 4.0
         loads[:, :size] = arrays.loads[:, :size] @ c.load.T
     return Recurrence(block, matrices, loads)
+
+
+def _symmetric(matrix: Array) -> Array:
+    return np.asarray(0.5 * (matrix + matrix.T))
 
 
 @dataclass(frozen=True)
@@ -155,7 +159,7 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
                 "got a tip that does not"
             )
     flat = rows.reshape(2 * count, -1)
-    compliance = np.ascontiguousarray(modes.mobility(flat) @ flat.T)
+    compliance = np.ascontiguousarray(flat @ modes.mobility(flat).T)
     return ContactBlocks(constants, laws, spans, half_waves, shares, rows, compliance)
 
 

@@ -73,7 +73,7 @@ def aligned(rows: int, columns: int) -> Array:
 def rows_of(blocks: Blocks, state: State) -> tuple[Array, Array]:
     """Return all rows over the modes of a run, and the scale of its state."""
     contacts, block = blocks.contacts, blocks.modes.block
-    scale = np.sqrt(block[at.CH])
+    scale = np.sqrt(block[at.LOAD])
     harmonic = np.zeros(scale.size)
     for first, end in ((at.BENDING, at.BENDING_END), (at.AXIAL, at.AXIAL_END)):
         span = slice(int(contacts.spans[0, first]), int(contacts.spans[0, end]))

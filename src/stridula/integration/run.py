@@ -39,6 +39,7 @@ CONTACT_COLUMN = {
     "jammed_steps": at.JAMMED,
     "landings": at.LANDINGS,
     "friction_state": at.LAW_STATE,
+    "status": at.DOMINANT,
 }
 ENERGY_COLUMN = {
     "kinetic_and_elastic": at.STORED,

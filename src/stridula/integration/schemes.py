@@ -1,11 +1,11 @@
-"""Time schemes: each is a choice of three coefficients per mode, and a coefficient for loads.
+"""Time schemes: each is a choice of three coefficients per mode.
 
-March of increments d and positions q, for an impulse p at step n::
+March of increments d and positions q, for a modal force f at step n, of loads and contacts alike::
 
-    d[n+1] = b d[n] - r q[n] + c p[n],    q[n+1] = q[n] + d[n+1],    r = 1 - a + b
+    d[n+1] = b d[n] - r q[n] + l f[n],    q[n+1] = q[n] + d[n+1]
 
 Modes that springs, dashpots or a general damping matrix couple, ``q'' + D q' + K q = f``, march in the same way with
-matrices in the place of b, r and c.
+matrices in the place of b, r and l.
 """
 
 from __future__ import annotations
@@ -29,16 +29,13 @@ class Coefficients:
     Attributes
     ----------
     b, r : ndarray
-        Share of the last increment kept, and stiffness of the step ``1 - a + b`` [1].
-    c : ndarray
-        Increment for a unit impulse [s].
+        Share of the last increment kept, and stiffness of the step [1].
     load : ndarray
-        Increment for a unit constant force [s²], that moves the rest point exactly.
+        Increment for a unit force [s²]; ``r = load w²``, so that the rest point under a constant force is exact.
     """
 
     b: Array
     r: Array
-    c: Array
     load: Array
 
 
@@ -100,7 +97,6 @@ class CentralDifference:
         return Coefficients(
             b=(1.0 - damping * angular * step) / divisor,
             r=(angular * step) ** 2 / divisor,
-            c=step / divisor,
             load=step**2 / divisor,
         )
 
@@ -120,9 +116,7 @@ class CentralDifference:
         """Return the matrices of the same differences: ``(1 + h D / 2)`` divides."""
         one, half = np.eye(len(stiffness)), 0.5 * step * damping
         inverse = np.linalg.inv(one + half)
-        return Coefficients(
-            b=inverse @ (one - half), r=step**2 * inverse @ stiffness, c=step * inverse, load=step**2 * inverse
-        )
+        return Coefficients(b=inverse @ (one - half), r=step**2 * inverse @ stiffness, load=step**2 * inverse)
 
     def coupled_limit(self, stiffness: Array, damping: Array) -> float:
         """Return ``2 / w_max`` [s] of the undamped coupled modes."""
@@ -147,15 +141,13 @@ class ExactModal:
     default_fraction: ClassVar[float] = 0.2
 
     def coefficients(self, angular: Array, damping: Array, step: float) -> Coefficients:
-        """Return ``a = 2 e^(-zwh) cos(wd h), b = e^(-2zwh), c = e^(-zwh) sin(wd h)/wd`` as increments."""
+        """Return ``b = e^(-2zwh)``, ``r = 1 - 2 e^(-zwh) cos(wd h) + b`` without cancellation, ``l = r / w²``."""
         decay = damping * angular * step
         damped = angular * np.sqrt(1.0 - damping**2) * step
-        c = step * np.exp(-decay) * np.sinc(damped / np.pi)
-        # 1 - a + b without cancellation; a load f moves the rest point to f / w².
         r = np.expm1(-decay) ** 2 + 4.0 * np.exp(-decay) * np.sin(damped / 2.0) ** 2
         rigid = angular == 0.0
         load = np.where(rigid, step**2, r / np.where(rigid, 1.0, angular) ** 2)
-        return Coefficients(b=np.exp(-2.0 * decay), r=r, c=c, load=load)
+        return Coefficients(b=np.exp(-2.0 * decay), r=r, load=load)
 
     def limit(self, angular: Array, damping: Array) -> float:
         """Return half the shortest damped period [s]."""
@@ -182,16 +174,15 @@ class ExactModal:
         """Return the matrices of exact free motion.
 
         With the blocks ``[[E, F], [H, G]]`` of the exponential of the state matrix over a step and ``J``, the integral
-        of ``F``: ``c = F``, the rest point moves by ``load = J + F (F - G F^-1 J)``, ``r = load K`` without
-        cancellation, and ``b = F (G F^-1 E - H)`` from two steps of free motion.
+        of ``F``, the rest point moves by ``load = J + F (F - G F^-1 J)``, ``r = load K`` without cancellation, and
+        ``b = F (G F^-1 E - H)`` from two steps of free motion. `load` is symmetric where K and D commute.
         """
         size = len(stiffness)
         passed = _transition(stiffness, damping, step)
         e, f, j = passed[:size, :size], passed[:size, size : 2 * size], passed[:size, 2 * size :]
         g_f, g = np.linalg.solve(f.T, passed[size : 2 * size, size : 2 * size].T).T, passed[size : 2 * size]
         load = j + f @ (f - g_f @ j)
-        b = f @ (g_f @ e - g[:, :size])
-        return Coefficients(b=b, r=load @ stiffness, c=f, load=load)
+        return Coefficients(b=f @ (g_f @ e - g[:, :size]), r=load @ stiffness, load=load)
 
     def coupled_limit(self, stiffness: Array, damping: Array) -> float:
         """Return half the shortest damped period [s] of the coupled modes."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from .._kernels import layout as at
-from .._kernels.contact import SEPARATED, STICKING
-from .._kernels.friction import next_state
+from .._kernels.contact import SEPARATED, SLIDING, STICKING
+from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
 from .._kernels.gauss_seidel import solve_all
 from .._kernels.march import stored_energy
 from ..assembly import Assembly, ContactRows
@@ -43,12 +45,21 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
         pushes = start.rows[closed].reshape(-1, arrays.mode_count)
         gap, slip = start.at_first_step(modes.free(arrays.position, first) + start.factors @ modes.loads)
         forces, solved = np.zeros((len(arrays.contacts), 2)), np.zeros((closed.size, 2))
+        compliance, constants, laws = start.compliance(modes, pushes), contacts.constants[closed], contacts.laws[closed]
+        ratios = start.known_ratios(carried)[closed]
+        for i in np.flatnonzero(np.isfinite(ratios)):
+            # Where the ratio is known, the contact is one without friction whose push is inclined.
+            inclined = compliance[:, 2 * i] - ratios[i] * compliance[:, 2 * i + 1]
+            if inclined[2 * i] > 0.0:
+                compliance[:, 2 * i], constants[i, at.LAW], laws[i, 0] = inclined, at.COULOMB, 0.0
+            else:
+                ratios[i] = np.nan
         solve_all(
             gap[closed],
             slip[closed],
-            start.compliance(modes, pushes),
-            contacts.constants[closed],
-            contacts.laws[closed],
+            compliance,
+            constants,
+            laws,
             carried[closed],
             step,
             solve.tolerance,
@@ -57,10 +68,14 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
             np.zeros(closed.size, dtype=np.int64),
             np.zeros(closed.size, dtype=np.bool_),
         )
+        solved[:, 1] = np.where(np.isfinite(ratios), ratios * solved[:, 0], solved[:, 1])
         forces[closed] = solved
         first = start.increment(force + (solved * [1.0, -1.0]).ravel() @ pushes)
         carried = start.carried(first)
         carried[:, [at.LAST_NORMAL, at.LAST_TANGENTIAL]] = forces
+        pressed = forces[:, 0] > 0.0
+        carried[pressed, at.CLOSED_SHARE] = 1.0
+        carried[pressed & (carried[:, at.STATUS] == SEPARATED), at.STATUS] = SLIDING
     modal, energies = np.stack([arrays.position, first]), np.zeros(at.ENERGIES)
     energies[at.STORED] = stored_energy(modes.block, modes.matrices, modal)
     return State(modal, np.zeros_like(modal), carried, energies)
@@ -95,19 +110,40 @@ class _Start:
             )
         return first
 
+    @cached_property
+    def speeds(self) -> Array:
+        """Slip velocity of each contact at the start [m/s], exactly zero where it is round-off."""
+        imposed = (self.before + self.after)[:, :2] * [0.5, -0.5] / self.step
+        terms = self.rows[:, 1] * self.arrays.velocity
+        scale = np.abs(terms).sum(axis=1) + np.abs(imposed).sum(axis=1)
+        speeds = terms.sum(axis=1) + imposed.sum(axis=1)
+        return np.where(np.abs(speeds) > ROUND_OFF * scale, speeds, 0.0)
+
+    def known_ratios(self, carried: Array) -> Array:
+        """Return the ratio of tangential to normal force of contacts whose motion settles it, NaN of others."""
+        ratios, laws = np.full(len(self.speeds), np.nan), self.contacts.laws
+        for i, speed in enumerate(self.speeds):
+            law = int(self.contacts.constants[i, at.LAW])
+            if not set_valued(law):
+                ratios[i] = state_ratio(law, laws, i, carried[i, at.FRICTION_STATE], speed, self.step)
+            elif speed:
+                ratios[i] = np.sign(speed) * sliding_ratio(law, laws, i, abs(speed))
+        return ratios
+
     def carried(self, first: Array) -> Array:
         """Return what each contact carries, after a first increment."""
         carried = np.zeros((len(self.arrays.contacts), at.CARRIED))
         tip, track = self.before[:, 0], self.before[:, 1]
-        speed = self.rows[:, 1] @ self.arrays.velocity + (self.before + self.after)[:, :2] @ [0.5, -0.5] / self.step
         for i, one in enumerate(self.arrays.contacts):
             carried[i, at.MATERIAL] = one.contact.at + self.rows[i, 1] @ self.arrays.position
             carried[i, at.ABSCISSA] = one.contact.at + self.fixed[i, 1] @ self.arrays.position
-            carried[i, at.STATUS] = STICKING if self.gaps[i] == 0.0 and speed[i] == 0.0 else SEPARATED
-            carried[i, at.FRICTION_STATE] = self._state_before(i, one.contact.friction, float(speed[i]))
-        carried[:, at.ANCHOR] = carried[:, at.MATERIAL]
+            carried[i, at.STATUS] = STICKING if self.gaps[i] == 0.0 and self.speeds[i] == 0.0 else SEPARATED
+            carried[i, at.FRICTION_STATE] = self._state_before(i, one.contact.friction, float(self.speeds[i]))
+        carried[:, at.ANCHOR], carried[:, at.LAST_GAP] = carried[:, at.MATERIAL], self.gaps
         carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - self.fixed[:, 1] @ first - tip
         carried[:, at.LAST_SLIP] = self.rows[:, 1] @ first + tip - track
+        # One step more back, under the same acceleration.
+        carried[:, at.EARLIER_SLIP] = 3.0 * carried[:, at.LAST_SLIP] - 2.0 * self.step * self.speeds
         return carried
 
     def _state_before(self, i: int, law: FrictionLaw, velocity: float) -> float:
@@ -130,8 +166,7 @@ class _Start:
         """Return how far rows have moved after the first step under unit forces on them since before the start."""
         still = np.zeros(self.arrays.mode_count)
         answers = [modes.free(still, self._increment(still, still, push)) + modes.mobility(push) for push in pushes]
-        moved = np.array(answers) @ pushes.T
-        return np.ascontiguousarray(0.5 * (moved + moved.T))
+        return np.ascontiguousarray(pushes @ np.array(answers).T)
 
 
 def rows_where_it_starts(one: ContactRows) -> Array:

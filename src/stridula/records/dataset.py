@@ -24,7 +24,6 @@ from .variables import (
     STATUS_WORDS,
     attributes_of,
     described,
-    dominant_status,
     status_attributes,
 )
 
@@ -57,7 +56,7 @@ def to_dataset(
         variable.name: (along, contact_columns[variable.name].T, attributes_of(variable)) for variable in CONTACT
     }
     data |= {variable.name: ("time", energies[variable.name], attributes_of(variable)) for variable in ENERGY}
-    data[STATUS.name] = (along, dominant_status(status_share), status_attributes())
+    data[STATUS.name] = (along, contact_columns[STATUS.name].T.astype(np.int8), status_attributes())
     data[STATUS_SHARE.name] = ((*along, "contact_status"), status_share, attributes_of(STATUS_SHARE))
     for name in ("jammed_steps", "landings"):
         data[name] = (along, contact_columns[name].T.astype(np.int64), data[name][2])

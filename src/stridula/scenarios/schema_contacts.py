@@ -83,6 +83,8 @@ class LuGre(Table):
     """damping of the bristles per unit of normal force [s/m]"""
     viscous: is_.Slope = Bristles.viscous
     """rise with speed [s/m]"""
+    initial_state: is_.Position = Bristles.initial_state
+    """deflection of the bristles at the start [m]"""
 
 
 class RateAndState(Table):
