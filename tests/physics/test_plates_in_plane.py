@@ -171,9 +171,9 @@ def test_a_slider_on_it_is_on_a_beam():
 
     def on(track):
         rod = slider(-30.0, cutoff=8e3)
-        law = st.LinearWeakening(0.5, 2.0, 0.2)
+        law = st.LinearWeakening(0.7, 2.0, 0.3)
         contact = st.PointContact(rod.tip, track, at=0.2, friction=law, gap=1e-8)
-        return st.System(contact, dragged(0.05, 3.0)(rod))
+        return st.System(contact, dragged(0.05, 30.0)(rod))
 
     words = {"step": STEP, "sample_rate": 2e4}
     probes = [[st.Velocity(track.at(0.3), "x")] for track in bar()]
@@ -187,9 +187,9 @@ def test_a_slider_on_it_is_on_a_beam():
     stable, other = (st.sliding_stability(on(track)) for track in bar())
     np.testing.assert_allclose(stable.frequency, other.frequency, rtol=1e-6, atol=1e-4)
     np.testing.assert_allclose(stable.growth_rate, other.growth_rate, rtol=1e-5, atol=1e-4)
-    # Negative control: it is no rigid one, which tells by more than the plate is off the beam.
+    # Negative control: it is no rigid one.
     still = st.simulate(on(replace(bar()[0], in_plane=False)), 0.015, **words)
-    assert abs(still.friction_loss - on_beam.friction_loss).max() > 1e-2 * on_beam.friction_loss.max()
+    assert abs(still.normal_force - on_beam.normal_force).max() > 0.1 * on_beam.normal_force.max()
 
 
 SOFT_LINE = st.Line((0.02, 0.03), 0.5)
