@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..bodies.modes import Array
+from ..checks import STATUS_WORDS
 
 
 @dataclass(frozen=True)
@@ -36,8 +37,6 @@ def described(units: str, meaning: str) -> dict[str, str]:
     """Return the attributes of a variable that say its unit and its meaning."""
     return {"units": units, "long_name": meaning}
 
-
-STATUS_WORDS = ("separated", "sticking", "sliding")
 
 CONTACT = (
     Variable("normal_force", "N", "normal contact force, compressive", "mean"),

@@ -11,10 +11,9 @@ import scipy.linalg
 from ..assembly import ContactRows, assemble
 from ..bodies import BodyPoint, Track
 from ..bodies.modes import Array
-from ..checks import brief
+from ..checks import STATUS_WORDS, brief
 from ..contact import PointContact, RigidTrack
 from ..histories import History
-from ..records.variables import STATUS_WORDS
 from ..system import System
 
 SEPARATED, STICKING, SLIDING = STATUS_WORDS
@@ -111,14 +110,23 @@ class Structure:
         status : sequence of str
             Status of each contact.
         """
+        tangents, _ = self._rigid_rows()
+        slips = self.rates[0] + tangents @ self._following(status)
+        stuck = np.array([one == STICKING for one in status])
+        return np.where(stuck | (np.abs(slips) <= UNMOVED * np.abs(self.rates).max()), 0.0, slips)
+
+    def following(self, status: Sequence[str]) -> Array:
+        """Return the modal velocities of rigid motions that follow what contacts hold, shape (modes,)."""
+        return np.asarray(self.rigid @ self._following(status))
+
+    def _following(self, status: Sequence[str]) -> Array:
         tangents, normals = self._rigid_rows()
         slips, openings = self.rates
         closed, stuck = (np.array([one in kinds for one in status]) for kinds in (CLOSED, (STICKING,)))
         wanted = np.concatenate([openings[closed], slips[stuck]])
-        if wanted.any():
-            follow = np.linalg.pinv(np.vstack([normals[closed], tangents[stuck]]), rcond=UNMOVED) @ wanted
-            slips = slips - tangents @ follow
-        return np.where(stuck | (np.abs(slips) <= UNMOVED * np.abs(self.rates).max()), 0.0, slips)
+        if not wanted.any():
+            return np.zeros(self.rigid.shape[1])
+        return -np.linalg.pinv(np.vstack([normals[closed], tangents[stuck]]), rcond=UNMOVED) @ wanted
 
     def _rigid_rows(self) -> tuple[Array, Array]:
         """Return how rigid motions move the contacts along their tangents and normals, each (contacts, motions)."""
