@@ -14,7 +14,7 @@ from ..linear.given import Status, Velocity, given_status, given_velocity
 from ..linear.modes import exponents_alone, modes_of, round_off
 from ..linear.structure import SLIDING, Structure
 from ..linear.vibration import Exponents, vibration
-from ..records.variables import described
+from ..records.variables import EQUILIBRIUM, described
 from ..system import System
 
 
@@ -65,7 +65,11 @@ def sliding_stability(
         Over ``mode``, by rising frequency: ``frequency`` [Hz], ``growth_rate`` [1/s], ``damping_ratio`` [1], whether
         ``unstable``, ``energy_share`` of each ``body`` in the kinetic energy [1], and ``mode_shape``, real and
         imaginary ``part`` of the modal displacements. For each contact its ``status``, forces [N], ``slip_velocity``
-        [m/s], NaN where a force accelerates it and friction does not depend on it, and ``slip_acceleration`` [m/s²].
+        [m/s], NaN where a force accelerates it and none is given, and ``slip_acceleration`` [m/s²].
+        Of the equilibrium itself ``modal_displacement`` [kg^(1/2) m] over ``coordinate``, as mode shapes are, and the
+        displacements along world x and y (``direction``) of each tip, ``tip_displacement`` [m], and of the point of
+        the track that it touches, ``track_displacement`` [m]: less rigid motions that nothing holds, and under an
+        imposed velocity in the frame that moves with the root.
         ``attrs["equilibrium"]`` is ``sliding``; ``held``: friction holds a contact for good; ``lifted off``; or
         ``jammed``: it neither slides on nor opens, and there are no modes unless `status` is given. With `status` it
         says what would come of that instead.
@@ -153,19 +157,29 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
             np.stack([shapes.real, shapes.imag], axis=-1).transpose(1, 0, 2),
             described("1", "modal displacements, of norm 1"),
         ),
+        "modal_displacement": ("coordinate", equilibrium.displacement, _attributes("modal")),
     }
     coordinates = {
         "mode": np.arange(values.size),
         "body": list(spans),
         "coordinate_body": ("coordinate", body.astype(str)),
         "part": ["real", "imaginary"],
+        "direction": ["x", "y"],
     }
     several = len(system.contacts) > 1
     if several:
         coordinates["contact"] = list(system.contact_names)
+    moved = np.array([line.points @ equilibrium.displacement for line in structure.lines])
+    over = ("contact", "direction") if several else ("direction",)
+    for side, word in enumerate(("tip", "track")):
+        data[EQUILIBRIUM[word].name] = (over, moved[:, side] if several else moved[0, side], _attributes(word))
     for name, units, meaning, numbers in _contacts(equilibrium):
         data[name] = ("contact" if several else (), numbers if several else numbers[0], described(units, meaning))
     return xr.Dataset(data, coordinates, {"equilibrium": equilibrium.kind, "round_off": round_off(structure)})
+
+
+def _attributes(word: str) -> dict[str, str]:
+    return described(EQUILIBRIUM[word].units, EQUILIBRIUM[word].long_name)
 
 
 def _contacts(at: Equilibrium) -> list[tuple[str, str, str, Array]]:

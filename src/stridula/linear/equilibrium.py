@@ -185,29 +185,61 @@ def _balance(
 
     Sticking contacts are held at their anchors, displacements along their tangents.
     """
-    held, pushes, closed, stuck = held_rows(structure, status, sense * ratio)
-    _check_held(structure, held, [*closed, *stuck])
-    free, modes, count = structure.free_motions(held), structure.mode_count, len(held)
-    _check_unbraked(structure, free)
-    motions, size = free.shape[1], modes + free.shape[1] + count
-    matrix, right = np.zeros((size, size)), np.zeros(size)
-    matrix[:modes] = np.hstack([structure.stiffness, free, -pushes.T])
-    matrix[modes : modes + motions, :modes] = free.T
-    matrix[modes + motions :, :modes] = held
-    right[:modes] = structure.load - structure.damping @ structure.following(status)
-    right[modes + motions : modes + motions + len(closed)] = -structure.gaps[closed]
-    right[modes + motions + len(closed) :] = anchors[stuck]
-    scale = np.sqrt(np.maximum(np.abs(np.diag(matrix)), 1.0))
-    scaled = matrix / np.outer(scale, scale)
-    determinant = float(np.linalg.slogdet(scaled)[0])
-    solved = np.linalg.solve(scaled, right / scale) / scale if determinant else np.full(size, np.nan)
-    displacement, acceleration, forces = np.split(solved, [modes, modes + motions])
+    equations = _Equations(structure, status, sense * ratio)
+    load = structure.load - structure.damping @ structure.following(status)
+    closed, stuck = equations.closed, equations.stuck
+    displacement, acceleration, forces = equations.solved(load, -structure.gaps[closed], anchors[stuck])
     normal, tangential = np.zeros((2, len(status)))
     normal[closed] = forces[: len(closed)]
     tangential[closed] = (sense * ratio * normal)[closed]
     tangential[stuck] = forces[len(closed) :]
-    slips = np.array([line.tangent @ free @ acceleration for line in structure.lines])
-    return _Balance(status, sense, ratio, normal, tangential, slip, slips, displacement, determinant)
+    slips = np.array([line.tangent @ equations.free @ acceleration for line in structure.lines])
+    return _Balance(status, sense, ratio, normal, tangential, slip, slips, displacement, equations.determinant)
+
+
+class _Equations:
+    """Balance of forces and what contacts hold, as equations for displacement, accelerations and contact forces."""
+
+    def __init__(self, structure: Structure, status: Sequence[str], share: Array) -> None:
+        held, pushes, self.closed, self.stuck = held_rows(structure, status, share)
+        _check_held(structure, held, [*self.closed, *self.stuck])
+        self.free, modes = structure.free_motions(held), structure.mode_count
+        _check_unbraked(structure, self.free)
+        self.parts = modes, modes + self.free.shape[1]
+        size = self.parts[1] + len(held)
+        matrix = np.zeros((size, size))
+        matrix[:modes] = np.hstack([structure.stiffness, self.free, -pushes.T])
+        matrix[modes:, :modes] = np.vstack([self.free.T, held])
+        self.scale = np.sqrt(np.maximum(np.abs(np.diag(matrix)), 1.0))
+        self.matrix = matrix / np.outer(self.scale, self.scale)
+        self.determinant = float(np.linalg.slogdet(self.matrix)[0])
+
+    def solved(self, load: Array, closed: Array, stuck: Array) -> list[Array]:
+        """Return displacement, accelerations of free motions and forces under a load; what contacts hold is given."""
+        right = np.concatenate([load, np.zeros(self.parts[1] - self.parts[0]), closed, stuck])
+        if not self.determinant:
+            return np.split(np.full(right.size, np.nan), self.parts)
+        return np.split(np.linalg.solve(self.matrix, right / self.scale) / self.scale, self.parts)
+
+
+def travelling(structure: Structure, at: Equilibrium, speed: Array) -> Array:
+    """Return the modal velocities by which an equilibrium follows contact points that travel along bent tracks.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    at : Equilibrium
+        Its equilibrium.
+    speed : ndarray, shape (contacts,)
+        Velocities of the contact points along their tracks [m/s].
+    """
+    equations = _Equations(structure, at.status, at.sense * at.ratio)
+    pull, opening = np.zeros(structure.mode_count), np.zeros(len(speed))
+    for k, line in enumerate(structure.lines):
+        pull -= speed[k] * (at.normal_force[k] * line.normal_slope - at.tangential_force[k] * line.tangent_slope)
+        opening[k] = speed[k] * line.normal_slope @ at.displacement
+    return equations.solved(pull, opening[equations.closed], np.zeros(len(equations.stuck)))[0]
 
 
 def held_rows(structure: Structure, status: Sequence[str], share: Array) -> tuple[Array, Array, list[int], list[int]]:

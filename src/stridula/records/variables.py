@@ -82,6 +82,14 @@ PROBES = {
     "acceleration": Variable("acceleration", "m/s2", "acceleration at the probes", "low-pass"),
     "reaction": Variable("reaction", "N", "force of the root's support (its moment in N m)", "low-pass"),
 }
+# Of linear theory, less rigid motions that nothing holds; under an imposed velocity in the frame of the root.
+EQUILIBRIUM = {
+    "modal": Variable("modal_displacement", "kg^(1/2) m", "modal displacements in equilibrium"),
+    "tip": Variable("tip_displacement", "m", "displacement of the tip in equilibrium along world x and y"),
+    "track": Variable(
+        "track_displacement", "m", "displacement of the point of the track that it touches along world x and y"
+    ),
+}
 
 
 def attributes_of(variable: Variable) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from ..bodies import ReducedBody
 from ..bodies.modes import Array
 from ..checks import count, instance, positive, within
 from ..contact import RigidTrack
-from ..drives import Drive, ImposedVelocity, InitialVelocity
+from ..drives import Drive, ImposedVelocity, InitialEquilibrium, InitialVelocity
 from ..drives import InitialState as State
 from ..integration import simulate_many
 from ..system import System
@@ -166,6 +166,8 @@ def _prescribed(system: System) -> float:
             found.append(drive.velocity)
         elif isinstance(drive, InitialVelocity):
             found += [drive.x, drive.y]
+        elif isinstance(drive, InitialEquilibrium):
+            found += np.atleast_1d(drive.velocity or 0.0).tolist()
     for contact in system.contacts:
         if isinstance(contact.track, RigidTrack):
             found += [contact.track.velocity, contact.track.normal_velocity]
