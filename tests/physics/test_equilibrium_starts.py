@@ -240,6 +240,37 @@ def test_runs_side_by_side_and_ensembles_start_in_equilibrium():
     assert np.ptp(found.force.values) > 0.0
 
 
+DRAWN = """
+base = "weak-pressure"
+
+[contact]
+gap = 0
+
+[[drives]]
+kind = "imposed velocity"
+velocity = 0.01
+normal_load = 2
+
+[[drives]]
+kind = "initial equilibrium"
+mode = 1
+amplitude = 1e-9
+
+[simulation]
+duration = "1 ms"
+scheme = "central difference"
+"""
+
+
+def test_a_scenario_that_starts_in_equilibrium_can_be_swept(tmp_path):
+    (tmp_path / "drawn.toml").write_text(DRAWN, encoding="utf-8")
+    grid = st.Grid({"amplitude": [1e-7, 2e-7], "friction": [0.1, 0.2]})
+    found = st.sweep(tmp_path / "drawn.toml", grid, {"swing": lambda run: float(np.ptp(run.slip_velocity.values))})
+    assert set(found.message.values.ravel()) == {""}
+    one, two = found.swing.values
+    np.testing.assert_allclose(two, 2.0 * one, rtol=0.05)
+
+
 def test_a_run_goes_on_from_a_start_in_equilibrium():
     system = starting(dragged(bar().at(0.17)))
     whole = st.simulate(system, 2e-3, scheme=EXPLICIT, probes=[])
@@ -279,6 +310,12 @@ def lifted() -> st.System:
     return st.System(contact, [st.Force(slider.root, y=2.0)])
 
 
+def rising() -> st.System:
+    slider = rod(root_support="clamped")
+    contact = st.PointContact(slider.tip, st.RigidTrack(velocity=0.7, normal_velocity=0.1))
+    return st.System(contact, [st.Force(slider.tip, y=-5.0)])
+
+
 def jammed() -> st.System:
     slider = rod(40.0, root_support="pinned")
     contact = st.PointContact(slider.tip, st.RigidTrack(velocity=0.7), friction=st.Coulomb(0.9))
@@ -301,6 +338,7 @@ def jammed() -> st.System:
             "velocity must be one at which bodies move",
         ),
         (lambda: dragged(st.RigidTrack(), velocity=0.0), {}, "contact 1 is held by friction"),
+        (rising, {}, "drives must let bodies follow what is moved along the normal of contact 1"),
         (mass_on_a_belt, {"status": "sticking"}, "status must let contact 1 slide, whose track nothing can follow"),
         (
             pushed,

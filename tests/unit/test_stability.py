@@ -351,6 +351,14 @@ def test_one_of_two_lifts_off_and_one_is_held():
     assert verdict(0.0, 1.0) == ("lifted off", ("sliding", "separated"))
 
 
+def test_an_open_contact_has_no_slip_velocity():
+    slider = rod(root_support="pinned")
+    lifted = pair(lambda rod: [st.Force(rod.tip, y=5.0)], 0.3, slider, st.RigidTrack(velocity=0.5))
+    found = st.sliding_stability(lifted)
+    assert found.attrs["equilibrium"] == "lifted off"
+    assert float(found.slip_velocity) == 0.0
+
+
 @pytest.mark.parametrize(("friction", "kind"), [(1.2, "sliding"), (1.8, "jammed")])
 def test_impulses_jam_though_forces_balance(friction, kind):
     """The root is free along y, so that N = load at any friction; but the end of an element jams from 5/3 on at 45°."""

@@ -138,7 +138,8 @@ def _at(structure: Structure, velocity: Array, status: Sequence[str]) -> tuple[_
     slip = _slip_velocities(structure, velocity, status)
     plain = _balance(structure, status, np.sign(slip), nothing, anchors, slip)
     moved = np.where(np.abs(plain.slip_acceleration) > ROUND_OFF * _acceleration(structure), plain.slip_acceleration, 0)
-    sense = np.where(slip != 0.0, np.sign(slip), np.sign(moved))
+    slides = np.array([one == SLIDING for one in status])
+    sense = slides * np.where(slip != 0.0, np.sign(slip), np.sign(moved))
     ratio = nothing.copy()
     for number, contact in enumerate(structure.system.contacts):
         if status[number] == SLIDING:
@@ -149,7 +150,7 @@ def _at(structure: Structure, velocity: Array, status: Sequence[str]) -> tuple[_
 
 def _slip_velocities(structure: Structure, velocity: Array, status: Sequence[str]) -> Array:
     """Return the slip velocities [m/s] that are prescribed, or else given for contacts that nothing else holds."""
-    slip = structure.prescribed(status)
+    slip = np.where([one == SLIDING for one in status], structure.prescribed(status), 0.0)
     for k, given in enumerate(velocity):
         if given and not slip[k] and status[k] == SLIDING and not _is_held(structure, status, k):
             slip[k] = given

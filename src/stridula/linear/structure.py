@@ -137,7 +137,7 @@ class Structure:
         Raises
         ------
         ValueError
-            If no rigid motion lets a contact slide so, or follows the track of one that sticks.
+            If no rigid motion lets a contact slide so, or follows the track of one that sticks or that rises.
         """
         tangents, normals = self._rigid_rows()
         slips, openings = self.rates
@@ -149,6 +149,8 @@ class Structure:
         if missed.size and missed.max() > UNMOVED * np.abs(wanted).max():
             contact = int(np.flatnonzero(closed)[int(missed.argmax()) % int(closed.sum())])
             name = self.system.contact_names[contact]
+            if int(missed.argmax()) < int(closed.sum()):
+                raise ValueError(f"drives must let bodies follow what is moved along the normal of {name}")
             if status[contact] == STICKING:
                 raise ValueError(f"status must let {name} slide, whose track nothing can follow, got {STICKING!r}")
             raise ValueError(
