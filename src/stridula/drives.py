@@ -171,7 +171,7 @@ class InitialEquilibrium:
         each contact and 0 for the others; its sign is the sense of sliding.
     mode : int or "most unstable", optional
         Number of the mode on top, as `sliding_stability` counts at time 0; or, of the modes that vibrate, the one with
-        the largest growth rate, though it be below 0.
+        the largest growth rate, though it be below 0. Of more than 600 degrees of freedom it is among the lowest 100.
     amplitude : float, optional
         Largest displacement of a contact point in that mode [m]: of the tips and of the points of the tracks that they
         touch, along x or along y.

@@ -82,12 +82,12 @@ PROBES = {
     "acceleration": Variable("acceleration", "m/s2", "acceleration at the probes", "low-pass"),
     "reaction": Variable("reaction", "N", "force of the root's support (its moment in N m)", "low-pass"),
 }
-# Of linear theory, less rigid motions that nothing holds; under an imposed velocity in the frame of the root.
+# Of the equilibrium that linear theory finds, less rigid motions that nothing holds.
 EQUILIBRIUM = {
-    "modal": Variable("modal_displacement", "kg^(1/2) m", "modal displacements in equilibrium"),
-    "tip": Variable("tip_displacement", "m", "displacement of the tip in equilibrium along world x and y"),
+    "modal": Variable("modal_displacement", "kg^(1/2) m", "modal displacements, in the order of mode_shape"),
+    "tip": Variable("tip_displacement", "m", "displacement of the tip along world x and y"),
     "track": Variable(
-        "track_displacement", "m", "displacement of the point of the track that it touches along world x and y"
+        "track_displacement", "m", "displacement of the point of the track that it touches, zero on a rigid track"
     ),
 }
 
