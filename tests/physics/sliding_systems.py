@@ -67,12 +67,21 @@ def mass_on_a_rising_belt() -> st.System:
     return st.System(contact, [st.Gravity(10.0)], joined)
 
 
-def reduced(law=None) -> st.System:
+def on_a_belt(body) -> st.System:
+    """A beam or a plate pressed on a belt at one of its points."""
+    point = body.at(0.12)
+    contact = st.PointContact(point, st.RigidTrack(velocity=0.3), friction=st.Coulomb(0.3))
+    return st.System(contact, [st.Force(point, y=-5.0)])
+
+
+def reduced(law=None, damping=None) -> st.System:
     """A body given by matrices on two belts, one of them inclined."""
     half = np.random.default_rng(3).standard_normal((4, 4))
     stiffness = 1e4 * (half @ half.T + np.eye(4))
     points = {"p": (0, 1), "q": (2, 3)}
-    body = st.ReducedBody(np.diag([1.0, 2.0, 0.5, 0.5]), stiffness, points, damping=2e-4 * stiffness)
+    body = st.ReducedBody(
+        np.diag([1.0, 2.0, 0.5, 0.5]), stiffness, points, damping=2e-4 * stiffness if damping is None else damping
+    )
     law = law or st.Coulomb(0.2)
     contacts = [
         st.PointContact(body.at("p"), st.RigidTrack(velocity=-1.0, name="u"), friction=law),
@@ -117,6 +126,9 @@ STEADY = {
     "mass on a belt, LuGre": lambda: mass_on_a_belt(st.LuGre(0.35, 0.3, 0.01, 1e4, 1.0, 0.05)),
     "mass on a belt, rate and state": lambda: mass_on_a_belt(st.RateAndState(0.5, 0.02, 0.01, 1e-2, 0.1)),
     "body given by matrices on two belts": reduced,
+    "body with a damping of its own": lambda: reduced(damping=np.diag([3.0, 40.0, 8.0, 20.0])),
+    "beam on a belt": lambda: on_a_belt(bar()),
+    "plate on a belt": lambda: on_a_belt(sheet(in_plane=True, in_plane_modes=(3, 3))),
     "block on two feet": block_on_two_feet,
     "two rods, a beam and a spring": two_rods,
 }

@@ -11,6 +11,7 @@ import pytest
 import stridula as st
 from stridula.integration.live import LiveMarch
 from stridula.linear import starts
+from stridula.studies.ensembles import _perturbed
 from stridula.verification import instabilities
 from stridula.verification.instabilities import exponents
 
@@ -238,6 +239,11 @@ def test_runs_side_by_side_and_ensembles_start_in_equilibrium():
     )
     np.testing.assert_allclose(found.force, 2.0, rtol=1e-2)
     assert np.ptp(found.force.values) > 0.0
+    # A gap that the equilibrium closes is no perturbation: the slider is pushed.
+    apart = replace(systems[0], contact=replace(systems[0].contact, gap=1e-6))
+    (_, moved) = (_perturbed(apart, share) for share in (0.0, 1e-3))
+    assert moved.contact == apart.contact
+    assert isinstance(moved.drives[-1], st.InitialVelocity)
 
 
 DRAWN = """
@@ -277,6 +283,23 @@ def test_a_run_goes_on_from_a_start_in_equilibrium():
     half = st.simulate(system, 1e-3, scheme=EXPLICIT, probes=[])
     rest = st.simulate(system, 1e-3, scheme=EXPLICIT, probes=[], start=half)
     np.testing.assert_array_equal(rest.normal_force, whole.normal_force[-len(rest.time) :])
+    again = st.load_scenario(half).simulate()
+    np.testing.assert_array_equal(again.normal_force, half.normal_force)
+
+
+def test_an_open_equilibrium_hangs_still():
+    mass = st.PointMass(2.0)
+    contact = st.PointContact(mass.centre, st.RigidTrack(velocity=1.0), gap=0.03, friction=st.Coulomb(0.3))
+    system = st.System(contact, [st.Gravity(10.0)], [st.Spring(mass.centre, stiffness=1e3, direction="y")])
+    with pytest.raises(ValueError, match="contact 1 is lifted off: press it down, or status='separated' starts it"):
+        st.simulate(starting(system), 1e-3)
+    probe = st.Displacement(mass.centre, "y")
+    run = st.simulate(starting(system, status="separated"), 0.1, scheme=EXPLICIT, probes=[probe])
+    assert (run.status == 0).all()
+    np.testing.assert_allclose(run.displacement, -0.02, rtol=1e-12)
+    near = replace(system, contact=replace(contact, gap=0.019))
+    with pytest.raises(ValueError, match=r"gap must leave the bodies apart at the start, got an overlap of 0\.001 m"):
+        st.simulate(starting(near, status="separated"), 1e-3)
 
 
 def test_a_start_at_rest_under_load_needs_the_status():
