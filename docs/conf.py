@@ -224,6 +224,14 @@ def variables_table() -> str:
     return list_table(["variable", "unit", "meaning", "over the interval"], rows, [24, 8, 52, 16])
 
 
+def equilibrium_table() -> str:
+    """Return the table of what linear theory says of the equilibrium."""
+    from stridula.records.variables import EQUILIBRIUM
+
+    rows = [[f"``{v.name}``", plain(v.units), plain(v.long_name)] for v in EQUILIBRIUM.values()]
+    return list_table(["variable", "unit", "meaning"], rows, [26, 14, 60])
+
+
 def scenario_tables() -> str:
     """Return a table of keys for every table of a scenario file."""
     from stridula.scenarios.schema import ScenarioTable
@@ -397,6 +405,7 @@ def setup(app: Sphinx) -> None:
     drop_stale_stubs(page)
     write(HERE / "api.rst", page)
     write(GENERATED / "variables.rst", variables_table())
+    write(GENERATED / "equilibrium.rst", equilibrium_table())
     write(GENERATED / "scenario-keys.rst", scenario_tables())
     write(GENERATED / "shipped.rst", shipped_table())
     check_measures()

@@ -35,7 +35,7 @@ _HOME = {
         "Stribeck",
     ),
     "connections": ("Dashpot", "Spring"),
-    "drives": ("Force", "Gravity", "ImposedVelocity", "InitialState", "InitialVelocity"),
+    "drives": ("Force", "Gravity", "ImposedVelocity", "InitialEquilibrium", "InitialState", "InitialVelocity"),
     "histories": ("Constant", "Harmonic", "Ramp", "Sampled"),
     "system": ("System",),
     "records": ("Acceleration", "Displacement", "Reaction", "Velocity"),

@@ -85,6 +85,8 @@ class Assembly:
         acceleration.
     position, velocity : ndarray, shape (modes,)
         Modal positions and velocities at the start.
+    friction_state : ndarray, shape (contacts,)
+        Internal states of the laws of friction at the start.
     probes : list of ProbeRows
         One for each probe.
     prescribed : Prescribed
@@ -103,6 +105,7 @@ class Assembly:
     signals: list[Signal]
     position: Array
     velocity: Array
+    friction_state: Array
     probes: list[ProbeRows]
     prescribed: Prescribed
     spans: dict[str, tuple[int, int]]
@@ -145,6 +148,7 @@ def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
         signals=signals,
         position=position,
         velocity=velocity,
+        friction_state=np.array([contact.friction.state_at_start for contact in system.contacts]),
         probes=[_probe(probe, layout, loads) for probe in probes],
         prescribed=_prescribed(system, histories),
         spans={system.body_name(body): layout.spans[body] for body in system.bodies},

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from difflib import get_close_matches
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, TypeVar
 
+T = TypeVar("T")
+# What a contact does, as numbers from 0 on in records.
+STATUS_WORDS = ("separated", "sticking", "sliding")
 # Longest value that a message shows as it is written.
 LONGEST = 80
 
@@ -62,6 +65,15 @@ def choice(name: str, value: Any, allowed: Sequence[str]) -> str:
     if value not in allowed:
         raise ValueError(f"{name} must be one of {', '.join(allowed)}, got {value!r}{suggestion(value, allowed)}")
     return str(value)
+
+
+def one_or_each(name: str, value: Any, check: Callable[[str, Any], T], size: int | None = None) -> T | tuple[T, ...]:
+    """Return `value` as `check` does, or each of a sequence of them, which holds `size` if that is given."""
+    if isinstance(value, str) or not (hasattr(value, "__len__") and hasattr(value, "__getitem__")):
+        return check(name, value)
+    if size is not None and len(value) != size:
+        raise ValueError(f"{name} must hold one for each contact, {size} in all, got {value!r}")
+    return tuple(check(f"{name}[{number}]", one) for number, one in enumerate(value))
 
 
 def instance(name: str, value: Any, kinds: type | tuple[type, ...]) -> None:

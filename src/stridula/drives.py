@@ -1,4 +1,4 @@
-"""What pushes: forces, an imposed velocity, gravity, initial velocities and displacements."""
+"""What pushes: forces, an imposed velocity, gravity; and how a system starts."""
 
 from __future__ import annotations
 
@@ -8,8 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, PointMass, ReducedBody
-from .checks import finite, instance, positive
+from .checks import STATUS_WORDS, choice, count, finite, instance, one_or_each, positive
 from .histories import HISTORIES, Constant, History
+
+# The mode whose amplitude grows fastest.
+MOST_UNSTABLE = "most unstable"
 
 
 @dataclass(frozen=True)
@@ -150,4 +153,59 @@ class InitialState:
         return tuple(float(value) for value in np.asarray(given))
 
 
-Drive = Force | ImposedVelocity | Gravity | InitialVelocity | InitialState
+@dataclass(frozen=True)
+class InitialEquilibrium:
+    """The whole system starts in equilibrium, as it is or with a mode of its vibration on top.
+
+    The equilibrium is the one of `sliding_stability` under the drives as they are at the start: bodies are deflected,
+    move as a whole as belts, tracks and `velocity` have them move, and laws of friction have the state of steady
+    sliding. A slider that a force accelerates starts at rest, deflected as it is while it accelerates, unless
+    `velocity` is given. Other initial displacements and velocities are added.
+
+    Parameters
+    ----------
+    status : str or sequence of str, optional
+        ``separated``, ``sticking`` or ``sliding``, one for all contacts or one for each; if left out all must slide.
+    velocity : float or sequence of float, optional
+        Slip velocity at the start [m/s] of contacts for which nothing prescribes it, one for all of them, or one for
+        each contact and 0 for the others; its sign is the sense of sliding.
+    mode : int or "most unstable", optional
+        Number of the mode on top, as `sliding_stability` counts at time 0; or, of the modes that vibrate, the one with
+        the largest growth rate, though it be below 0. Of more than 600 degrees of freedom it is among the lowest 100.
+    amplitude : float, optional
+        Largest displacement of a contact point in that mode [m]: of the tips and of the points of the tracks that they
+        touch, along x or along y.
+    phase : float, optional
+        Phase of that displacement at the start [rad]: at 0 it is at its positive peak, at pi/2 it falls through zero.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range. Where there is no such equilibrium a run says so.
+    """
+
+    status: str | Sequence[str] | None = None
+    velocity: float | Sequence[float] | None = None
+    mode: int | str | None = None
+    amplitude: float = 0.0
+    phase: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.status is not None:
+            words = one_or_each("status", self.status, lambda name, word: choice(name, word, STATUS_WORDS))
+            object.__setattr__(self, "status", words)
+        if self.velocity is not None:
+            object.__setattr__(self, "velocity", one_or_each("velocity", self.velocity, finite))
+        finite("phase", self.phase)
+        if self.mode is None:
+            if finite("amplitude", self.amplitude):
+                raise ValueError(f"amplitude must be 0 without a mode that has it, got {self.amplitude!r}")
+            return
+        if isinstance(self.mode, str):
+            choice("mode", self.mode, (MOST_UNSTABLE,))
+        else:
+            object.__setattr__(self, "mode", count("mode", self.mode, low=0))
+        positive("amplitude", self.amplitude)
+
+
+Drive = Force | ImposedVelocity | Gravity | InitialVelocity | InitialState | InitialEquilibrium

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, ReducedBody, Track
 from .checks import brief, instance
 from .connections import Connection, Dashpot, Spring, ends
 from .contact import PointContact, RigidTrack
-from .drives import Drive, Force, Gravity, ImposedVelocity, InitialState, InitialVelocity
+from .drives import Drive, Gravity, ImposedVelocity, InitialEquilibrium, InitialState, InitialVelocity
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -22,16 +24,16 @@ class System:
     ----------
     contact : PointContact or sequence of PointContact
         Where they touch. The first one names the slider (its tip's body) and the track.
-    drives : sequence of Force, ImposedVelocity, Gravity, InitialVelocity or InitialState, optional
-        What pushes.
+    drives : sequence of Force, ImposedVelocity, Gravity, InitialVelocity, InitialState or InitialEquilibrium, optional
+        What pushes, and how it starts.
     connections : sequence of Spring or Dashpot, optional
         What joins bodies for good.
 
     Raises
     ------
     ValueError
-        If a drive acts on a body that is in no contact and no connection, if more than one velocity is imposed, or if
-        a body is supported so that its root cannot follow an imposed velocity.
+        If a drive acts on a body that is in no contact and no connection, if more than one velocity is imposed or more
+        than one equilibrium asked for, or if a body is supported so that its root cannot follow an imposed velocity.
     """
 
     contact: PointContact | Sequence[PointContact]
@@ -46,13 +48,17 @@ class System:
         object.__setattr__(
             self,
             "drives",
-            _listed("drives", self.drives, (Force, ImposedVelocity, Gravity, InitialVelocity, InitialState)),
+            _listed("drives", self.drives, Drive.__args__),
         )
         object.__setattr__(self, "connections", _listed("connections", self.connections, (Spring, Dashpot)))
         self._check_names()
         for number, drive in enumerate(self.drives):
             self._check_body(f"drives[{number}]", drive)
         self._check_imposed()
+        if len(self._of_kind(InitialEquilibrium)) > 1:
+            raise ValueError(
+                f"drives must hold at most one InitialEquilibrium, got {len(self._of_kind(InitialEquilibrium))}"
+            )
 
     @property
     def contacts(self) -> tuple[PointContact, ...]:
@@ -82,7 +88,12 @@ class System:
     @property
     def imposed_velocity(self) -> ImposedVelocity | None:
         """The imposed velocity, if there is one."""
-        return next(iter(self._imposed()), None)
+        return next(iter(self._of_kind(ImposedVelocity)), None)
+
+    @property
+    def initial_equilibrium(self) -> InitialEquilibrium | None:
+        """The equilibrium in which it starts, if it does."""
+        return next(iter(self._of_kind(InitialEquilibrium)), None)
 
     def is_held(self, body: object) -> bool:
         """Return whether a body's root follows an imposed velocity."""
@@ -104,8 +115,8 @@ class System:
             return "track"
         return f"body {self.bodies.index(body) + 1}"
 
-    def _imposed(self) -> list[ImposedVelocity]:
-        return [drive for drive in self.drives if isinstance(drive, ImposedVelocity)]
+    def _of_kind(self, kind: type[T]) -> list[T]:
+        return [drive for drive in self.drives if isinstance(drive, kind)]
 
     def _check_names(self) -> None:
         for words, names in (
@@ -132,7 +143,7 @@ class System:
                     )
 
     def _check_imposed(self) -> None:
-        imposed = self._imposed()
+        imposed = self._of_kind(ImposedVelocity)
         if len(imposed) > 1:
             raise ValueError(f"drives must hold at most one ImposedVelocity, got {len(imposed)}")
         for drive in imposed:
@@ -204,6 +215,10 @@ def _drive_words(drive: Drive) -> str:
         return f"initial velocity ({drive.x:.3g}, {drive.y:.3g}) m/s"
     if isinstance(drive, InitialState):
         return "initial state of every degree of freedom"
+    if isinstance(drive, InitialEquilibrium):
+        number = drive.mode if isinstance(drive.mode, str) else f"number {drive.mode}"
+        mode = "" if drive.mode is None else f", mode {number} on top by {drive.amplitude:.3g} m"
+        return f"initial equilibrium{mode}"
     kind = type(drive.history).__name__.lower()
     if isinstance(drive, ImposedVelocity):
         return f"imposed velocity {drive.velocity:.4g} m/s along x under {drive.normal_load:.4g} N, {kind}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import cos, pi, radians, sin, tan
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from scipy.optimize import brentq
 
 import stridula as st
+from stridula.analysis.stability import stability_of
 from stridula.verification import instabilities
 from stridula.verification.instabilities import exponents
 from stridula.verification.stability import Pair
@@ -136,6 +138,108 @@ def test_a_slope_of_friction_damps_or_feeds(law, slope):
     assert known.real == pytest.approx(-WEIGHT * slope / 2.0, abs=1e-9)
     assert known.imag == pytest.approx(np.sqrt(4.0 - (WEIGHT * slope / 2.0) ** 2))
     assert seen == pytest.approx(known, rel=1e-4)
+
+
+def on_floors(law, *drives, dashpot: float = 0.0, belts: tuple[float, ...] = (0.0,)) -> st.System:
+    """For each floor 1 kg on a spring of 4 N/m, pressed on it with 10 N."""
+    masses = [st.PointMass(1.0, name=f"mass {k}") for k in range(len(belts))]
+    contacts = [
+        st.PointContact(mass.centre, st.RigidTrack(velocity=belt, name=f"floor {k}"), friction=law)
+        for k, (mass, belt) in enumerate(zip(masses, belts, strict=True))
+    ]
+    joined = [st.Spring(mass.centre, stiffness=4.0) for mass in masses]
+    joined += [st.Dashpot(mass.centre, coefficient=dashpot) for mass in masses if dashpot]
+    return st.System(contacts, drives=[st.Gravity(WEIGHT), *drives], connections=joined)
+
+
+STRIBECK = st.Stribeck(0.28, 0.25, 0.5)
+
+
+def stribeck_growth(velocity: float) -> float:
+    """``-N mu' / 2m`` of `STRIBECK` at a slip velocity."""
+    return WEIGHT * 0.03 * abs(velocity) / 0.25 * np.exp(-((velocity / 0.5) ** 2))
+
+
+@pytest.mark.parametrize("status", [None, "sliding"])
+@pytest.mark.parametrize("velocity", [0.5, -0.5, 0.2])
+def test_a_given_slip_velocity_counts_where_nothing_prescribes_it(velocity, status):
+    """The law falls with speed whatever moves the contact; the sign of the velocity is the sense of friction."""
+    found = st.sliding_stability(on_floors(STRIBECK), velocity=velocity, status=status)
+    assert found.attrs["equilibrium"] == "sliding"
+    assert float(found.growth_rate.max()) == pytest.approx(stribeck_growth(velocity), rel=1e-9)
+    assert float(found.slip_velocity) == velocity
+    drag = np.sign(velocity) * WEIGHT * float(STRIBECK.coefficient_at(velocity))
+    assert float(found.tangential_force) == pytest.approx(drag)
+    on_a_moving_one = st.sliding_stability(on_floors(STRIBECK, belts=(-velocity,)))
+    np.testing.assert_allclose(values(found), values(on_a_moving_one), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("belts", "velocity", "slips"),
+    [
+        ((0.0, 0.0), 0.3, (0.3, 0.3)),
+        ((0.0, 0.0), [0.3, -0.6], (0.3, -0.6)),
+        ((-0.2, 0.0), 0.3, (0.2, 0.3)),
+        ((-0.2, 0.0), np.array([0.0, -0.3]), (0.2, -0.3)),
+    ],
+)
+def test_several_contacts_have_each_its_own_slip_velocity(belts, velocity, slips):
+    found = st.sliding_stability(on_floors(STRIBECK, belts=belts), velocity=velocity)
+    np.testing.assert_array_equal(found.slip_velocity, slips)
+    known = sorted(stribeck_growth(slip) for slip in slips)
+    assert sorted(found.growth_rate.values) == pytest.approx(known, rel=1e-9)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_given_velocity_gives_the_sense_of_mode_coupling(sense):
+    """Hoffmann's mass on a floor at rest, sliding as it would on its belt: flutter one way, none the other."""
+    system = instabilities.hoffmann().system(0.9)
+    contact, *_ = system.contacts
+    still = st.System(replace(contact, track=st.RigidTrack()), drives=system.drives)
+    slip = -contact.track.velocity
+    found = st.sliding_stability(still, velocity=sense * slip)
+    turned = replace(contact.track, velocity=sense * contact.track.velocity)
+    known = st.sliding_stability(st.System(replace(contact, track=turned), drives=system.drives))
+    np.testing.assert_allclose(values(found), values(known), rtol=1e-12)
+    assert bool(found.unstable.any()) == (sense > 0.0)
+
+
+def test_a_free_mass_that_friction_slows_down_is_held():
+    mass = st.PointMass(1.0)
+    contact = st.PointContact(mass.centre, st.RigidTrack(), friction=STRIBECK)
+    for push, velocity, kind in (
+        (0.0, 0.5, "held"),
+        (3.0, 0.5, "sliding"),
+        (3.0, -0.5, "held"),
+        (-3.0, -0.5, "sliding"),
+    ):
+        system = st.System(contact, drives=[st.Gravity(WEIGHT), st.Force(mass.centre, x=push)])
+        assert st.sliding_stability(system, velocity=velocity).attrs["equilibrium"] == kind
+
+
+def test_maps_and_loci_take_a_slip_velocity():
+    """Growth ``-N mu' / 2m - c / 2m`` passes zero at ``c = -N mu'``."""
+    growth = stribeck_growth(0.4)
+    assert stability_of(on_floors(STRIBECK), velocity=0.4)["growth_rate"] == pytest.approx(growth, rel=1e-9)
+
+    def braked(coefficient: float) -> st.System:
+        return on_floors(STRIBECK, dashpot=coefficient)
+
+    loci = st.root_loci(braked, "coefficient", [0.01, 0.05], velocity=0.4)
+    np.testing.assert_allclose(loci.growth_rate[:, 0], [growth - 0.005, growth - 0.025], rtol=1e-9)
+    critical = st.critical_value(braked, "coefficient", 0.01, 1.0, velocity=[-0.4])
+    assert float(critical["value"]) == pytest.approx(2.0 * growth, rel=1e-5)
+
+
+def test_a_dashpot_drags_on_a_motion_that_follows_an_inclined_track():
+    """A root drawn at v up a slope rises at v tan a against c along y: N = (P + c v tan a) / cos a without friction."""
+    rise, velocity, braking = 0.3, 0.2, 50.0
+    rod = st.FiniteElementBeam(STEEL, SQUARE, 0.15, elements=4)
+    contact = st.PointContact(rod.tip, st.RigidTrack(), inclination=rise)
+    drive = st.ImposedVelocity(rod.root, velocity, normal_load=2.0)
+    brake = st.Dashpot(rod.root, coefficient=braking, direction="y")
+    found = st.sliding_stability(st.System(contact, drives=[drive], connections=[brake]))
+    assert float(found.normal_force) == pytest.approx((2.0 + braking * velocity * tan(rise)) / cos(rise), rel=1e-9)
 
 
 AGE = {"reference": 0.5, "a": 0.01, "b": 0.015, "slip_distance": 1e-3, "velocity": 1e-2}

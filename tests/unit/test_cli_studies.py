@@ -28,6 +28,46 @@ def test_stability_says_equilibrium_and_modes(stridula):
     assert "about the contacts as given" in out
 
 
+ON_A_FLOOR = """
+[bodies.mass]
+kind = "point mass"
+mass = 1
+
+[[contacts]]
+tip = { body = "mass" }
+track = { kind = "rigid" }
+friction = { law = "stribeck", static = 0.28, kinetic = 0.25, velocity = 0.5 }
+
+[[connections]]
+kind = "spring"
+first = { body = "mass" }
+stiffness = 4
+
+[[drives]]
+kind = "gravity"
+acceleration = 10
+
+[simulation]
+duration = 0.1
+"""
+
+
+def test_stability_takes_slip_velocities(stridula, tmp_path):
+    (tmp_path / "floor.toml").write_text(ON_A_FLOOR, encoding="utf-8")
+    for velocity, slip in (("0.5", 0.5), ("-50 cm/s", -0.5), ("0.5,", None), ("fast", None)):
+        code, out, err = stridula("stability", "floor.toml", "--velocity", velocity)
+        if slip is None:
+            assert (code, out) == (2, "")
+            assert "--velocity must be a number" in err
+        else:
+            assert f"slip {slip:g} m/s" in out
+            assert "0.22073" in out
+    code, out, err = stridula(
+        "stability", "floor.toml", "--velocity", "0.5", "--vary", "contacts.0.friction.static=0.26:0.3:2"
+    )
+    assert (code, out, err) == (0, "unstable at all 2 values of contacts.0.friction.static\n", "")
+
+
 def test_stability_over_a_parameter_prints_draws_and_writes(stridula, tmp_path):
     arguments = ("--vary", "friction=0.5:2:7", "--highest", "1000", "--out", "loci.nc", "--plot", "loci.png")
     code, out, err = stridula("stability", "weak-pressure", *arguments)
@@ -61,9 +101,9 @@ BAD_STABILITY = [
     (("--highest", "9"), "--highest must go with --vary, got 9.0 alone"),
     (("--set", "frition=1"), "did you mean 'friction'?"),
     (("--status", "slding"), "did you mean 'sliding'?"),
-    (("--status", "sliding,sliding"), "status must be one of separated, sticking, sliding for each contact"),
-    (("--velocity", "0"), "velocity must be above 0, got 0.0"),
-    (("--velocity", "nan"), "velocity must be finite, got nan"),
+    (("--status", "sliding,sliding"), "status must hold one for each contact, 1 in all"),
+    (("--velocity", "0"), "velocity must not be 0, got 0.0"),
+    (("--velocity", "nan"), "velocity must be finite, got 'nan'"),
     (("--vary", "frition=0:1:3"), "did you mean 'friction'?"),
     (("--vary", "friction"), "--vary must be KEY=START:STOP:COUNT"),
     (("--vary", "friction=1:0:3"), "--vary must have START below STOP"),

@@ -48,6 +48,23 @@ MAKERS = {
     "InitialVelocity.body": (lambda v: st.InitialVelocity(v), "body", [None, ROD.tip, "slider"]),
     "InitialVelocity.x": (lambda v: st.InitialVelocity(ROD, x=v), "x", FINITE),
     "InitialVelocity.y": (lambda v: st.InitialVelocity(ROD, y=v), "y", FINITE),
+    "InitialEquilibrium.status": (lambda v: st.InitialEquilibrium(v), "status", [3, "stuck", ""]),
+    "InitialEquilibrium.velocity": (
+        lambda v: st.InitialEquilibrium(velocity=v),
+        "velocity",
+        [NAN, INF, True, "1"],
+    ),
+    "InitialEquilibrium.mode": (
+        lambda v: st.InitialEquilibrium(mode=v, amplitude=1e-6),
+        "mode",
+        [-1, 1.5, True, "fastest", [1]],
+    ),
+    "InitialEquilibrium.amplitude": (
+        lambda v: st.InitialEquilibrium(mode=0, amplitude=v),
+        "amplitude",
+        [*FINITE, 0.0, -1e-6],
+    ),
+    "InitialEquilibrium.phase": (lambda v: st.InitialEquilibrium(phase=v), "phase", FINITE),
     "Coulomb.coefficient": (lambda v: st.Coulomb(v), "coefficient", [*FINITE, -0.1]),
     "PointContact.tip": (lambda v: contact(tip=v), "tip", [None, ROD, "tip"]),
     "PointContact.track": (lambda v: contact(track=v), "track", [None, ROD, "track"]),
@@ -72,6 +89,16 @@ def test_imposed_velocity_is_for_the_root_of_a_slider():
         st.ImposedVelocity(ROD.tip, 0.1)
     with pytest.raises(ValueError, match=r"^point\.body must be a FiniteElementBeam"):
         st.ImposedVelocity(BAR.centre, 0.1)
+
+
+def test_an_initial_equilibrium_holds_tuples_and_needs_a_mode_for_an_amplitude():
+    listed = st.InitialEquilibrium(status=["sliding", "separated"], velocity=np.array([0.1, 0.0]))
+    assert (listed.status, listed.velocity) == (("sliding", "separated"), (0.1, 0.0))
+    assert hash(listed) == hash(replace(listed))
+    with pytest.raises(ValueError, match=r"^amplitude must be 0 without a mode that has it, got 1e-06"):
+        st.InitialEquilibrium(amplitude=1e-6)
+    with pytest.raises(ValueError, match=r"^velocity\[1\] must be finite"):
+        st.InitialEquilibrium(velocity=[0.1, NAN])
 
 
 def test_contact_tip_is_a_point_of_another_body_than_the_track():

@@ -146,6 +146,39 @@ def test_every_drive_and_history_survives_provenance(kind, history, tmp_path):
     assert reloaded(system, (), tmp_path).system == system
 
 
+STARTS = [
+    st.InitialEquilibrium(),
+    st.InitialEquilibrium(status="sliding", velocity=-0.1),
+    st.InitialEquilibrium(mode=np.int64(4), amplitude=1e-6, phase=0.3),
+    st.InitialEquilibrium(status=["sliding"], velocity=[0.2], mode="most unstable", amplitude=np.float32(0.5)),
+]
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_every_initial_equilibrium_survives_provenance(start, tmp_path):
+    system = make(drives=lambda slider, track: [st.Gravity(), start])
+    scenario = reloaded(system, (), tmp_path)
+    assert scenario.system == system
+    (tmp_path / "shown.toml").write_text(st.scenario_text(tmp_path / "provenance.toml"), encoding="utf-8")
+    assert st.load_scenario(tmp_path / "shown.toml").system == system
+
+
+def test_an_initial_equilibrium_is_changed_by_key(tmp_path):
+    path = tmp_path / "start.toml"
+    path.write_text(
+        MASS_ON_FLOOR + '[[drives]]\nkind = "initial equilibrium"\nmode = 0\namplitude = "2 um"\n', encoding="utf-8"
+    )
+    changes = {
+        "mode": "most unstable",
+        "amplitude": "3 mm",
+        "drives.0.velocity": "-5 cm/s",
+        "drives.0.status": "sliding",
+    }
+    (start,) = st.load_scenario(path, changes).system.drives
+    assert start == st.InitialEquilibrium("sliding", -0.05, "most unstable", 0.003)
+    assert st.load_scenario(path).system.initial_equilibrium == st.InitialEquilibrium(mode=0, amplitude=2e-6)
+
+
 @pytest.mark.parametrize("section", [st.Rectangle(0.02, 0.01), st.Circle(0.012), st.Section(2e-4, 3e-9)])
 def test_every_section_survives_provenance(section, tmp_path):
     system = make(section=section, cutoff=20e3, root_support="free", mass="lumped", damping=np.float32(0.25))
@@ -367,6 +400,7 @@ def test_every_problem_of_a_file_is_told(tmp_path):
     )
     assert sorted(found) == [
         "drives.0.kind must be one of force, imposed velocity, gravity, initial velocity, initial state, "
+        "initial equilibrium, "
         "got 'forc'; "
         "did you mean 'force'?",
         "drives.1.axial must be a number in N, mN or kN, got 'x {y}'",
@@ -683,6 +717,26 @@ MASS_ON_FLOOR = (
             "drives.0.velocity must be two finite",
         ),
         (MASS_ON_FLOOR + '[[drives]]\nkind = "force"\nbody = "b"\n', "drives.0.body must be one of "),
+        (
+            MASS_ON_FLOOR + '[[drives]]\nkind = "initial equilibrium"\nmode = "fast"\n',
+            "drives.0.mode must be a whole number from 0 on or most unstable, got 'fast'",
+        ),
+        (
+            MASS_ON_FLOOR + '[[drives]]\nkind = "initial equilibrium"\nmode = -1\n',
+            "drives.0.mode must be a whole number from 0 on or most unstable, got -1",
+        ),
+        (
+            MASS_ON_FLOOR + '[[drives]]\nkind = "initial equilibrium"\nstatus = ["sliding", "stuck"]\n',
+            "drives.0.status must be one of separated, sticking, sliding or a list of them",
+        ),
+        (
+            MASS_ON_FLOOR + '[[drives]]\nkind = "initial equilibrium"\nvelocity = "fast"\n',
+            "drives.0.velocity must be a number in m/s",
+        ),
+        (
+            MASS_ON_FLOOR + '[[drives]]\nkind = "initial equilibrium"\namplitude = 1e-6\n',
+            "drives.0.amplitude must be 0 without a mode that has it, got 1e-06",
+        ),
         (MASS_ON_FLOOR + '[[simulation.probes]]\nquantity = "velocity"\nbody = "b"\n', "probes.0.body must be one of "),
     ],
 )

@@ -34,7 +34,8 @@ def test_bad_drives(value):
 @pytest.mark.parametrize("value", [None, ROD, "gravity", 9.81])
 def test_bad_drive(value):
     refuse(
-        r"^drives\[1\] must be a Force or ImposedVelocity or Gravity or InitialVelocity or InitialState, got ",
+        r"^drives\[1\] must be a Force or ImposedVelocity or Gravity or InitialVelocity or InitialState or "
+        "InitialEquilibrium, got ",
         drives=[st.Gravity(), value],
     )
 
@@ -49,6 +50,17 @@ def test_drive_on_another_body(drive):
 
 def test_two_imposed_velocities():
     refuse("at most one ImposedVelocity, got 2", drives=[st.ImposedVelocity(ROD.root, v) for v in (0.1, 0.2)])
+
+
+def test_two_initial_equilibria():
+    refuse("at most one InitialEquilibrium, got 2", drives=[st.InitialEquilibrium(), st.InitialEquilibrium()])
+
+
+def test_an_initial_equilibrium_is_on_the_card():
+    start = st.InitialEquilibrium(mode=3, amplitude=2e-6)
+    assert "initial equilibrium, mode number 3 on top by 2e-06 m" in str(st.System(SYSTEM.contact, [start]))
+    assert st.System(SYSTEM.contact, [start]).initial_equilibrium == start
+    assert SYSTEM.initial_equilibrium is None
 
 
 def test_imposed_velocity_with_a_throw():

@@ -165,7 +165,8 @@ def stability(
         typer.Option(metavar="WORD", help="Take the contacts as sliding, sticking or separated, in turn with commas."),
     ] = None,
     velocity: Annotated[
-        float | None, typer.Option(metavar="M/S", help="Slip speed where nothing prescribes it and friction needs it.")
+        str | None,
+        typer.Option(metavar="M/S", help="Slip velocity where nothing prescribes it, in turn with commas."),
     ] = None,
     vary: Annotated[
         str | None,
@@ -188,9 +189,10 @@ def stability(
         print_stability(name, overrides, status, velocity)
         return
     from .loci import print_loci
-    from .stability import statuses
+    from .stability import statuses, velocities
 
-    print_loci(name, vary, overrides, highest, out, plot, status=statuses(status), velocity=velocity)
+    options = {"status": statuses(status), "velocity": velocities(velocity)}
+    print_loci(name, vary, overrides, highest, out, plot, **options)
 
 
 @app.command()

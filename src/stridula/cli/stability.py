@@ -12,6 +12,7 @@ from rich.table import Table
 
 from ..analysis.stability import sliding_stability
 from ..scenarios.load import load_scenario
+from ..scenarios.quantities import quantity
 from .consoles import wide_console
 
 # Modes shown where none grows.
@@ -24,11 +25,11 @@ KINDS = {
 }
 
 
-def print_stability(name: str, overrides: dict[str, Any], status: str | None, velocity: float | None) -> None:
+def print_stability(name: str, overrides: dict[str, Any], status: str | None, velocity: str | None) -> None:
     """Print equilibrium and modes of a scenario: those that grow, or the few nearest to it."""
     scenario = load_scenario(name, overrides)
     given = statuses(status)
-    modes = sliding_stability(scenario.system, status=given, velocity=velocity)
+    modes = sliding_stability(scenario.system, status=given, velocity=velocities(velocity))
     console = wide_console()
     console.print(_table(modes, scenario.title or name))
     for line in _closing(modes, given is not None):
@@ -38,6 +39,17 @@ def print_stability(name: str, overrides: dict[str, Any], status: str | None, ve
 def statuses(status: str | None) -> list[str] | None:
     """Return the statuses that an option gives, in turn with commas."""
     return None if status is None else [word.strip() for word in status.split(",")]
+
+
+def velocities(velocity: str | None) -> float | list[float] | None:
+    """Return the slip velocities [m/s] that an option gives, in turn with commas, one of them for all contacts."""
+    if velocity is None:
+        return None
+    try:
+        numbers = [quantity(word, "m/s") for word in velocity.split(",")]
+    except ValueError as error:
+        raise ValueError(f"--velocity {error}, got {velocity!r}") from None
+    return numbers[0] if len(numbers) == 1 else numbers
 
 
 def _table(modes: xr.Dataset, title: str) -> Table:

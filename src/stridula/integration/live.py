@@ -23,11 +23,12 @@ from .blocks import Blocks, blocks_of
 from .carry_over import Before
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
+from .equilibrium_start import in_equilibrium
 from .marches import Impositions, March, march_of
 from .run import CONTACT_COLUMN, ENERGY_COLUMN
 from .schemes import ExactModal, Scheme
 from .simulate import choose_timing
-from .start import rows_where_it_starts, state_at_start
+from .start import rows_at, state_at_start
 from .stops import ENDED
 
 # Share of the lowest frequency of vibration below which a mode yields as a free one does.
@@ -126,7 +127,7 @@ class LiveMarch:
     def restart(self) -> None:
         """Put everything back to the start."""
         self._sample, self._gap = 0, self.system.contacts[0].gap
-        self._lay_out(self._described)
+        self._lay_out(in_equilibrium(self.system, self._described))
         self._go(state_at_start(self._arrays, self.scheme, self.step, self._blocks, GaussSeidel()))
         self._begin_probes()
 
@@ -276,13 +277,14 @@ class LiveMarch:
 
 def _opening(arrays: Assembly, position: Array, gap: float) -> Array:
     """Return the displacement that opens the contact to a gap as a force on it would, rigid motions first."""
-    row, size = rows_where_it_starts(arrays.contacts[0])[0], arrays.coupled
+    one, size = arrays.contacts[0], arrays.coupled
+    row = rows_at(one, one.contact.at)[0]
     squared = np.diag(arrays.angular_frequency**2)
     squared[:size, :size] = arrays.stiffness
     vibrating = np.diag(squared)[np.diag(squared) > 0.0]
     squared += SOFT**2 * (vibrating.min() if vibrating.size else 1.0) * np.eye(len(row))
     yielded = np.linalg.solve(squared, row)
-    missing = gap - arrays.contacts[0].contact.gap - row @ position
+    missing = gap - one.contact.gap - row @ position
     return np.asarray(yielded * missing / (row @ yielded))
 
 

@@ -22,6 +22,7 @@ from .belief import Belief
 from .blocks import blocks_of
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
+from .equilibrium_start import in_equilibrium
 from .marches import Chunk, Imposed, Impositions
 from .restart import imposed_at, moved_on, state_of
 from .schemes import Scheme
@@ -71,7 +72,8 @@ class Run:
         self.timing, self.probes, self.solve, self.title = timing, probes, solve, title
         self.blocks = blocks_of(arrays, scheme, timing.step)
         if start is None:
-            self.state = state_at_start(arrays, scheme, timing.step, self.blocks, solve)
+            placed = in_equilibrium(system, arrays)
+            self.state = state_at_start(placed, scheme, timing.step, self.blocks, solve)
             self.first_step, self.initial_energy = 0, float(self.state.energies[at.STORED])
             self.decimator = Decimator(timing.ratio)
         else:

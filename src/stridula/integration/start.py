@@ -20,8 +20,10 @@ from .blocks import Blocks, ContactBlocks, Recurrence
 from .contact_solve import GaussSeidel
 from .schemes import Scheme
 
-# Share of the terms of a gap, within which it counts as closed.
-ROUND_OFF = 1e-14
+# Share of the terms of a gap that rounding may make, where each has come out of a sum or a solve of its own.
+ROUND_OFF = 512.0 * np.finfo(float).eps
+# Relative stiffness of coupled modes that rounding may make.
+STIFFLESS = 1e-13
 
 
 def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks, solve: GaussSeidel) -> State:
@@ -90,10 +92,11 @@ class _Start:
         self.before, self.after = np.diff(arrays.motion(times, step), axis=0)
         self.factors = np.array([signal(times[1:2], step)[0] for signal in arrays.signals[: len(arrays.loads)]])
         self.fixed = np.array([one.fixed for one in arrays.contacts])
-        self.rows = np.array([rows_where_it_starts(one) for one in arrays.contacts])
-        self.gaps = np.array(
-            [_gap(one, row, arrays.position) for one, row in zip(arrays.contacts, self.rows, strict=True)]
-        )
+        moved = arrays.motion(times[1:2], step)[0, :, at.TIP_MOTION] + self.fixed[:, 1] @ arrays.position
+        places = [one.contact.at + shift for one, shift in zip(arrays.contacts, moved.tolist(), strict=True)]
+        self.rows = np.array([rows_at(*pair) for pair in zip(arrays.contacts, places, strict=True)])
+        terms = _terms(arrays, self.factors @ arrays.loads)
+        self.gaps = np.array([_gap(*pair, arrays, terms) for pair in zip(arrays.contacts, self.rows, strict=True)])
 
     def increment(self, force: Array) -> Array:
         """Return the increment before the start of motion under constant modal forces."""
@@ -150,7 +153,7 @@ class _Start:
         """Return the internal state of a law half a step before the start: the march keeps it between the steps."""
         if not law.state_units:
             return 0.0
-        state = law.state_at_start
+        state = float(self.arrays.friction_state[i])
         code = int(self.contacts.constants[i, at.LAW])
         # The mirror image of the half step after it, which does not grow as motion backwards in time does.
         before = 2.0 * state - float(next_state(code, self.contacts.laws, i, state, velocity, self.step / 2.0))
@@ -169,19 +172,34 @@ class _Start:
         return np.ascontiguousarray(pushes @ np.array(answers).T)
 
 
-def rows_where_it_starts(one: ContactRows) -> Array:
-    """Return the rows of a contact along normal and tangent, those of a track's modes at its first abscissa."""
+def rows_at(one: ContactRows, place: float) -> Array:
+    """Return the rows of a contact along normal and tangent, those of a track's modes at an abscissa [m]."""
     if not isinstance(one.contact.track, Track):
         return one.fixed
     full = one.fixed.copy()
-    full[:, one.bending[0] : one.axial[1]] -= one.contact.track.trace(one.contact.at)[::-1]
+    full[:, one.bending[0] : one.axial[1]] -= one.contact.track.trace(place)[::-1]
     return full
 
 
-def _gap(one: ContactRows, rows: Array, position: Array) -> float:
-    """Return the gap of a contact at the start, exactly zero where it is closed."""
-    gap = float(one.contact.gap + rows[0] @ position)
-    scale = one.contact.gap + float(np.abs(rows[0]) @ np.abs(position))
+def _terms(arrays: Assembly, force: Array) -> Array:
+    """Return the size of what modal positions are made of: themselves, and what the loads alone would deflect."""
+    size, free = arrays.coupled, arrays.angular_frequency == 0.0
+    deflected = np.where(free, 0.0, force / np.where(free, 1.0, arrays.angular_frequency) ** 2)
+    if not arrays.position.any():
+        return np.zeros_like(force)
+    deflected[:size] = np.linalg.pinv(arrays.stiffness, rcond=STIFFLESS, hermitian=True) @ force[:size]
+    return np.hypot(arrays.position, deflected)
+
+
+def _gap(one: ContactRows, rows: Array, arrays: Assembly, terms: Array) -> float:
+    """Return the gap of a contact at the start, exactly zero where it is closed.
+
+    A displacement comes with the rounding of the largest term of its body, whichever way the contact looks at it.
+    """
+    gap = float(one.contact.gap + rows[0] @ arrays.position)
+    spans = [slice(*span) for span in arrays.spans.values()]
+    felt = sum(float(np.linalg.norm(rows[0, span]) * np.linalg.norm(terms[span])) for span in spans)
+    scale = one.contact.gap + felt
     if gap < -ROUND_OFF * scale:
         raise ValueError(f"gap must leave the bodies apart at the start, got an overlap of {-gap:.3g} m")
     return gap if gap > ROUND_OFF * scale else 0.0

@@ -26,6 +26,7 @@ DRIVE_KINDS = {
     "Gravity": "gravity",
     "InitialVelocity": "initial velocity",
     "InitialState": "initial state",
+    "InitialEquilibrium": "initial equilibrium",
 }
 # A list as tomli_w writes it, one number on a line; texts are on one line each and never match.
 _LIST_OF_NUMBERS = re.compile(r"\[\n((?:\s*[-+.\dinfaeE]+,\n)+)\s*\]")

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..bodies.modes import Array
+from ..checks import STATUS_WORDS
 
 
 @dataclass(frozen=True)
@@ -36,8 +37,6 @@ def described(units: str, meaning: str) -> dict[str, str]:
     """Return the attributes of a variable that say its unit and its meaning."""
     return {"units": units, "long_name": meaning}
 
-
-STATUS_WORDS = ("separated", "sticking", "sliding")
 
 CONTACT = (
     Variable("normal_force", "N", "normal contact force, compressive", "mean"),
@@ -82,6 +81,14 @@ PROBES = {
     "velocity": Variable("velocity", "m/s", "velocity at the probes", "low-pass"),
     "acceleration": Variable("acceleration", "m/s2", "acceleration at the probes", "low-pass"),
     "reaction": Variable("reaction", "N", "force of the root's support (its moment in N m)", "low-pass"),
+}
+# Of the equilibrium that linear theory finds, less rigid motions that nothing holds.
+EQUILIBRIUM = {
+    "modal": Variable("modal_displacement", "kg^(1/2) m", "modal displacements, in the order of mode_shape"),
+    "tip": Variable("tip_displacement", "m", "displacement of the tip along world x and y"),
+    "track": Variable(
+        "track_displacement", "m", "displacement of the point of the track that it touches, zero on a rigid track"
+    ),
 }
 
 

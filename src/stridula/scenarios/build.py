@@ -27,7 +27,7 @@ from ..bodies import (
 from ..checks import suggestion
 from ..connections import Dashpot, Spring
 from ..contact import LAWS, PointContact, RigidTrack
-from ..drives import Drive, Force, Gravity, ImposedVelocity, InitialState, InitialVelocity
+from ..drives import Drive, Force, Gravity, ImposedVelocity, InitialEquilibrium, InitialState, InitialVelocity
 from ..integration import GaussSeidel
 from ..records import Acceleration, Displacement, Probe, Reaction, Velocity
 from ..system import System
@@ -45,6 +45,8 @@ MOTIONS = {"displacement": Displacement, "velocity": Velocity, "acceleration": A
 FRICTIONS: dict[str, Callable[..., Any]] = {law.law: law for law in LAWS}
 CONNECTIONS: dict[str, Callable[..., Any]] = {"spring": Spring, "dashpot": Dashpot}
 TRACKS = {"beam": ModalBeam, "plate": ModalPlate}
+# Drives that act on no body in particular.
+OF_ALL_BODIES = ("gravity", "initial equilibrium")
 Tables = dict[str, Any]
 Place = tuple[str | int, ...]
 # What SciPy says of matrices that have overflowed.
@@ -269,7 +271,9 @@ class Builder:
         path = ("drives", number)
         table = dict(table)
         kind = table.pop("kind")
-        body: Any = None if kind == "gravity" else self._named_body((*path, "body"), table.pop("body", "slider"))
+        body: Any = None
+        if kind not in OF_ALL_BODIES:
+            body = self._named_body((*path, "body"), table.pop("body", "slider"))
         if table.get("history") is not None:
             table["history"] = self._history((*path, "history"), table["history"])
         if kind == "force":
@@ -280,6 +284,7 @@ class Builder:
             "gravity": lambda: Gravity(**table),
             "initial velocity": lambda: InitialVelocity(body, **table),
             "initial state": lambda: InitialState(body, **table),
+            "initial equilibrium": lambda: InitialEquilibrium(**table),
         }
         with self._within(*path):
             return makers[kind]()

@@ -18,6 +18,8 @@ from pydantic_core import CoreSchema, PydanticCustomError
 from pydantic_core.core_schema import no_info_plain_validator_function
 
 from ..bodies.modes import Array
+from ..checks import STATUS_WORDS
+from ..drives import MOST_UNSTABLE
 from ..records.packed import is_packed, unpacked
 from .quantities import UNITS, is_quantity, quantity
 
@@ -143,6 +145,32 @@ class OneOrEach(_Kind):
 
 
 @dataclass(frozen=True)
+class Words(_Kind):
+    """A word of a choice, or where allowed a list of them.
+
+    Attributes
+    ----------
+    allowed : tuple of str
+        The words.
+    each : bool
+        Whether a list will do.
+    """
+
+    allowed: tuple[str, ...]
+    each: bool = False
+
+    def read(self, value: Any) -> Any:
+        words = value if self.each and isinstance(value, list) else [value]
+        if any(word not in self.allowed for word in words):
+            raise ValueError(f"must be one of {', '.join(self.allowed)}{' or a list of them' if self.each else ''}")
+        return value
+
+    def json_schema(self) -> dict[str, Any]:
+        word = {"enum": list(self.allowed)}
+        return {"anyOf": [word, {"type": "array", "items": word}]} if self.each else word
+
+
+@dataclass(frozen=True)
 class Whole(_Kind):
     """A whole number.
 
@@ -163,6 +191,28 @@ class Whole(_Kind):
 
     def json_schema(self) -> dict[str, Any]:
         return {"type": "integer", "minimum": self.least}
+
+
+@dataclass(frozen=True)
+class NumberOrWord(_Kind):
+    """A whole number from 0 on, or a word of a choice.
+
+    Attributes
+    ----------
+    words : Words
+        The words.
+    """
+
+    words: Words
+
+    def read(self, value: Any) -> int | str:
+        try:
+            return self.words.read(value) if isinstance(value, str) else Whole(0).read(value)
+        except ValueError:
+            raise ValueError(f"must be a whole number from 0 on or {' or '.join(self.words.allowed)}") from None
+
+    def json_schema(self) -> dict[str, Any]:
+        return {"anyOf": [Whole(0).json_schema(), self.words.json_schema()]}
 
 
 @dataclass(frozen=True)
@@ -361,6 +411,9 @@ Time = Annotated[float, Quantity("s", above=0.0)]
 Instant = Annotated[float, Quantity("s", least=0.0)]
 Newtons = Annotated[float, Quantity("N")]
 Velocity = Annotated[float, Quantity("m/s")]
+Velocities = Annotated[Any, OneOrEach(Quantity("m/s"))]
+Statuses = Annotated[Any, Words(STATUS_WORDS, each=True)]
+Mode = Annotated[int | str, NumberOrWord(Words((MOST_UNSTABLE,)))]
 Acceleration = Annotated[float, Quantity("m/s2", above=0.0)]
 Count = Annotated[int, Whole(1)]
 CountOrNone = Annotated[int, Whole(0)]

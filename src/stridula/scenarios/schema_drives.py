@@ -51,7 +51,7 @@ History = Annotated[Constant | Ramp | Harmonic | Sampled, Field(discriminator="k
 
 class Force(Table):
     kind: Literal["force"]
-    """force, imposed velocity, gravity, initial velocity or initial state"""
+    """force, imposed velocity, gravity, initial velocity, initial state or initial equilibrium"""
     body: str = "slider"
     """body it acts on: slider, track or its name"""
     point: is_.Point | None = None
@@ -70,7 +70,7 @@ class Force(Table):
 
 class ImposedVelocity(Table):
     kind: Literal["imposed velocity"]
-    """force, imposed velocity, gravity, initial velocity or initial state"""
+    """force, imposed velocity, gravity, initial velocity, initial state or initial equilibrium"""
     body: str = "slider"
     """beam whose root moves: slider or its name"""
     velocity: is_.Velocity
@@ -83,14 +83,14 @@ class ImposedVelocity(Table):
 
 class Weight(Table):
     kind: Literal["gravity"]
-    """force, imposed velocity, gravity, initial velocity or initial state"""
+    """force, imposed velocity, gravity, initial velocity, initial state or initial equilibrium"""
     acceleration: is_.Acceleration = Gravity.acceleration
     """acceleration of free fall [m/s²]"""
 
 
 class InitialVelocity(Table):
     kind: Literal["initial velocity"]
-    """force, imposed velocity, gravity, initial velocity or initial state"""
+    """force, imposed velocity, gravity, initial velocity, initial state or initial equilibrium"""
     body: str = "slider"
     """body that moves at the start: slider, track or its name"""
     x: is_.Velocity = 0.0
@@ -101,7 +101,7 @@ class InitialVelocity(Table):
 
 class InitialState(Table):
     kind: Literal["initial state"]
-    """force, imposed velocity, gravity, initial velocity or initial state"""
+    """force, imposed velocity, gravity, initial velocity, initial state or initial equilibrium"""
     body: str = "slider"
     """point mass or reduced body that starts so: slider, track or its name"""
     displacement: is_.Vector | None = None
@@ -110,4 +110,22 @@ class InitialState(Table):
     """velocity of every degree of freedom at the start, zero if left out [m/s]"""
 
 
-Drive = Annotated[Force | ImposedVelocity | Weight | InitialVelocity | InitialState, Field(discriminator="kind")]
+class InitialEquilibrium(Table):
+    kind: Literal["initial equilibrium"]
+    """force, imposed velocity, gravity, initial velocity, initial state or initial equilibrium"""
+    status: is_.Statuses | None = None
+    """separated, sticking or sliding, one for all contacts or a list with one for each; all slide if left out"""
+    velocity: is_.Velocities | None = None
+    """slip velocity where nothing prescribes it, one for all contacts or a list with one for each [m/s]"""
+    mode: is_.Mode | None = None
+    """mode of vibration on top: its number from 0 on, by rising frequency, or most unstable; none if left out"""
+    amplitude: is_.Distance = 0.0
+    """largest displacement of a contact point in that mode [m]"""
+    phase: is_.Angle = 0.0
+    """phase of that displacement at the start [rad]"""
+
+
+Drive = Annotated[
+    Force | ImposedVelocity | Weight | InitialVelocity | InitialState | InitialEquilibrium,
+    Field(discriminator="kind"),
+]

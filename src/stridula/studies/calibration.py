@@ -14,11 +14,11 @@ import scipy.optimize
 import scipy.stats
 import xarray as xr
 
-from ..analysis.equilibrium import HELD, JAMMED, LIFTED_OFF
 from ..analysis.regimes import REGIMES
-from ..analysis.structure import SLIDING
 from ..bodies.modes import Array
 from ..checks import brief, choice, count, instance, non_negative, positive, suggestion
+from ..linear.equilibrium import HELD, JAMMED, LIFTED_OFF
+from ..linear.structure import SLIDING
 from .measures import MEASURES, Value, value_of
 from .points import Range, ranges_of
 from .sweeps import sweep

@@ -17,7 +17,7 @@ from ..bodies import ReducedBody
 from ..bodies.modes import Array
 from ..checks import count, instance, positive, within
 from ..contact import RigidTrack
-from ..drives import Drive, ImposedVelocity, InitialVelocity
+from ..drives import Drive, ImposedVelocity, InitialEquilibrium, InitialVelocity
 from ..drives import InitialState as State
 from ..integration import simulate_many
 from ..system import System
@@ -41,10 +41,10 @@ def ensemble(
     """Run a system from slightly different starts and return the mean of each measure with its confidence interval.
 
     Run 0 starts as the system says. The others are moved by shares s drawn evenly from ``-perturbation`` to
-    ``perturbation``: where the first contact starts open, its gap becomes ``gap (1 + s)``; where it starts closed, its
-    slider gets the velocity ``s v`` along the track, with v the largest velocity prescribed by drives and rigid tracks,
-    or 1 m/s if there is none. A slider that cannot be moved along the track gets it across. One without a known
-    translation gets it in every degree of freedom.
+    ``perturbation``: where the first contact starts open, its gap becomes ``gap (1 + s)``; where it starts closed or in
+    equilibrium, its slider gets the velocity ``s v`` along the track, with v the largest velocity prescribed by drives
+    and rigid tracks, or 1 m/s if there is none. A slider that cannot be moved along the track gets it across. One
+    without a known translation gets it in every degree of freedom.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def _perturbed(system: System, share: float) -> System:
     if share == 0.0:
         return system
     first, *others = system.contacts
-    if first.gap > 0.0:
+    if first.gap > 0.0 and system.initial_equilibrium is None:
         moved = replace(first, gap=first.gap * (1.0 + share))
         return replace(system, contact=(moved, *others) if others else moved)
     return replace(system, drives=(*system.drives, _push(system, share * _prescribed(system))))
@@ -166,6 +166,8 @@ def _prescribed(system: System) -> float:
             found.append(drive.velocity)
         elif isinstance(drive, InitialVelocity):
             found += [drive.x, drive.y]
+        elif isinstance(drive, InitialEquilibrium):
+            found += np.atleast_1d(drive.velocity or 0.0).tolist()
     for contact in system.contacts:
         if isinstance(contact.track, RigidTrack):
             found += [contact.track.velocity, contact.track.normal_velocity]

@@ -14,8 +14,8 @@ import scipy.sparse.linalg
 
 from ..bodies.modes import Array
 from ..contact.linearised import Linearised
-from .equilibrium import Equilibrium, depends_on_speed, held_rows, slip_speed
-from .structure import SLIDING, Structure
+from .equilibrium import Equilibrium, depends_on_speed, held_rows
+from .structure import Structure
 
 # Relative imaginary part that rounding gives to a real exponent.
 ROUND_OFF = 1e-9
@@ -56,7 +56,7 @@ class Vibration:
     free: Array
 
 
-def vibration(structure: Structure, equilibrium: Equilibrium, velocity: float | None) -> Vibration:
+def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
     """Return the small motions of a system about an equilibrium.
 
     To what holds without load, a load adds what the deflected track does to a contact point that shifts along it: the
@@ -76,8 +76,8 @@ def vibration(structure: Structure, equilibrium: Equilibrium, velocity: float | 
         if k in stuck:
             held[len(closed) + stuck.index(k)] = slip
         law = structure.system.contacts[k].friction
-        if equilibrium.status[k] == SLIDING and equilibrium.sense[k] and depends_on_speed(law):
-            near = law.linearised_at(slip_speed(structure, k, equilibrium.prescribed, velocity))
+        if equilibrium.slip_velocity[k] and depends_on_speed(law):
+            near = law.linearised_at(abs(float(equilibrium.slip_velocity[k])))
             damping += normal * near.slope * np.outer(line.tangent, slip)
             answers.append((near, equilibrium.sense[k], normal, line.tangent, slip))
     by_state, from_velocity, state = _states(answers, structure)

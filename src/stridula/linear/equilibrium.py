@@ -38,8 +38,8 @@ class Equilibrium:
         Tangential over normal force of each in sliding, without its sense [1].
     normal_force, tangential_force : ndarray, shape (contacts,)
         Contact forces [N], the tangential ones on the track along its tangent.
-    prescribed : ndarray, shape (contacts,)
-        Slip velocities that drives and tracks prescribe [m/s].
+    slip_velocity : ndarray, shape (contacts,)
+        Velocities [m/s] at which contacts slide, as drives and tracks prescribe or as given; 0 where not known.
     slip_acceleration : ndarray, shape (contacts,)
         Accelerations of the slip [m/s²] by rigid motions that nothing holds.
     displacement : ndarray, shape (modes,)
@@ -52,24 +52,25 @@ class Equilibrium:
     ratio: Array
     normal_force: Array
     tangential_force: Array
-    prescribed: Array
+    slip_velocity: Array
     slip_acceleration: Array
     displacement: Array
 
 
-def find_equilibrium(structure: Structure, velocity: float | None, status: Sequence[str] | None = None) -> Equilibrium:
+def find_equilibrium(structure: Structure, velocity: Array, status: Sequence[str] | None = None) -> Equilibrium:
     """Return the equilibrium of a system, or that of given statuses of its contacts.
 
     All contacts slide at first. One that does not press is opened, one that comes to a stop is held, until all are as
-    they should be. Where nothing prescribes the sense of sliding, it is that of the motion without friction. A held
-    contact sticks where it would come to rest without friction: what friction had stored before is not known.
+    they should be. Where nothing prescribes the slip and none is given, its sense is that of the motion without
+    friction. A held contact sticks where it would come to rest without friction: what friction had stored before is
+    not known.
 
     Parameters
     ----------
     structure : Structure
         The system.
-    velocity : float or None
-        Slip speed [m/s] of contacts for which nothing prescribes it, where their law depends on it.
+    velocity : ndarray, shape (contacts,)
+        Slip velocity [m/s] of each contact for which nothing prescribes it, 0 where none is given.
     status : sequence of str, optional
         Statuses of the contacts, taken as given.
 
@@ -91,18 +92,6 @@ def find_equilibrium(structure: Structure, velocity: float | None, status: Seque
         tried[contact] = STICKING if kind == HELD else SEPARATED
 
 
-def slip_speed(structure: Structure, contact: int, prescribed: Array, velocity: float | None) -> float:
-    """Return the slip speed [m/s] of a contact under a law that depends on it."""
-    speed = abs(float(prescribed[contact])) or velocity
-    if not speed:
-        name, law = structure.system.contact_names[contact], structure.system.contacts[contact].friction
-        raise ValueError(
-            f"velocity must be given for {name}: its {law.law} friction depends on the slip speed, "
-            f"and nothing prescribes that; got {velocity!r}"
-        )
-    return speed
-
-
 def depends_on_speed(law: FrictionLaw) -> bool:
     """Return whether friction in sliding depends on its speed."""
     return not isinstance(law, CONSTANT_LAWS)
@@ -117,7 +106,7 @@ class _Balance:
     ratio: Array
     normal_force: Array
     tangential_force: Array
-    prescribed: Array
+    slip_velocity: Array
     slip_acceleration: Array
     displacement: Array
     determinant: float
@@ -132,31 +121,50 @@ def _equilibrium(kind: str, status: Sequence[str], found: tuple[_Balance, _Balan
         it.ratio,
         it.normal_force,
         it.tangential_force,
-        it.prescribed,
+        it.slip_velocity,
         it.slip_acceleration,
         it.displacement,
     )
 
 
-def _at(structure: Structure, velocity: float | None, status: Sequence[str]) -> tuple[_Balance, _Balance]:
+def _at(structure: Structure, velocity: Array, status: Sequence[str]) -> tuple[_Balance, _Balance]:
     """Return the balance of forces without and with friction in sliding."""
     nothing = np.zeros(len(status))
     anchors = nothing
     if STICKING in status:
         loose = [SLIDING if one == STICKING else one for one in status]
-        rest = _balance(structure, loose, nothing, nothing, nothing)
+        rest = _balance(structure, loose, nothing, nothing, nothing, nothing)
         anchors = np.array([line.tangent @ rest.displacement for line in structure.lines])
-    prescribed = structure.prescribed(status)
-    plain = _balance(structure, status, np.sign(prescribed), nothing, anchors)
+    slip = _slip_velocities(structure, velocity, status)
+    plain = _balance(structure, status, np.sign(slip), nothing, anchors, slip)
     moved = np.where(np.abs(plain.slip_acceleration) > ROUND_OFF * _acceleration(structure), plain.slip_acceleration, 0)
-    sense = np.where(prescribed != 0.0, np.sign(prescribed), np.sign(moved))
+    slides = np.array([one == SLIDING for one in status])
+    sense = slides * np.where(slip != 0.0, np.sign(slip), np.sign(moved))
     ratio = nothing.copy()
     for number, contact in enumerate(structure.system.contacts):
         if status[number] == SLIDING:
-            law = contact.friction
-            speed = slip_speed(structure, number, prescribed, velocity) if depends_on_speed(law) else 1.0
-            ratio[number] = float(law.coefficient_at(speed))
-    return plain, _balance(structure, status, sense, ratio, anchors)
+            speed = abs(float(slip[number])) or abs(float(velocity[number]))
+            ratio[number] = _ratio_at(speed, contact.friction, structure.system.contact_names[number])
+    return plain, _balance(structure, status, sense, ratio, anchors, slip)
+
+
+def _slip_velocities(structure: Structure, velocity: Array, status: Sequence[str]) -> Array:
+    """Return the slip velocities [m/s] that are prescribed, or else given for contacts that nothing else holds."""
+    slip = np.where([one == SLIDING for one in status], structure.prescribed(status), 0.0)
+    for k, given in enumerate(velocity):
+        if given and not slip[k] and status[k] == SLIDING and not _is_held(structure, status, k):
+            slip[k] = given
+    return slip
+
+
+def _ratio_at(speed: float, law: FrictionLaw, contact: str) -> float:
+    """Return the ratio of a law in sliding at a speed [m/s], which one that does not depend on it need not know."""
+    if depends_on_speed(law) and not speed:
+        raise ValueError(
+            f"velocity must be given for {contact}: its {law.law} friction depends on the slip speed, "
+            "and nothing prescribes that"
+        )
+    return float(law.coefficient_at(speed or 1.0))
 
 
 def _acceleration(structure: Structure) -> float:
@@ -171,35 +179,68 @@ def _force(structure: Structure) -> float:
     return float(np.linalg.norm(structure.load) / np.linalg.norm(rows, axis=1).min())
 
 
-def _balance(structure: Structure, status: Sequence[str], sense: Array, ratio: Array, anchors: Array) -> _Balance:
+def _balance(
+    structure: Structure, status: Sequence[str], sense: Array, ratio: Array, anchors: Array, slip: Array
+) -> _Balance:
     """Solve for displacement, accelerations of free rigid motions and contact forces, all at once.
 
     Sticking contacts are held at their anchors, displacements along their tangents.
     """
-    held, pushes, closed, stuck = held_rows(structure, status, sense * ratio)
-    _check_held(structure, held, [*closed, *stuck])
-    free, modes, count = structure.free_motions(held), structure.mode_count, len(held)
-    _check_unbraked(structure, free)
-    motions, size = free.shape[1], modes + free.shape[1] + count
-    matrix, right = np.zeros((size, size)), np.zeros(size)
-    matrix[:modes] = np.hstack([structure.stiffness, free, -pushes.T])
-    matrix[modes : modes + motions, :modes] = free.T
-    matrix[modes + motions :, :modes] = held
-    right[:modes] = structure.load
-    right[modes + motions : modes + motions + len(closed)] = -structure.gaps[closed]
-    right[modes + motions + len(closed) :] = anchors[stuck]
-    scale = np.sqrt(np.maximum(np.abs(np.diag(matrix)), 1.0))
-    scaled = matrix / np.outer(scale, scale)
-    determinant = float(np.linalg.slogdet(scaled)[0])
-    solved = np.linalg.solve(scaled, right / scale) / scale if determinant else np.full(size, np.nan)
-    displacement, acceleration, forces = np.split(solved, [modes, modes + motions])
+    equations = _Equations(structure, status, sense * ratio)
+    load = structure.load - structure.damping @ structure.following(status)
+    closed, stuck = equations.closed, equations.stuck
+    displacement, acceleration, forces = equations.solved(load, -structure.gaps[closed], anchors[stuck])
     normal, tangential = np.zeros((2, len(status)))
     normal[closed] = forces[: len(closed)]
     tangential[closed] = (sense * ratio * normal)[closed]
     tangential[stuck] = forces[len(closed) :]
-    slips = np.array([line.tangent @ free @ acceleration for line in structure.lines])
-    prescribed = structure.prescribed(status)
-    return _Balance(status, sense, ratio, normal, tangential, prescribed, slips, displacement, determinant)
+    slips = np.array([line.tangent @ equations.free @ acceleration for line in structure.lines])
+    return _Balance(status, sense, ratio, normal, tangential, slip, slips, displacement, equations.determinant)
+
+
+class _Equations:
+    """Balance of forces and what contacts hold, as equations for displacement, accelerations and contact forces."""
+
+    def __init__(self, structure: Structure, status: Sequence[str], share: Array) -> None:
+        held, pushes, self.closed, self.stuck = held_rows(structure, status, share)
+        _check_held(structure, held, [*self.closed, *self.stuck])
+        self.free, modes = structure.free_motions(held), structure.mode_count
+        _check_unbraked(structure, self.free)
+        self.parts = modes, modes + self.free.shape[1]
+        size = self.parts[1] + len(held)
+        matrix = np.zeros((size, size))
+        matrix[:modes] = np.hstack([structure.stiffness, self.free, -pushes.T])
+        matrix[modes:, :modes] = np.vstack([self.free.T, held])
+        self.scale = np.sqrt(np.maximum(np.abs(np.diag(matrix)), 1.0))
+        self.matrix = matrix / np.outer(self.scale, self.scale)
+        self.determinant = float(np.linalg.slogdet(self.matrix)[0])
+
+    def solved(self, load: Array, closed: Array, stuck: Array) -> list[Array]:
+        """Return displacement, accelerations of free motions and forces under a load; what contacts hold is given."""
+        right = np.concatenate([load, np.zeros(self.parts[1] - self.parts[0]), closed, stuck])
+        if not self.determinant:
+            return np.split(np.full(right.size, np.nan), self.parts)
+        return np.split(np.linalg.solve(self.matrix, right / self.scale) / self.scale, self.parts)
+
+
+def travelling(structure: Structure, at: Equilibrium, speed: Array) -> Array:
+    """Return the modal velocities by which an equilibrium follows contact points that travel along bent tracks.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    at : Equilibrium
+        Its equilibrium.
+    speed : ndarray, shape (contacts,)
+        Velocities of the contact points along their tracks [m/s].
+    """
+    equations = _Equations(structure, at.status, at.sense * at.ratio)
+    pull, opening = np.zeros(structure.mode_count), np.zeros(len(speed))
+    for k, line in enumerate(structure.lines):
+        pull -= speed[k] * (at.normal_force[k] * line.normal_slope - at.tangential_force[k] * line.tangent_slope)
+        opening[k] = speed[k] * line.normal_slope @ at.displacement
+    return equations.solved(pull, opening[equations.closed], np.zeros(len(equations.stuck)))[0]
 
 
 def held_rows(structure: Structure, status: Sequence[str], share: Array) -> tuple[Array, Array, list[int], list[int]]:
@@ -272,7 +313,7 @@ def _wrong(structure: Structure, found: tuple[_Balance, _Balance]) -> tuple[int,
     least = ROUND_OFF * _acceleration(structure)
     for k in sliding:
         gains = it.slip_acceleration[k] * it.sense[k]
-        stops = gains < -least if it.prescribed[k] else gains <= least
+        stops = gains < -least if it.slip_velocity[k] else gains <= least
         if stops and it.ratio[k] > 0.0 and not _is_held(structure, it.status, k):
             return k, HELD
     return None

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -11,10 +13,9 @@ import scipy.linalg
 from ..assembly import ContactRows, assemble
 from ..bodies import BodyPoint, Track
 from ..bodies.modes import Array
-from ..checks import brief
+from ..checks import STATUS_WORDS, brief
 from ..contact import PointContact, RigidTrack
 from ..histories import History
-from ..records.variables import STATUS_WORDS
 from ..system import System
 
 SEPARATED, STICKING, SLIDING = STATUS_WORDS
@@ -37,6 +38,8 @@ class ContactLine:
         Shift of the contact point along a beam or a plate; zero on other tracks, which look the same everywhere.
     normal_slope, tangent_slope : ndarray
         Displacement of the track along normal and tangent, derived along the track [1/m].
+    points : ndarray, shape (2, 2, modes)
+        Displacement of the tip, then of the point of the track that it touches, each along world x and y.
     """
 
     normal: Array
@@ -44,6 +47,7 @@ class ContactLine:
     along: Array
     normal_slope: Array
     tangent_slope: Array
+    points: Array
 
 
 class Structure:
@@ -85,7 +89,7 @@ class Structure:
         # Later it is all the same, and no rate meets the kink of a history that settles.
         now = np.array([2.0 * settled + 1.0 if time is None else settled])
         arrays, size = self.arrays, self.arrays.coupled
-        self.lines = [_line(one) for one in arrays.contacts]
+        self.lines = [_line(one, system, arrays.spans) for one in arrays.contacts]
         self.stiffness = np.diag(arrays.angular_frequency**2)
         self.damping = np.diag(2.0 * arrays.damping * arrays.angular_frequency)
         self.stiffness[:size, :size], self.damping[:size, :size] = arrays.stiffness, arrays.dissipation
@@ -103,6 +107,13 @@ class Structure:
         """Number of modes."""
         return self.arrays.mode_count
 
+    def shifted(self, shifts: Array) -> Structure:
+        """Return the system with its contact points shifted along their tracks by distances [m], shape (contacts,)."""
+        other, spans = copy(self), self.arrays.spans
+        pairs = zip(self.arrays.contacts, shifts.tolist(), strict=True)
+        other.lines = [_line(one, self.system, spans, shift) for one, shift in pairs]
+        return other
+
     def prescribed(self, status: Sequence[str]) -> Array:
         """Return the slip velocities [m/s] that drives and tracks prescribe; rigid motions follow what contacts hold.
 
@@ -111,14 +122,51 @@ class Structure:
         status : sequence of str
             Status of each contact.
         """
+        tangents, _ = self._rigid_rows()
+        slips = self.rates[0] + tangents @ self._following(status)
+        stuck = np.array([one == STICKING for one in status])
+        return np.where(stuck | (np.abs(slips) <= UNMOVED * np.abs(self.rates).max()), 0.0, slips)
+
+    def following(self, status: Sequence[str]) -> Array:
+        """Return the modal velocities of rigid motions that follow what contacts hold, shape (modes,)."""
+        return np.asarray(self.rigid @ self._following(status))
+
+    def sliding(self, status: Sequence[str], slip_velocity: Array) -> Array:
+        """Return the modal velocities of the least rigid motion in which closed contacts slide as given, (modes,).
+
+        Raises
+        ------
+        ValueError
+            If no rigid motion lets a contact slide so, or follows the track of one that sticks or that rises.
+        """
+        tangents, normals = self._rigid_rows()
+        slips, openings = self.rates
+        closed = np.array([one in CLOSED for one in status])
+        rows = np.vstack([normals[closed], tangents[closed]])
+        wanted = np.concatenate([-openings[closed], (slip_velocity - slips)[closed]])
+        found = np.linalg.pinv(rows, rcond=UNMOVED) @ wanted
+        missed = np.abs(rows @ found - wanted)
+        if missed.size and missed.max() > UNMOVED * np.abs(wanted).max():
+            contact = int(np.flatnonzero(closed)[int(missed.argmax()) % int(closed.sum())])
+            name = self.system.contact_names[contact]
+            if int(missed.argmax()) < int(closed.sum()):
+                raise ValueError(f"drives must let bodies follow what is moved along the normal of {name}")
+            if status[contact] == STICKING:
+                raise ValueError(f"status must let {name} slide, whose track nothing can follow, got {STICKING!r}")
+            raise ValueError(
+                f"velocity must be one at which bodies move as a whole, got {float(slip_velocity[contact])!r} m/s for "
+                f"{name}, which nothing lets slide on: move its track or its root"
+            )
+        return np.asarray(self.rigid @ found)
+
+    def _following(self, status: Sequence[str]) -> Array:
         tangents, normals = self._rigid_rows()
         slips, openings = self.rates
         closed, stuck = (np.array([one in kinds for one in status]) for kinds in (CLOSED, (STICKING,)))
         wanted = np.concatenate([openings[closed], slips[stuck]])
-        if wanted.any():
-            follow = np.linalg.pinv(np.vstack([normals[closed], tangents[stuck]]), rcond=UNMOVED) @ wanted
-            slips = slips - tangents @ follow
-        return np.where(stuck | (np.abs(slips) <= UNMOVED * np.abs(self.rates).max()), 0.0, slips)
+        if not wanted.any():
+            return np.zeros(self.rigid.shape[1])
+        return -np.linalg.pinv(np.vstack([normals[closed], tangents[stuck]]), rcond=UNMOVED) @ wanted
 
     def _rigid_rows(self) -> tuple[Array, Array]:
         """Return how rigid motions move the contacts along their tangents and normals, each (contacts, motions)."""
@@ -170,16 +218,25 @@ def settled_time(system: System) -> float:
     return max((history.settled or 0.0 for _, history in histories), default=0.0)
 
 
-def _line(one: ContactRows) -> ContactLine:
+def _line(one: ContactRows, system: System, spans: Mapping[str, tuple[int, int]], shift: float = 0.0) -> ContactLine:
     nothing = np.zeros(one.fixed.shape[1])
-    track = one.contact.track
+    track, points = one.contact.track, np.zeros((2, 2, nothing.size))
+
+    def place(side: int, body: Any, position: Any) -> None:
+        points[side][:, slice(*spans[system.body_name(body)])] = body.trace(position, system.is_held(body))
+
+    place(0, one.contact.tip.body, one.contact.tip.position)
+    if isinstance(track, BodyPoint):
+        place(1, track.body, track.position)
     if not isinstance(track, Track):
-        return ContactLine(one.fixed[0], one.fixed[1], nothing, nothing, nothing)
-    modes = slice(one.bending[0], one.axial[1])
-    trace, slope = np.zeros((2, 2, nothing.size))
-    trace[:, modes], slope[:, modes] = track.trace(one.contact.at), track.trace_slope(one.contact.at)
+        return ContactLine(one.fixed[0], one.fixed[1], nothing, nothing, nothing, points)
+    at = one.contact.at + shift
+    place(1, track, at)
+    slope = np.zeros((2, nothing.size))
+    slope[:, one.bending[0] : one.axial[1]] = track.trace_slope(at)
     # A trace is along x, then along y: tangent and normal.
-    return ContactLine(one.fixed[0] - trace[1], one.fixed[1] - trace[0], one.fixed[1], slope[1], slope[0])
+    trace = points[1]
+    return ContactLine(one.fixed[0] - trace[1], one.fixed[1] - trace[0], one.fixed[1], slope[1], slope[0], points)
 
 
 def _rigid_motions(structure: Structure) -> Array:

@@ -1,0 +1,29 @@
+"""A system as flat arrays whose start is the equilibrium that a drive asks for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..assembly import Assembly
+from ..linear.starts import start_of
+from ..system import System
+
+
+def in_equilibrium(system: System, arrays: Assembly) -> Assembly:
+    """Return a system in the equilibrium that an `InitialEquilibrium` asks for, other initial drives added to it.
+
+    Raises
+    ------
+    ValueError
+        If there is no such equilibrium.
+    """
+    asked = system.initial_equilibrium
+    if asked is None:
+        return arrays
+    start = start_of(system, asked)
+    return replace(
+        arrays,
+        position=arrays.position + start.position,
+        velocity=arrays.velocity + start.velocity,
+        friction_state=start.friction_state,
+    )

@@ -1,0 +1,77 @@
+"""Statuses and slip velocities of contacts as they are given: one for all, or one for each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..bodies.modes import Array
+from ..checks import STATUS_WORDS, choice, finite, one_or_each
+from ..system import System
+from .structure import SLIDING, Structure
+
+Status = str | Sequence[str]
+Velocity = float | Sequence[float]
+
+
+def given_status(status: Status | None, system: System) -> tuple[str, ...] | None:
+    """Return the status of each contact, None if none is given.
+
+    Raises
+    ------
+    ValueError
+        If there is not one for each, or a contact cannot have it.
+    """
+    if status is None:
+        return None
+    contacts = system.contacts
+    found = one_or_each("status", status, lambda name, word: choice(name, word, STATUS_WORDS), len(contacts))
+    each = (found,) * len(contacts) if isinstance(found, str) else found
+    for word, contact in zip(each, contacts, strict=True):
+        if word == "sticking" and contact.friction.state_units:
+            raise ValueError(
+                f"status must be sliding or separated under {contact.friction.law} friction, which does not stick "
+                f"exactly, got {word!r}"
+            )
+    return each
+
+
+def given_velocity(velocity: Velocity | None, structure: Structure, status: Sequence[str] | None = None) -> Array:
+    """Return the slip velocity [m/s] given for each contact, 0 where drives and tracks prescribe it.
+
+    Parameters
+    ----------
+    velocity : float or sequence of float, optional
+        Slip velocity [m/s] of the contacts for which nothing prescribes it, or one for each contact, 0 for the others.
+    structure : Structure
+        The system.
+    status : sequence of str, optional
+        Status of each contact; all slide if left out.
+
+    Raises
+    ------
+    ValueError
+        If there is not one for each, or no contact takes it.
+    """
+    count = len(structure.lines)
+    if velocity is None:
+        return np.zeros(count)
+    words = [SLIDING] * count if status is None else list(status)
+    prescribed = structure.prescribed(words)
+    takes = np.array([word == SLIDING for word in words]) & (prescribed == 0.0)
+    found = one_or_each("velocity", velocity, finite, count)
+    if not isinstance(found, tuple):
+        if not found:
+            raise ValueError(f"velocity must not be 0, got {velocity!r}")
+        if not takes.any():
+            raise ValueError(f"velocity must be left out: {_why(bool(prescribed.all()))}, got {velocity!r}")
+        return np.where(takes, found, 0.0)
+    for k, one in enumerate(found):
+        if one and not takes[k]:
+            raise ValueError(f"velocity[{k}] must be 0: {_why(bool(prescribed[k]))}, got {one!r}")
+    return np.array(found)
+
+
+def _why(is_prescribed: bool) -> str:
+    return "drives and tracks prescribe the slip" if is_prescribed else "a contact that does not slide has none"

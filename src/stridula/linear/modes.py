@@ -1,0 +1,83 @@
+"""The modes of small vibration about an equilibrium, in the order in which they are counted."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..bodies.modes import Array
+from .structure import Structure
+from .vibration import Exponents, Vibration, all_exponents, nearest_exponents
+
+# Modes up to which all exponents are found; beyond, the lowest COUNT.
+LARGEST_DENSE = 600
+COUNT = 100
+# Exponents found beyond those that are wanted.
+SPARE = 8
+# Growth, relative to the highest angular frequency, that rounding may make.
+ROUND_OFF = 1e-9
+
+
+def modes_of(structure: Structure, motion: Vibration, modes: int | None = None, near: float = 0.0) -> Exponents:
+    """Return exponents by rising frequency, with shapes of norm 1 whose largest entry is real.
+
+    Parameters
+    ----------
+    structure : Structure
+        The system.
+    motion : Vibration
+        Its small motions.
+    modes : int, optional
+        How many; all if left out, or the lowest 100 of more than 600 degrees of freedom.
+    near : float, optional
+        Frequency [Hz] about which a limited number is found.
+    """
+    found = _chosen(structure, motion, modes, near)
+    order = np.lexsort((-found.values.real, np.round(found.values.imag, 6)))
+    return Exponents(found.values[order], _normalised(found.shapes[:, order]))
+
+
+def exponents_alone(structure: Structure, motion: Vibration) -> Array:
+    """Return the exponents [1/s] of the same modes without their shapes, in any order."""
+    if structure.mode_count > LARGEST_DENSE:
+        return _nearest(structure, motion, COUNT, 0.0).values
+    return all_exponents(motion, shapes=False).values
+
+
+def round_off(structure: Structure) -> float:
+    """Return the growth that rounding may make [1/s]."""
+    return ROUND_OFF * float(np.sqrt(np.diag(structure.stiffness).max(initial=0.0)))
+
+
+def _chosen(structure: Structure, motion: Vibration, modes: int | None, near: float) -> Exponents:
+    wanted = COUNT if modes is None and structure.mode_count > LARGEST_DENSE else modes
+    if wanted is not None and 4 * wanted < structure.mode_count and structure.stiffness.any():
+        return _nearest(structure, motion, wanted, near)
+    found = all_exponents(motion)
+    if wanted is None:
+        return found
+    order = np.argsort(np.abs(found.values - 2.0j * np.pi * near), kind="stable")[:wanted]
+    return Exponents(found.values[order], found.shapes[:, order])
+
+
+def _nearest(structure: Structure, motion: Vibration, wanted: int, near: float) -> Exponents:
+    """Return the exponents nearest to a frequency [Hz], found about a place off the imaginary axis, where none is."""
+    elastic = np.sqrt(np.diag(structure.stiffness))
+    lowest = float(elastic[elastic > 0.0].min(initial=np.inf))
+    centre = 2.0 * np.pi * near
+    # Both of each pair may be found, and in another order than about the frequency itself.
+    sought = min(2 * wanted + SPARE, 2 * structure.mode_count - 2)
+    found = nearest_exponents(motion, sought, complex(0.1 * lowest, centre))
+    order = np.argsort(np.abs(found.values - 1.0j * centre), kind="stable")[:wanted]
+    return Exponents(found.values[order], found.shapes[:, order])
+
+
+def _normalised(shapes: Array) -> Array:
+    """Return shapes of norm 1 whose largest entry is real."""
+    if not shapes.size:
+        return shapes
+    largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=0)[None], axis=0)
+    # A state that forces do not depend on decays without moving anything.
+    largest = np.where(largest == 0.0, 1.0, largest)
+    turned = shapes * (np.abs(largest) / largest)
+    size = np.linalg.norm(turned, axis=0)
+    return np.asarray(turned / np.where(size > 0.0, size, 1.0))

@@ -1,0 +1,173 @@
+"""Starts in equilibrium, as it is or with a mode of vibration about it on top."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..bodies.modes import Array
+from ..contact import FrictionLaw, LuGre, RateAndState
+from ..drives import MOST_UNSTABLE, InitialEquilibrium
+from ..system import System
+from .equilibrium import HELD, JAMMED, LIFTED_OFF, Equilibrium, find_equilibrium, travelling
+from .given import given_status, given_velocity
+from .modes import modes_of, round_off
+from .structure import SEPARATED, STICKING, UNMOVED, Structure
+from .vibration import vibration
+
+# Passes in which contact points come to lie where the deflected system has them.
+PASSES = 30
+# Shift of a contact point, relative to its abscissa and its shift, that is round-off.
+SETTLED = 1e-13
+# Relative force below zero, or beyond friction, that is round-off.
+ROUND_OFF = 1e-9
+WAYS_OUT = {
+    HELD: "is held by friction: status='sticking' starts it so, another velocity or a larger push lets it slide",
+    LIFTED_OFF: "is lifted off: press it down, or status='separated' starts it open",
+    JAMMED: "is jammed, neither slides on nor opens: take less friction or another angle",
+}
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where and how fast a system starts.
+
+    Attributes
+    ----------
+    position, velocity : ndarray, shape (modes,)
+        Modal positions and velocities.
+    friction_state : ndarray, shape (contacts,)
+        Internal states of the laws of friction.
+    """
+
+    position: Array
+    velocity: Array
+    friction_state: Array
+
+
+def start_of(system: System, asked: InitialEquilibrium) -> Start:
+    """Return the start that a system is asked for.
+
+    The equilibrium is that under the drives as they are at the start. Contact points on beams and plates lie where the
+    deflected system has them, and what they travel along bends steadily with them.
+
+    Raises
+    ------
+    ValueError
+        If there is no such equilibrium or no such mode.
+    """
+    whole = Structure(system, 0.0)
+    status = given_status(asked.status, system)
+    structure, at = _settled(whole, given_velocity(asked.velocity, whole, status), status)
+    _check(structure, at, status)
+    moves = structure.sliding(at.status, at.slip_velocity)
+    along = np.array([line.along for line in structure.lines])
+    slides = np.array([one != STICKING for one in at.status])
+    velocity = moves + travelling(structure, at, slides * (structure.rates[0] + along @ moves))
+    position, states = at.displacement, np.zeros(len(structure.lines))
+    if asked.mode is not None:
+        shape, exponent, changes = _mode(structure, at, asked)
+        position = position + shape.real
+        velocity = velocity + (exponent * shape).real
+        states = changes.real
+    laws = [contact.friction for contact in system.contacts]
+    slips = at.slip_velocity.tolist()
+    friction_state = [_state(*one) for one in zip(laws, slips, states.tolist(), strict=True)]
+    return Start(_closed(whole, at.status, position), velocity, np.array(friction_state))
+
+
+def _settled(whole: Structure, velocity: Array, status: Sequence[str] | None) -> tuple[Structure, Equilibrium]:
+    """Return a system in equilibrium with its contact points where that puts them."""
+    along = np.array([line.along for line in whole.lines])
+    places = np.array([contact.at for contact in whole.system.contacts])
+    shift, structure = np.zeros(len(along)), whole
+    for _ in range(PASSES):
+        found = find_equilibrium(structure, velocity, status)
+        before, shift = shift, along @ found.displacement
+        if not np.isfinite(shift).all() or (np.abs(shift - before) <= SETTLED * (np.abs(places) + np.abs(shift))).all():
+            return structure, found
+        structure = whole.shifted(shift)
+    raise ValueError("drives must bend the track by less: its contact points find no place in equilibrium")
+
+
+def _check(structure: Structure, at: Equilibrium, status: Sequence[str] | None) -> None:
+    """Raise unless a system can start in an equilibrium."""
+    names = structure.system.contact_names
+    if at.kind == JAMMED or (status is None and at.kind in WAYS_OUT):
+        wrong = {HELD: STICKING, LIFTED_OFF: SEPARATED}.get(at.kind)
+        which = ", ".join(name for name, one in zip(names, at.status, strict=True) if wrong in (None, one))
+        raise ValueError(f"initial equilibrium must slide, got one in which {which} {WAYS_OUT[at.kind]}")
+    largest = ROUND_OFF * float(np.abs([at.normal_force, at.tangential_force]).max())
+    for k, contact in enumerate(structure.system.contacts):
+        if at.normal_force[k] < -largest:
+            raise ValueError(
+                f"status must leave {names[k]} open, which would pull with {-float(at.normal_force[k]):.3g} N, "
+                f"got {at.status[k]!r}"
+            )
+        if at.status[k] == STICKING:
+            most = float(contact.friction.coefficient_at(0.0)) * float(at.normal_force[k])
+            if abs(at.tangential_force[k]) > most + largest:
+                raise ValueError(
+                    f"status must let {names[k]} slide, which would stick with {abs(float(at.tangential_force[k])):.3g}"
+                    f" N of at most {most:.3g} N, got {at.status[k]!r}"
+                )
+
+
+def _mode(structure: Structure, at: Equilibrium, asked: InitialEquilibrium) -> tuple[Array, complex, Array]:
+    """Return the displacements of a mode as large as asked for, its exponent, and changes of the states of friction."""
+    motion = vibration(structure, at)
+    found = modes_of(structure, motion)
+    number = _number(found.values, asked.mode, round_off(structure))
+    exponent, shape = complex(found.values[number]), found.shapes[:, number]
+    points = np.array([line.points for line in structure.lines])
+    moved = (points @ shape).ravel()
+    largest = moved[np.abs(moved).argmax()]
+    if np.abs(largest) <= UNMOVED * np.linalg.norm(points, axis=-1).max():
+        raise ValueError(f"mode must be one that moves a contact point, got {number}, which moves none")
+    shape = shape * (asked.amplitude * np.exp(1.0j * asked.phase) / largest)
+    states = np.zeros(len(structure.lines), dtype=complex)
+    known = [k for k, contact in enumerate(structure.system.contacts) if contact.friction.state_units]
+    rates = motion.from_velocity @ (exponent * shape)
+    states[[k for k in known if at.slip_velocity[k]]] = rates / (exponent - motion.state)
+    return shape, exponent, states
+
+
+def _number(exponents: Array, mode: int | str | None, least: float) -> int:
+    """Return the number of a mode: of the most unstable one that of the largest growth among those that vibrate."""
+    if mode != MOST_UNSTABLE:
+        if not isinstance(mode, int) or mode >= exponents.size:
+            raise ValueError(f"mode must be below {exponents.size}, the number of modes, got {mode!r}")
+        return mode
+    counts = (exponents.imag > 0.0) | (exponents.real > least)
+    if not counts.any():
+        raise ValueError(f"mode must be left out: nothing vibrates, got {mode!r}")
+    return int(np.where(counts, exponents.real, -np.inf).argmax())
+
+
+def _closed(whole: Structure, status: Sequence[str], position: Array) -> Array:
+    """Return positions with the contacts exactly closed, where a contact point has shifted along a bent track, too."""
+    closed = np.array([one != SEPARATED for one in status])
+    if not closed.any():
+        return position
+    along = np.array([line.along for line in whole.lines])
+    for _ in range(PASSES):
+        rows = np.array([line.normal for line in whole.shifted(along @ position).lines])[closed]
+        gaps = whole.gaps[closed] + rows @ position
+        nearer = position - rows.T @ np.linalg.solve(rows @ rows.T, gaps)
+        if (np.abs(nearer - position) <= SETTLED * np.abs(position).max()).all():
+            return np.asarray(nearer)
+        position = nearer
+    return position
+
+
+def _state(law: FrictionLaw, slip: float, change: float) -> float:
+    """Return the internal state of a law in steady sliding at a slip velocity [m/s], moved in its sense by a change."""
+    if not law.state_units or not slip:
+        return float(law.state_at_start)
+    if isinstance(law, RateAndState):
+        return law.slip_distance / abs(slip) + change
+    assert isinstance(law, LuGre)
+    bristles = (float(law.coefficient_at(slip)) - law.viscous * abs(slip)) / law.stiffness
+    return float(np.sign(slip) * (bristles + change))
