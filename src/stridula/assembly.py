@@ -311,9 +311,8 @@ def _motion(system: System, imposed: Signal) -> Signal:
                 values[:, number, 1] += tangent_x * moved
                 values[:, number, 2] -= normal_x * moved
             if isinstance(contact.track, RigidTrack):
-                track = contact.track
-                values[:, number, 1] += track.velocity * track.history.integral(time)
-                values[:, number, 2] -= track.normal_velocity * track.normal_history.integral(time)
+                values[:, number, 1] += contact.track.travel(time)
+                values[:, number, 2] -= contact.track.normal_travel(time)
         return values
 
     return motion

@@ -184,7 +184,7 @@ def _motion(system: System, run: xr.Dataset, along: list[Array]) -> Motion:
     if isinstance(contact.track, RigidTrack):
         length = BEYOND * slider.length
         ends = np.array([abscissa.min() - length, abscissa.max() + length])
-        raised = _raised(contact.track, run["time"].values)
+        raised = contact.track.normal_travel(run["time"].values)
         track_places = ends[:, None] * tangent + raised[:, None, None] * normal
         return Motion(run, slider_places, track_places, abscissa[:, None] * tangent + raised.mean() * normal)
     rest = np.stack([along[1], np.zeros_like(along[1])], axis=1)
@@ -193,8 +193,3 @@ def _motion(system: System, run: xr.Dataset, along: list[Array]) -> Motion:
     below = np.interp(abscissa, along[1], track_places[:, :, 1].mean(axis=0))
     is_cut = isinstance(contact.track, ModalPlate)
     return Motion(run, slider_places, track_places, np.stack([abscissa, below], axis=1), is_cut)
-
-
-def _raised(track: RigidTrack, time: Array) -> Array:
-    """Return how far a rigid track has moved along its normal [m]."""
-    return np.asarray(track.normal_velocity * track.normal_history.integral(time))

@@ -1,0 +1,147 @@
+"""Masses on belts and on ground that is shaken, loads that jump: closed forms, in both schemes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import stridula as st
+from stridula.assembly import assemble
+
+G, MASS, STEP = 9.80665, 2.0, 1e-4
+BOTH = pytest.mark.parametrize("scheme", [st.ExactModal(), st.CentralDifference()], ids=lambda scheme: scheme.name)
+
+
+def on_a_track(track, *drives, friction=0.3, **words):
+    block = st.PointMass(MASS)
+    contact = st.PointContact(block.centre, track, friction=st.Coulomb(friction))
+    system = st.System(contact, [st.Gravity(G), *(drive(block) for drive in drives)])
+    probes = [st.Displacement(block.centre, axis) for axis in "xy"]
+    words = {"step": STEP, "sample_rate": 1.0 / STEP, "probes": probes, **words}
+    return st.simulate(system, words.pop("duration", 0.3), **words)
+
+
+# Ground given by its acceleration.
+
+
+@BOTH
+def test_ground_that_rises_with_constant_acceleration_presses_harder(scheme):
+    run = on_a_track(st.RigidTrack(normal_velocity=0.5, normal_acceleration=3.0), scheme=scheme)
+    time = run.time.values
+    # Places are rounded, and the force is in their second differences.
+    rounding = MASS * 4.0 * np.finfo(float).eps * (0.5 * 0.3 + 1.5 * 0.3**2) / STEP**2
+    np.testing.assert_allclose(run.normal_force.values[1:], MASS * (G + 3.0), rtol=1e-12, atol=rounding)
+    np.testing.assert_allclose(run.displacement.values[:, 1], 0.5 * time + 1.5 * time**2, rtol=1e-12)
+
+
+@BOTH
+def test_ground_of_an_accelerogram_is_exact_between_its_samples(scheme):
+    """Acceleration that rises and falls straight: the force is that of each step's centre, its second difference."""
+    shaken = st.Sampled((0.0, 0.1, 0.2, 0.25), (0.0, 5.0, -4.0, 0.0))
+    run = on_a_track(st.RigidTrack(normal_acceleration=1.0, normal_history=shaken), scheme=scheme)
+    time = run.time.values
+    # The force of a step holds it at the end: it is that of the step's start.
+    felt = shaken.factor(time - STEP)
+    kinks = np.any(np.abs((time - STEP)[:, None] - np.array(shaken.time)) < 1.5 * STEP, axis=1)
+    np.testing.assert_allclose(run.normal_force.values[~kinks], MASS * (G + felt[~kinks]), rtol=1e-8)
+    late = time > 0.25
+    # By hand: areas of the triangles, and their first moments about the end.
+    velocity = 0.1 * 5.0 / 2.0 + 0.1 * (5.0 - 4.0) / 2.0 - 0.05 * 4.0 / 2.0
+    np.testing.assert_allclose(np.diff(run.displacement.values[late, 1]) / STEP, velocity, rtol=1e-8)
+
+
+@BOTH
+def test_a_mass_lifts_off_where_the_ground_falls_faster_than_it_can(scheme):
+    """Downward acceleration that grows straight to 3 g in 0.3 s exceeds g from 0.1 s on."""
+    history = st.Sampled((0.0, 0.3), (0.0, 1.0))
+    run = on_a_track(st.RigidTrack(normal_acceleration=-3.0 * G, normal_history=history), scheme=scheme, duration=0.25)
+    time, lost = run.time.values, run.status.values == 0
+    first = time[np.flatnonzero(lost)[0]]
+    assert first == pytest.approx(0.1, abs=2.0 * STEP * (1.0 + 1e-9))
+    assert lost[time > first].all()
+    since = time[lost] - 0.1
+    # Ground at 0.1 s: x'' = -10 G t, x' = -5 G t², x = -5 G t³ / 3; then the mass falls freely from there.
+    height = -5.0 / 3.0 * G * 0.1**3 - 5.0 * G * 0.1**2 * since - 0.5 * G * since**2
+    ground = -5.0 / 3.0 * G * time[lost] ** 3
+    # A step's share of the acceleration that is missing at lift-off, 10 G h, over a step, then for as long as it flies.
+    allowed = 10.0 * G * STEP * STEP * (since + STEP)
+    assert np.all(np.abs(run.displacement.values[lost, 1] - height) <= allowed + 1e-15)
+    assert np.all(np.abs(run.gap.values[lost] - (height - ground)) <= allowed + 1e-15)
+
+
+@BOTH
+@pytest.mark.parametrize(("acceleration", "slides"), [(2.0, False), (5.0, True)])
+def test_a_belt_that_gathers_speed_drags_up_to_the_limit_of_friction(scheme, acceleration, slides):
+    """It holds below mu g = 2.94 m/s²."""
+    run = on_a_track(st.RigidTrack(acceleration=acceleration), scheme=scheme)
+    dragged = min(acceleration, 0.3 * G)
+    time, place = run.time.values, run.displacement.values[:, 0]
+    np.testing.assert_allclose(run.tangential_force.values[1:], -MASS * dragged, rtol=1e-8)
+    np.testing.assert_allclose(place, 0.5 * dragged * time**2, rtol=1e-9, atol=dragged * STEP**2)
+    np.testing.assert_allclose(
+        run.slip_velocity.values[1:], ((dragged - acceleration) * (time - STEP / 2))[1:], atol=1e-9
+    )
+    assert run.status.values[-1] == (2 if slides else 1)
+
+
+@BOTH
+def test_a_belt_at_a_speed_is_shaken_along_itself(scheme):
+    """The velocity is that at the start: a cosine of acceleration shakes about it, without a drift."""
+    history = st.Harmonic(10.0, phase=np.pi / 2.0)
+    track = st.RigidTrack(velocity=0.4, acceleration=1.0, history=history)
+    run = on_a_track(track, lambda block: st.InitialVelocity(block, x=0.4), scheme=scheme)
+    angular, time = 20.0 * np.pi, run.time.values
+    swing = 0.4 * time + (1.0 - np.cos(angular * time)) / angular**2
+    assert (run.status.values == 1).all()
+    np.testing.assert_allclose(run.displacement.values[:, 0], swing, atol=2.0 * STEP**2)
+    np.testing.assert_allclose(track.speed(time), 0.4 + np.sin(angular * time) / angular, rtol=1e-12)
+
+
+# Jumps.
+
+
+@BOTH
+@pytest.mark.parametrize("steps", [1, 7])
+def test_a_force_that_is_switched_off_gives_its_impulse(scheme, steps):
+    """Switched off at a step it gives F t to round-off; between two steps a whole step's share is given or is not."""
+    step = 0.2 / 1000 if steps == 1 else 0.2 / 1000.37
+    history = st.Sampled((0.0, 0.2, 0.2), (1.0, 1.0, 0.0))
+    run = on_a_track(
+        st.RigidTrack(),
+        lambda block: st.Force(block.centre, x=4.0, history=history),
+        friction=0.0,
+        scheme=scheme,
+        step=step,
+        sample_rate=1.0 / step,
+        duration=0.4,
+    )
+    velocity = np.diff(run.displacement.values[:, 0]) / step
+    after = run.time.values[1:] > 0.2 + 2.0 * step
+    missing = 1e-9 if steps == 1 else 0.5 * step * 4.0 / MASS + 1e-9
+    assert np.abs(velocity[after] - 4.0 * 0.2 / MASS).max() <= missing
+
+
+@BOTH
+@pytest.mark.parametrize("late", [0.0, 0.5, 0.3])
+def test_a_root_whose_velocity_jumps_gives_its_body_the_whole_of_it(scheme, late):
+    """A free beam dragged without contact: what is imposed on it at once adds up to the change of velocity."""
+    step = 1e-5
+    jump = (100 + late) * step
+    system = st.load_scenario("weak-pressure").system
+    history = st.Sampled((0.0, jump, jump), (1.0, 1.0, 3.0))
+    drive = st.ImposedVelocity(system.slider.root, 0.2, 2.0, history)
+    arrays = assemble(st.System(system.contacts[0], [drive]))
+    time = np.arange(200) * step
+    assert arrays.signals[-1](time, step).sum() * step == pytest.approx(0.4, rel=1e-12)
+    np.testing.assert_allclose(arrays.signals[-3](time, step)[-1], 0.2 * (3.0 * time[-1] - 2.0 * jump), rtol=1e-12)
+
+
+@BOTH
+def test_a_belt_that_jumps_to_another_speed_goes_on_from_where_it_is(scheme):
+    """It slides throughout, so friction does not see the jump; its slip does, at once."""
+    history = st.Sampled((0.0, 0.1, 0.1), (1.0, 1.0, -2.0))
+    run = on_a_track(st.RigidTrack(velocity=5.0, history=history), scheme=scheme, duration=0.2)
+    time, slip = run.time.values, run.slip_velocity.values
+    dragged = 0.3 * G * np.where(time < 0.1 + STEP / 2, time, 0.2 - time)
+    belt = np.where(time < 0.1 + STEP / 2, 5.0, -10.0)
+    np.testing.assert_allclose(slip, dragged - belt, atol=2.0 * 0.3 * G * STEP)
