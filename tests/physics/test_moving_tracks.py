@@ -145,3 +145,118 @@ def test_a_belt_that_jumps_to_another_speed_goes_on_from_where_it_is(scheme):
     dragged = 0.3 * G * np.where(time < 0.1 + STEP / 2, time, 0.2 - time)
     belt = np.where(time < 0.1 + STEP / 2, 5.0, -10.0)
     np.testing.assert_allclose(slip, dragged - belt, atol=2.0 * 0.3 * G * STEP)
+
+
+# Belts that change from one run to the next.
+
+LAWS = {
+    "coulomb": st.Coulomb(0.3),
+    "static-kinetic": st.StaticKinetic(0.4, 0.25),
+    "stribeck": st.Stribeck(0.4, 0.25, 0.05),
+    "lugre": st.LuGre(0.4, 0.25, 0.05, stiffness=1e4, damping=10.0),
+    "rate and state": st.RateAndState(0.3, a=0.01, b=0.02, slip_distance=1e-4, velocity=0.01),
+}
+
+
+def held_by_a_spring(track, law, other=False):
+    """A mass on a belt, on a spring; with another contact beside it, of another body, where asked for."""
+    block, beside = st.PointMass(MASS), st.PointMass(1.0)
+    contacts = [st.PointContact(block.centre, track, friction=law)]
+    connections = [st.Spring(block.centre, stiffness=400.0), st.Dashpot(block.centre, coefficient=2.0)]
+    if other:
+        floor = st.RigidTrack(velocity=-0.02, name="floor")
+        contacts.append(st.PointContact(beside.centre, floor, friction=st.Coulomb(0.1), name="beside"))
+        connections.append(st.Spring(beside.centre, block.centre, stiffness=300.0))
+    return st.System(contacts, [st.Gravity(G)], connections)
+
+
+@BOTH
+@pytest.mark.parametrize("other", [False, True], ids=["one contact", "two"])
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("before", "after"), [(0.1, -0.3), (0.1, 0.0), (0.0, 0.1), (0.1, 0.13)])
+def test_two_runs_are_the_one_whose_belt_jumps_on_the_way(scheme, other, law, before, after):
+    """It sticks to the belt, or slides on it, when that changes: the anchor and the bristles go with the belt."""
+    words = {"scheme": scheme, "step": STEP, "sample_rate": 1.0 / STEP, "probes": []}
+    half = 0.0973
+    history = st.Sampled((0.0, half, half), (before, before, after))
+
+    def on_a_belt(track):
+        return held_by_a_spring(track, LAWS[law], other)
+
+    whole = st.simulate(on_a_belt(st.RigidTrack(velocity=1.0, history=history)), 0.3, **words)
+    first = st.simulate(on_a_belt(st.RigidTrack(velocity=before)), half, **words)
+    second = st.simulate(on_a_belt(st.RigidTrack(velocity=after)), 0.3 - half, start=first, **words)
+    assert_joined(first, second, whole)
+
+
+def assert_joined(first, second, whole):
+    """Places are rounded and forces are in their second differences: by some m eps x / h², 1e-9 of the forces here."""
+    names = [name for name in whole.data_vars if "time" in whole[name].dims and name != "ledger_residual"]
+    for name in names:
+        parts = np.concatenate([first[name].values, second[name].values])
+        # A contact without a state of its law has none.
+        values, expected = np.nan_to_num(parts), np.nan_to_num(whole[name].values)
+        assert np.abs(values - expected).max() <= 1e-8 * np.abs(expected).max() + 1e-16, name
+    assert np.abs(second.ledger_residual.values).max() < 1e-10 * np.abs(second.drive_work.values).max()
+
+
+@BOTH
+def test_ground_and_belt_go_on_under_other_histories_and_accelerations(scheme):
+    """From a sine of both to an acceleration of both from the velocities that they have."""
+    words = {"scheme": scheme, "step": STEP, "sample_rate": 1.0 / STEP, "probes": []}
+    half, sine = 0.1, st.Harmonic(3.0, phase=0.4)
+    now, angular = np.array([half]), 6.0 * np.pi
+    before = st.RigidTrack(0.2, 0.1, sine, sine)
+    # In the time of the run, whose start the second history sees, too.
+    turned = st.Sampled((0.0, half, half, 0.2), (0.0, 0.0, 1.0, -1.0))
+    speed, lift = (float(found(now)[0]) for found in (before.speed, before.normal_speed))
+    after = st.RigidTrack(speed, lift, turned, turned, acceleration=-3.0, normal_acceleration=2.0)
+
+    class Both(st.RigidTrack):
+        """The one, then the other."""
+
+        def travel(self, time):
+            later = before.travel(now) + after.travel(time) - after.travel(now)
+            return np.where(time < half, before.travel(time), later)
+
+        def normal_travel(self, time):
+            later = before.normal_travel(now) + after.normal_travel(time) - after.normal_travel(now)
+            return np.where(time < half, before.normal_travel(time), later)
+
+    assert speed == pytest.approx(0.2 * np.sin(angular * half + 0.4))
+    first, whole = (
+        st.simulate(held_by_a_spring(track, st.Coulomb(0.3)), duration, **words)
+        for track, duration in ((before, half), (Both(velocity=1.0), 0.3))
+    )
+    second = st.simulate(held_by_a_spring(after, st.Coulomb(0.3)), 0.2, start=first, **words)
+    assert_joined(first, second, whole)
+
+
+@pytest.mark.parametrize("velocities", [(0.1, 0.2, 0.2), (0.1, 0.0, 0.0), (0.1, 0.1, 0.1)])
+def test_a_run_goes_on_to_the_last_bit_after_a_change(velocities, tmp_path):
+    """In two parts, one of them from a file, or in one."""
+    first, second, third = velocities
+    words = {"step": STEP, "sample_rate": 1.0 / STEP, "probes": []}
+    runs = [st.simulate(held_by_a_spring(st.RigidTrack(velocity=first), st.Coulomb(0.3)), 0.05, **words)]
+    for number, velocity in enumerate((second, third)):
+        path = tmp_path / f"{number}.nc"
+        st.save(runs[-1], path)
+        system = held_by_a_spring(st.RigidTrack(velocity=velocity), st.Coulomb(0.3))
+        runs.append(st.simulate(system, 0.05, start=st.load(path), **words))
+    both = st.simulate(system, 0.1, start=runs[0], **words)
+    for name in ("normal_force", "tangential_force", "slip_velocity", "contact_position", "drive_work"):
+        parts = np.concatenate([run[name].values for run in runs[1:]])
+        np.testing.assert_array_equal(parts, both[name].values)
+
+
+def test_a_record_that_does_not_say_where_its_belt_is_goes_on_with_the_same_one_only():
+    words = {"step": STEP, "sample_rate": 1.0 / STEP, "probes": []}
+    systems = [held_by_a_spring(st.RigidTrack(velocity=velocity), st.Coulomb(0.3)) for velocity in (0.1, 0.2)]
+    old = st.simulate(systems[0], 0.01, **words).drop_vars("state_motion")
+    assert st.simulate(systems[0], 0.01, start=old, **words).attrs["ended"] == "finished"
+    message = r"^start must have the same contacts\.0\.track\.velocity as this run, 0\.2, got 0\.1$"
+    with pytest.raises(ValueError, match=message):
+        st.simulate(systems[1], 0.01, start=old, **words)
+    renamed = held_by_a_spring(st.RigidTrack(velocity=0.1, name="belt"), st.Coulomb(0.3))
+    with pytest.raises(ValueError, match=r"contacts\.0\.track\.name as this run, 'belt', got None"):
+        st.simulate(renamed, 0.01, start=st.simulate(systems[0], 0.01, **words), **words)

@@ -445,7 +445,7 @@ def test_a_run_goes_on_only_from_the_same_bodies_and_place():
     )
     with pytest.raises(ValueError, match=r"^start must have the same contact.at as this run, 0.3, got 0.2"):
         st.simulate(elsewhere, 1e-3, step=STEP, start=first)
-    with pytest.raises(ValueError, match=r"^start must have the same probes as this run"):
+    with pytest.raises(ValueError, match=r"^start must have the same probes.0.quantity as this run, 'velocity', got "):
         st.simulate(system, 1e-3, step=STEP, start=first, probes=[st.Velocity(system.track.centre)])
     rougher = st.PointContact(system.slider.tip, system.track, at=0.2, friction=st.Coulomb(2.0), gap=1e-6)
     assert st.simulate(st.System(rougher, system.drives), 1e-3, step=STEP, start=first).attrs["ended"] == "finished"

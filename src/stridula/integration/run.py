@@ -23,7 +23,7 @@ from .blocks import blocks_of
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
 from .marches import Chunk, Imposed, Impositions
-from .restart import imposed_at, moved_on, state_of
+from .restart import imposed_at, motion_about, moved_on, state_of
 from .schemes import Scheme
 from .start import state_at_start
 from .stops import ENDED, contact_words
@@ -69,13 +69,14 @@ class Run:
         self.system, self.arrays, self.scheme = system, arrays, scheme
         self.timing, self.probes, self.solve, self.title = timing, probes, solve, title
         self.blocks = blocks_of(arrays, scheme, timing.step)
+        self.described, self.offset = arrays.motion, np.zeros((len(system.contacts), at.MOTIONS))
         if start is None:
             self.state = state_at_start(arrays, scheme, timing.step, self.blocks, solve)
             self.first_step, self.initial_energy = 0, float(self.state.energies[at.STORED])
             self.decimator = Decimator(timing.ratio)
         else:
             self.state = state_of(start, system, arrays, scheme, timing, probes)
-            self.arrays = moved_on(start, system, arrays, self.blocks.modes, self.state, timing.step)
+            self.arrays, self.offset = moved_on(start, system, arrays, self.blocks.modes, self.state, timing.step)
             self.first_step, self.initial_energy = int(start.attrs["last_step"]), float(start.attrs["initial_energy"])
             self.decimator = Decimator(timing.ratio, np.array(start["state_raw"].values, dtype=float))
         self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy)
@@ -182,6 +183,7 @@ class Run:
             self.probes,
             self.probe_record[:done],
             self.state,
+            np.concatenate([motion_about(self.described, last_step, timing.step), self.offset[None]]),
             np.empty((0, len(self.probes))) if self.tail is None else self.tail,
             attributes,
         )
