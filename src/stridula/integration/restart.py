@@ -14,7 +14,7 @@ from .._kernels import layout as at
 from .._kernels.march import stored_energy
 from ..assembly import Assembly, Signal, going_on, with_travel
 from ..bodies.modes import Array
-from ..checks import brief, instance
+from ..checks import brief, instance, listed
 from ..contact import LAWS
 from ..records import Probe
 from ..records.provenance import scenario_toml
@@ -45,7 +45,9 @@ def state_of(
         start = start.assign(state_remainder=0.0 * start["state_modal"])
     needed = (*(f"state_{name}" for name in STATE), "state_raw")
     if any(name not in start for name in needed):
-        raise ValueError(f"start must be a record of simulate with its final state, got variables {list(start)}")
+        raise ValueError(
+            f"start must be a record of simulate with its final state, got variables {listed(map(str, start))}"
+        )
     attributes = start.attrs
     if attributes["ended"] not in ("finished", "interrupted"):
         raise ValueError(f"start must be a run that can go on, got one that ended {attributes['ended']!r}")

@@ -12,7 +12,7 @@ import xarray as xr
 from ..assembly import assemble
 from ..bodies import FiniteElementBeam, ModalBeam, ModalPlate
 from ..bodies.modes import Array, BodyPoint
-from ..checks import instance, non_negative, positive
+from ..checks import at_most, instance, non_negative, positive
 from ..contact import RigidTrack
 from ..integration import simulate
 from ..integration.schemes import ExactModal, Scheme
@@ -130,9 +130,8 @@ def motion_of(
     run = simulate(system, end, scheme=chosen, step=step, sample_rate=1.0 / frame, probes=probes)
     window = run.isel(time=run["time"].values > start + 0.5 * float(run.attrs["sample_interval"]))
     if window.sizes["time"] < FEWEST_FRAMES:
-        raise ValueError(
-            f"start must be before the run ends ({run.attrs['ended']} at {float(run['time'][-1]):.4g} s), got {start!r}"
-        )
+        ended = f"{run.attrs['ended']} at {at_most(float(run['time'][-1]))} s"
+        raise ValueError(f"start must be before the run ends ({ended}), got {start!r}")
     return _motion(system, window, list(places.values()))
 
 

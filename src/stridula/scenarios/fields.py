@@ -18,6 +18,7 @@ from pydantic_core import CoreSchema, PydanticCustomError
 from pydantic_core.core_schema import no_info_plain_validator_function
 
 from ..bodies.modes import Array
+from ..checks import at_least, at_most
 from ..records.packed import is_packed, unpacked
 from .quantities import UNITS, is_quantity, quantity
 
@@ -108,11 +109,11 @@ class Quantity(_Kind):
     def read(self, value: Any) -> float:
         number = quantity(value, self.unit)
         if self.above is not None and number <= self.above:
-            raise ValueError(f"must be above {self.above:g}")
+            raise ValueError(f"must be above {at_least(self.above)}")
         if self.least is not None and number < self.least:
-            raise ValueError(f"must be {self.least:g} or above")
+            raise ValueError(f"must be {at_least(self.least)} or above")
         if self.below is not None and number >= self.below:
-            raise ValueError(f"must be below {self.below:g}")
+            raise ValueError(f"must be below {at_most(self.below)}")
         return number
 
     def json_schema(self) -> dict[str, Any]:
