@@ -407,6 +407,16 @@ def test_chatter_in_a_burst_is_one_slip():
     assert len(slips(np.ones(5), 0.0, 1.0)) == 0
 
 
+@pytest.mark.parametrize(("every", "expected"), [(2.5e-3, "squeal"), (4e-3, "stick-slip")])
+def test_slips_as_fast_as_a_tone_are_one_vibration_in_bursts_too(every, expected):
+    """Bursts of 60 ms, ten a second, of slips of a third of each period: at 400 Hz a tone, at 250 Hz not yet."""
+    phase = SECOND % every / every
+    moves = (SECOND % 0.1 < 0.06) & (phase > 0.66)
+    run = record(np.where(moves, SLIDING, STICKING))
+    run["tangential_force"] = ("time", np.where(SECOND % 0.1 < 0.06, 0.3 * np.sin(2.0 * np.pi * phase), 0.0))
+    assert named(run)[0] == expected
+
+
 def test_half_of_the_time_is_in_the_lengths_that_prevail():
     assert prevailing(np.array([1.0] * 20 + [30.0])) == 30.0
     assert prevailing(np.array([1.0] * 40 + [30.0])) == 1.0

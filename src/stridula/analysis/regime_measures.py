@@ -10,10 +10,9 @@ import numpy as np
 from ..bodies.modes import Array
 from ..checks import positive, within
 from .heard import Frames, frames, strongest_tone
-from .phases import SMOOTHING
+from .phases import ROUND_OFF, SMOOTHING
 from .status_changes import (
     MIXED,
-    ROUND_OFF,
     between_stops,
     changes,
     last_rest,
@@ -21,6 +20,7 @@ from .status_changes import (
     prevailing,
     regularity,
     slips,
+    vibrations,
     whole_status,
 )
 
@@ -132,8 +132,8 @@ class Measures:
     slips : int
         Slips, each of which ends in a stick phase.
     periods : float
-        Periods of the tone in slips that make up half of the time of all [1]; infinite where it always slips, or slips
-        as fast as a tone, NaN where no tone is heard.
+        Periods of the tone in slips that make up half of the time of all, those faster than the lowest tone as one [1];
+        infinite where it always slips, NaN where no tone is heard.
     is_short : bool
         Whether there are fewer than two frames to listen to.
     """
@@ -203,8 +203,6 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     elif settles and loss >= limits.lossy and swing < limits.faint:
         # What the samples do not show goes on at their rate, or a multiple of it.
         tonality, tone = 1.0, 1.0 / interval
-    slip_rate = caught.size / time
-    is_slow = slip_rate < limits.lowest_tone
     separated, sticking, sliding = signals.share[first:].mean(axis=0).tolist()
     return Measures(
         separated=separated,
@@ -217,7 +215,7 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         cycle=cycle,
         periodicity=regularity(caught),
         impact_rate=landed / time,
-        slip_rate=slip_rate,
+        slip_rate=caught.size / time,
         change_rate=change_rate,
         settle_time=rest * interval if rest < count else float("nan"),
         level=float(signals.forces[0, first:].std()) / mean,
@@ -227,7 +225,7 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         loss_growth=loss_growth,
         last_status=int(status[-1]) if settles else MIXED,
         slips=int(caught.size),
-        periods=prevailing(np.diff(found, axis=1)[:, 0]) * interval * tone if is_slow else float("inf"),
+        periods=prevailing(np.diff(vibrations(found, fastest), axis=1)[:, 0]) * interval * tone,
         is_short=(count - heard_from) * interval < 1.5 * limits.frame,
     )
 

@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..bodies.modes import Array
-from .phases import moving_mean
+from .phases import ROUND_OFF, moving_mean
 
 MIXED = -1
-# Share of a sample that rounding may make of nothing.
-ROUND_OFF = 1e-9
 
 
 def whole_status(share: Array) -> Array:
@@ -98,12 +96,33 @@ def slips(sticking: Array, noise: float, fastest: float) -> Array:
     if not moves.size:
         return np.empty((0, 2))
     found = np.stack([(ends - lengths)[moves], ends[moves]], axis=1)
+    firsts = _firsts(found, fastest, fastest / 4.0)
+    return _merged(found, firsts)[np.add.reduceat(lengths[moves], firsts) > noise]
+
+
+def vibrations(found: Array, fastest: float) -> Array:
+    """Return slips with those made one that end within `fastest` of the one before, however long it sticks between.
+
+    Parameters
+    ----------
+    found : ndarray, shape (slips, 2)
+        Starts and ends, as `slips` returns them.
+    fastest : float
+        Shortest time from the end of a vibration to the end of the next, in the unit of those.
+    """
+    return _merged(found, _firsts(found, fastest, np.inf)) if len(found) else found
+
+
+def _firsts(found: Array, fastest: float, longest: float) -> Array:
+    """Return the slips that are apart from the one before: by a long stick, or by their ends."""
     stuck, period = found[1:, 0] - found[:-1, 1], found[1:, 1] - found[:-1, 1]
-    apart = (stuck >= fastest / 4.0) | (period >= fastest)
-    firsts = np.flatnonzero(np.concatenate([[True], apart]))
+    return np.flatnonzero(np.concatenate([[True], (stuck >= longest) | (period >= fastest)]))
+
+
+def _merged(found: Array, firsts: Array) -> Array:
+    """Return slips from each of the first ones to the last before the next of those."""
     lasts = np.concatenate([firsts[1:], [len(found)]]) - 1
-    counts = np.add.reduceat(lengths[moves], firsts) > noise
-    return np.stack([found[firsts, 0], found[lasts, 1]], axis=1)[counts]
+    return np.stack([found[firsts, 0], found[lasts, 1]], axis=1)
 
 
 def _pieces(sticking: Array) -> tuple[Array, Array]:
