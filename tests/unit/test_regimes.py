@@ -332,10 +332,10 @@ def test_a_hinge_that_creaks_and_rings_while_it_sticks(leaf, rate):
     run = st.simulate(clockwork(1e-3, 30e-3, fall=0.6, leaf=leaf), 1.5, step=1e-5, sample_rate=rate, probes=[])
     found = analysis.regime(run)
     assert found.regime == "stick-slip"
-    fine = 1.0 - run.status_share.values[:, STICKING]
-    assert found.frequency == pytest.approx(found.slip_rate, abs=1.0)
-    assert 28.0 < found.slip_rate < 40.0
-    assert fine[round(0.15 * run.sizes["time"]) :].mean() < 0.05
+    # The leaf adds to the mass and kicks back: a period within a fifth of that without it.
+    assert found.frequency == pytest.approx(1.0 / 31e-3, rel=0.2)
+    assert found.slip_rate == pytest.approx(float(found.frequency), abs=1.0 / 1.35)
+    assert found.sticking > 0.95
 
 
 @pytest.mark.parametrize("rate", RATES)
@@ -356,7 +356,7 @@ def test_a_bowed_mode_and_a_bowed_string(frequency, modes, rate):
     assert found.regime == "stick-slip"
     # The bow holds the string back: a little flat, never sharp.
     assert 0.4 * frequency < found.frequency < frequency
-    assert found.slip_rate == pytest.approx(found.frequency, abs=2.5)
+    assert found.slip_rate == pytest.approx(float(found.frequency), abs=2.5)
 
 
 def shares(status, factor):
