@@ -212,8 +212,12 @@ class Prescribed:
     def is_steady(self) -> bool:
         """Whether nothing varies in time."""
         still = all(not isinstance(track, RigidTrack) or track.is_still for *_, track in self.contacts)
-        still = still and not self.turns
-        return still and self.velocity is None and all(type(history) is Constant for history in self.histories)
+        return (
+            still
+            and not self.turns
+            and self.velocity is None
+            and all(type(history) is Constant for history in self.histories)
+        )
 
 
 def _prescribed(system: System, histories: tuple[History, ...]) -> Prescribed:

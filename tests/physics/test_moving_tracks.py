@@ -260,3 +260,16 @@ def test_a_record_that_does_not_say_where_its_belt_is_goes_on_with_the_same_one_
     renamed = held_by_a_spring(st.RigidTrack(velocity=0.1, name="belt"), st.Coulomb(0.3))
     with pytest.raises(ValueError, match=r"contacts\.0\.track\.name as this run, 'belt', got None"):
         st.simulate(renamed, 0.01, start=st.simulate(systems[0], 0.01, **words), **words)
+
+
+@BOTH
+def test_a_run_goes_on_from_where_all_energy_is_gone(scheme):
+    """Of the energy of shaken ground that has come to rest, rounding is left, and no fault."""
+    shaken = st.Sampled((0.0, 0.1, 0.1, 0.2, 0.2), (1.0, 1.0, -1.0, -1.0, 0.0))
+    track = st.RigidTrack(normal_acceleration=5.0, normal_history=shaken)
+    first = on_a_track(track, scheme=scheme, duration=0.25)
+    left, met = (np.abs(first.kinetic_and_elastic.values[k]) for k in (-1, 1000))
+    assert left < 1e-6 * met
+    second = on_a_track(track, scheme=scheme, duration=0.25, start=first)
+    assert second.attrs["ended"] == "finished"
+    assert second.attrs["largest_energy"] == first.attrs["largest_energy"] >= met

@@ -79,7 +79,9 @@ class Run:
             self.arrays, self.offset = moved_on(start, system, arrays, self.blocks.modes, self.state, timing.step)
             self.first_step, self.initial_energy = int(start.attrs["last_step"]), float(start.attrs["initial_energy"])
             self.decimator = Decimator(timing.ratio, np.array(start["state_raw"].values, dtype=float))
-        self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy)
+        # What rounding has left of large energies is there when they are gone.
+        met = 0.0 if start is None else float(start.attrs.get("largest_energy", 0.0))
+        self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy, met)
         self.impositions = Impositions(self.arrays, self.blocks, timing.step)
         self.energy_record = np.empty((at.ENERGIES, timing.samples))
         self.contact_record = np.empty((at.COLUMNS, len(system.contacts), timing.samples))
@@ -168,6 +170,7 @@ class Run:
             "modes": self.arrays.mode_count,
             "contact_tolerance": self.solve.tolerance,
             "initial_energy": self.initial_energy,
+            "largest_energy": self.belief.largest_energy,
             "last_step": last_step,
             **(imposed_at(self.arrays, last_step, timing.step) if self.system.imposed_velocity else {}),
             "compile_time": self.compile_time,

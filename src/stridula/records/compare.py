@@ -21,7 +21,7 @@ LEFT_OUT = (STATUS.name, *(variable.name for variable in SOLVE))
 ENERGIES = tuple(variable.name for variable in ENERGY)
 DISTANCES = ("gap", "contact_height")
 LENGTHS = (*DISTANCES, "displacement")
-UNLIKE = ("compile_time", "wall_time", "scenario", "last_step")
+UNLIKE = ("compile_time", "wall_time", "scenario", "last_step", "largest_energy")
 NOT_THERE = "not there"
 
 
