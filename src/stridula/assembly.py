@@ -166,6 +166,31 @@ def with_travel(arrays: Assembly, system: System, travel: float) -> Assembly:
     return replace(arrays, signals=signals, motion=_motion(system, displacement))
 
 
+def going_on(arrays: Assembly, offset: Array, start: float, before: Array | None = None) -> Assembly:
+    """Return a system whose contacts have already been moved beyond what is imposed on them.
+
+    Parameters
+    ----------
+    arrays : Assembly
+        The system.
+    offset : ndarray, shape (contacts, 3)
+        By how much [m].
+    start : float
+        Time from which that holds [s].
+    before : ndarray, shape (contacts, 3), optional
+        Where they were before [m], if that was other motion.
+    """
+    described = arrays.motion
+
+    def motion(time: Array, step: float) -> Array:
+        values = described(time, step) + offset
+        if before is not None:
+            values[time < start - step / 2.0] = before
+        return values
+
+    return replace(arrays, motion=motion, prescribed=replace(arrays.prescribed, turns=before is not None))
+
+
 @dataclass(frozen=True)
 class Prescribed:
     """What decides how signals and motions go in time: systems that share it have the same.
@@ -178,17 +203,25 @@ class Prescribed:
         The imposed velocity.
     contacts : tuple
         For each contact its frame, whether its tip is held, and its rigid track or whether its track is held.
+    turns : bool
+        Whether it goes on from other motions.
     """
 
     histories: tuple[History, ...]
     velocity: tuple[float, History] | None
     contacts: tuple[Any, ...]
+    turns: bool = False
 
     @property
     def is_steady(self) -> bool:
         """Whether nothing varies in time."""
         still = all(not isinstance(track, RigidTrack) or track.is_still for *_, track in self.contacts)
-        return still and self.velocity is None and all(type(history) is Constant for history in self.histories)
+        return (
+            still
+            and not self.turns
+            and self.velocity is None
+            and all(type(history) is Constant for history in self.histories)
+        )
 
 
 def _prescribed(system: System, histories: tuple[History, ...]) -> Prescribed:
@@ -315,9 +348,8 @@ def _motion(system: System, imposed: Signal) -> Signal:
                 values[:, number, 1] += tangent_x * moved
                 values[:, number, 2] -= normal_x * moved
             if isinstance(contact.track, RigidTrack):
-                track = contact.track
-                values[:, number, 1] += track.velocity * track.history.integral(time)
-                values[:, number, 2] -= track.normal_velocity * track.normal_history.integral(time)
+                values[:, number, 1] += contact.track.travel(time)
+                values[:, number, 2] -= contact.track.normal_travel(time)
         return values
 
     return motion

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from difflib import get_close_matches
 from numbers import Integral, Real
 from typing import Any, TypeVar
@@ -13,6 +14,8 @@ T = TypeVar("T")
 STATUS_WORDS = ("separated", "sticking", "sliding")
 # Longest value that a message shows as it is written.
 LONGEST = 80
+# Longest list of names in a message, but for one that is longer.
+LONGEST_LIST = 160
 
 
 def finite(name: str, value: Any) -> float:
@@ -46,7 +49,8 @@ def within(name: str, value: Any, low: float, high: float, *, ends: bool = True)
     number = finite(name, value)
     inside = low <= number <= high if ends else low < number < high
     if not inside:
-        words = f"from {low:g} to {high:g}" if ends else f"strictly between {low:g} and {high:g}"
+        least, most = bounds(low, high)
+        words = f"from {least} to {most}" if ends else f"strictly between {least} and {most}"
         raise ValueError(f"{name} must be {words}, got {value!r}")
     return number
 
@@ -90,6 +94,43 @@ def brief(value: Any) -> str:
         return text
     kind, name = type(value).__name__, getattr(value, "name", None)
     return f"{_article(kind)} {kind}" + (f" named {name!r}" if name and isinstance(name, str) else "")
+
+
+def at_most(limit: float, digits: int = 6) -> str:
+    """Return a limit in few digits, not above it: what must be below or at most that is so."""
+    return _rounded(limit, digits, ROUND_FLOOR)
+
+
+def at_least(limit: float, digits: int = 6) -> str:
+    """Return a limit in few digits, not below it: what must be above or at least that is so."""
+    return _rounded(limit, digits, ROUND_CEILING)
+
+
+def bounds(low: float, high: float, digits: int = 6) -> tuple[str, str]:
+    """Return the ends of a range in few digits, rounded inwards; in more where that would leave nothing between."""
+    for enough in (digits, 9, 12):
+        least, most = at_least(low, enough), at_most(high, enough)
+        if float(least) < float(most):
+            return least, most
+    return repr(low), repr(high)
+
+
+def _rounded(limit: float, digits: int, way: str) -> str:
+    # The shortest decimal that is the number, so that 0.1 is 0.1 either way.
+    near = Context(prec=digits, rounding=way).plus(Decimal(repr(float(limit))))
+    return f"{float(near):.{digits}g}"
+
+
+def listed(words: Iterable[str], joint: str = ", ", longest: int = LONGEST_LIST) -> str:
+    """Return the first few of many words, and how many others there are; ``none`` if there is none."""
+    every = list(words) or ["none"]
+    shown = every[:1]
+    for word in every[1:]:
+        if len(joint.join([*shown, word])) > longest:
+            break
+        shown.append(word)
+    others = len(every) - len(shown)
+    return joint.join(shown) + (f" and {others} other{'s' if others > 1 else ''}" if others else "")
 
 
 def _article(word: str) -> str:

@@ -1,15 +1,19 @@
-"""How a drive's amplitude goes in time: a factor on its stated value, and its integral."""
+"""How a drive's amplitude goes in time: a factor on its stated value, its integral and the integral of that."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
 from .bodies.modes import Array
-from .checks import finite, positive
+from .checks import brief, finite, positive
+
+# Share of a time within which it is that of a jump: a step is a whole division of it only up to rounding.
+ROUND_OFF = 1e-12
 
 
 class History(Protocol):
@@ -21,6 +25,10 @@ class History(Protocol):
 
     def integral(self, time: Array) -> Array:
         """Return its integral from 0 [s]."""
+        ...
+
+    def second_integral(self, time: Array) -> Array:
+        """Return the integral of its integral from 0 [s²]."""
         ...
 
     @property
@@ -45,6 +53,10 @@ class Constant:
     def integral(self, time: Array) -> Array:
         """Return the time."""
         return np.array(time, dtype=float)
+
+    def second_integral(self, time: Array) -> Array:
+        """Return half the square of the time."""
+        return np.asarray(time**2 / 2.0)
 
 
 @dataclass(frozen=True)
@@ -75,6 +87,11 @@ class Ramp:
         """Return the area under the factor."""
         risen = np.clip(time, 0.0, self.duration)
         return risen**2 / (2.0 * self.duration) + np.maximum(time - self.duration, 0.0)
+
+    def second_integral(self, time: Array) -> Array:
+        """Return the area under the integral."""
+        risen, after = np.clip(time, 0.0, self.duration), np.maximum(time - self.duration, 0.0)
+        return np.asarray(risen**3 / (6.0 * self.duration) + after * (self.duration + after) / 2.0)
 
 
 @dataclass(frozen=True)
@@ -115,6 +132,12 @@ class Harmonic:
         swing = (np.cos(self.phase) - np.cos(self._angle(time))) / (2.0 * np.pi * self.frequency)
         return self.mean * time + self.amplitude * swing
 
+    def second_integral(self, time: Array) -> Array:
+        """Return the integral of that: the sine leaves a drift behind unless it starts as a cosine."""
+        angular = 2.0 * np.pi * self.frequency
+        swing = (angular * time * np.cos(self.phase) - np.sin(self._angle(time)) + np.sin(self.phase)) / angular**2
+        return np.asarray(self.mean * time**2 / 2.0 + self.amplitude * swing)
+
     def _angle(self, time: Array) -> Array:
         return 2.0 * np.pi * self.frequency * time + self.phase
 
@@ -123,10 +146,13 @@ class Harmonic:
 class Sampled:
     """Any history given at points in time, straight between them, level before the first and after the last.
 
+    Two points at the same time are a jump, from the first to the second. At that very time the factor is their mean, so
+    that a load that is taken at the steps gives the impulse that it should.
+
     Parameters
     ----------
     time : tuple of float
-        Times [s], rising, from 0 on.
+        Times [s], rising, from 0 on; the same twice at a jump, but not 0.
     value : tuple of float
         Factors at those times [1].
     """
@@ -145,25 +171,71 @@ class Sampled:
             raise ValueError(
                 f"time and value must have the same length, at least 2, got {len(self.time)} and {len(self.value)}"
             )
-        if self.time[0] < 0.0 or np.any(np.diff(self.time) <= 0.0):
-            raise ValueError(f"time must rise from 0 or above, got {self.time!r}")
+        self._check_times()
+
+    def _check_times(self) -> None:
+        times = np.array(self.time)
+        if self.time[0] < 0.0:
+            raise ValueError(f"time must rise from 0 or above, got {brief(self.time)}, from {self.time[0]!r}")
+        falls = np.flatnonzero(times[1:] < times[:-1]) + 1
+        thrice = np.flatnonzero(times[2:] == times[:-2]) + 2
+        for allowed, wrong in (("rise", falls), ("have no more than two points, a jump, at a time", thrice)):
+            if wrong.size:
+                k = int(wrong[0])
+                got = f"time[{k}] = {self.time[k]!r} after {self.time[k - 1]!r}"
+                raise ValueError(f"time must {allowed}, got {brief(self.time)}, with {got}")
+        if self.time[1] == 0.0:
+            raise ValueError(f"time must be above 0 at a jump, got {brief(self.time)}")
 
     @property
     def settled(self) -> float:
-        """Time [s] from which it no longer varies: its last."""
+        """Time [s] after which it no longer varies: its last."""
         return self.time[-1]
 
     def factor(self, time: Array) -> Array:
-        """Return the interpolated value."""
-        return np.interp(time, self.time, self.value)
+        """Return the interpolated value, at a jump the mean of its two."""
+        values = np.interp(time, self.time, self.value)
+        times, means = self._jumps
+        if times.size:
+            beyond = np.searchsorted(times, time)
+            for near in (np.maximum(beyond - 1, 0), np.minimum(beyond, times.size - 1)):
+                values = np.where(np.abs(time - times[near]) <= ROUND_OFF * times[near], means[near], values)
+        return np.asarray(values)
 
     def integral(self, time: Array) -> Array:
         """Return the area under the interpolated value from 0."""
-        knots = np.concatenate([[0.0], self.time]) if self.time[0] > 0.0 else np.array(self.time)
-        values = self.factor(knots)
-        areas = np.concatenate([[0.0], np.cumsum(np.diff(knots) * (values[1:] + values[:-1]) / 2.0)])
+        knots, values, areas, _ = self._sums
+        piece, since, now = self._piece(knots, time)
+        return np.asarray(areas[piece] + since * (values[piece] + now) / 2.0)
+
+    def second_integral(self, time: Array) -> Array:
+        """Return the area under the integral from 0."""
+        knots, values, areas, seconds = self._sums
+        piece, since, now = self._piece(knots, time)
+        return np.asarray(seconds[piece] + since * areas[piece] + since**2 * (2.0 * values[piece] + now) / 6.0)
+
+    @cached_property
+    def _jumps(self) -> tuple[Array, Array]:
+        """Return the times of the jumps, and the mean of the two values at each."""
+        times, values = np.array(self.time), np.array(self.value)
+        jumps = np.flatnonzero(times[1:] == times[:-1])
+        return times[jumps], (values[jumps] + values[jumps + 1]) / 2.0
+
+    @cached_property
+    def _sums(self) -> tuple[Array, Array, Array, Array]:
+        """Return the points from 0 on, with the integrals up to each."""
+        late = self.time[0] > 0.0
+        knots = np.array([0.0, *self.time] if late else self.time)
+        values = np.array([self.value[0], *self.value] if late else self.value)
+        since = np.diff(knots)
+        areas = np.concatenate([[0.0], np.cumsum(since * (values[1:] + values[:-1]) / 2.0)])
+        grown = since * areas[:-1] + since**2 * (2.0 * values[:-1] + values[1:]) / 6.0
+        return knots, values, areas, np.concatenate([[0.0], np.cumsum(grown)])
+
+    def _piece(self, knots: Array, time: Array) -> tuple[Array, Array, Array]:
+        """Return the last point before each time, how long ago it was and the value now, after a jump the second."""
         piece = np.clip(np.searchsorted(knots, time, side="right") - 1, 0, knots.size - 1)
-        return areas[piece] + (time - knots[piece]) * (values[piece] + self.factor(time)) / 2.0
+        return piece, time - knots[piece], np.interp(time, self.time, self.value)
 
 
 HISTORIES = (Constant, Ramp, Harmonic, Sampled)

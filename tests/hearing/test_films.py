@@ -213,7 +213,7 @@ def test_the_verb_films_a_scenario_and_its_record_alike(stridula, tmp_path):
             "system must be a FiniteElementBeam on one ModalBeam, ModalPlate or RigidTrack to be filmed, "
             "got a PointMass on a RigidTrack\n",
         ),
-        (("stable-sliding", "--from", "3"), "start must be before the run ends (off the track at 1.061 s), got 3.0"),
+        (("stable-sliding", "--from", "3"), "start must be before the run ends (off the track at 1.0612 s), got 3.0"),
     ],
 )
 def test_bad_input_is_one_line_and_2(stridula, tmp_path, arguments, message):

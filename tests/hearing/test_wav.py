@@ -110,11 +110,11 @@ def test_silence_stays_silence_and_is_said(tmp_path):
 
 def test_nothing_is_clipped(tmp_path):
     path = tmp_path / "a.wav"
-    with pytest.raises(
-        ValueError, match=r"full_scale must be above the peak of 2 Pa, got 2\.0 Pa: it would be clipped"
-    ):
+    said = r"full_scale must be at least 2\.00001 Pa for a peak of 2 Pa, got 2\.0 Pa: it would be clipped"
+    with pytest.raises(ValueError, match=said):
         st.write_wav(path, heard([0.0, 2.0, -1.0]), full_scale=2)
     assert not path.exists()
+    st.write_wav(path, heard([0.0, 2.0, -1.0]), full_scale=2.00001)
     st.write_wav(path, heard([0.0, 2.0, -3.0]), full_scale=1.0, subtype="FLOAT")
     assert list(st.read_wav(path).values[:, 0]) == [0.0, 2.0, -3.0]
 
@@ -137,7 +137,7 @@ def test_the_peak_is_that_of_the_file_at_its_own_rate(tmp_path, subtype, period,
         # Between the peak of the sound and that of the file.
         between = 0.5 * (1.0 + peak)
         if grows:
-            with pytest.raises(ValueError, match=f"full_scale must be above the peak of {peak:.4}.*clipped"):
+            with pytest.raises(ValueError, match=f"full_scale must be at least .* for a peak of {peak:.4}.*clipped"):
                 st.write_wav(path, given, full_scale=between)
         else:
             st.write_wav(path, given, full_scale=between)

@@ -58,6 +58,20 @@ def test_a_change_to_the_same_system_changes_nothing(case):
     assert np.abs(now - then)[:200].max() < 1e-6 * then.max()
 
 
+def test_a_root_goes_on_from_where_it_is_at_another_velocity():
+    """Its displacement does not jump in the eyes of a probe: 1 cm/s for 0.31 s, then 2 and 0.5 cm/s for 0.1 s each."""
+
+    def dragged(velocity):
+        what = system("weak-pressure", drives__0__velocity=velocity)
+        return what, (st.Displacement(what.slider.root, "x"),)
+
+    live = LiveMarch(*dragged(0.01))
+    for chunks, velocity, expected in ((31, 0.01, 3.1e-3), (10, 0.02, 5.1e-3), (10, 0.005, 5.6e-3)):
+        assert live.change(*dragged(velocity))
+        found = [live.advance(480)[0] for _ in range(chunks)][-1].probes[-1, 0]
+        assert found == pytest.approx(expected, abs=velocity * (live.delay + 1) / RATE)
+
+
 @pytest.mark.parametrize(
     "change",
     [

@@ -152,7 +152,7 @@ BAD = [
     ((*IN, "--wav", "a.png", "--plot", "a.png"), "--plot must be another file than --wav"),
     ((*IN, *WAV, "--plot", "a.xyz"), "--plot must end in one of"),
     (("sound", "open.nc", *WAV, "--plot", "a.png"), "--plot must have a sound of at least 0.02 s, got 0.005 s"),
-    ((*IN, *WAV, "--full-scale", "1e-6"), "--full-scale must be above the peak of "),
+    ((*IN, *WAV, "--full-scale", "1e-6"), "--full-scale must be at least "),
     ((*IN, *WAV, "--full-scale", "0"), "--full-scale must be above 0 Pa, got '0'"),
     ((*IN, *WAV, "--full-scale", "nan"), "--full-scale must be a pressure in Pa or normalised, got 'nan'"),
     ((*IN, *WAV, "--full-scale", "1 m"), "--full-scale must be a pressure in Pa or normalised, got '1 m'"),

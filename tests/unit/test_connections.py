@@ -29,6 +29,12 @@ MAKERS = {
     "Dashpot.direction": (lambda v: st.Dashpot(ONE.centre, coefficient=1.0, direction=v), "direction", ["z", None]),
     "RigidTrack.velocity": (lambda v: st.RigidTrack(v), "velocity", NUMBERS),
     "RigidTrack.normal_velocity": (lambda v: st.RigidTrack(0.0, v), "normal_velocity", NUMBERS),
+    "RigidTrack.acceleration": (lambda v: st.RigidTrack(acceleration=v), "acceleration", NUMBERS),
+    "RigidTrack.normal_acceleration": (
+        lambda v: st.RigidTrack(normal_acceleration=v),
+        "normal_acceleration",
+        NUMBERS,
+    ),
     "RigidTrack.history": (lambda v: st.RigidTrack(history=v), "history", [None, 1.0, np.sin]),
     "RigidTrack.normal_history": (lambda v: st.RigidTrack(normal_history=v), "normal_history", [None, 1.0]),
     "RigidTrack.name": (lambda v: st.RigidTrack(name=v), "name", [None, 3]),

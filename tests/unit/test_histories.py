@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -15,24 +17,30 @@ HISTORIES = [
     st.Harmonic(2.3, amplitude=0.7, mean=0.4, phase=1.1),
     st.Sampled((0.0, 0.2, 0.5, 0.9), (1.0, -2.0, 0.5, 0.25)),
     st.Sampled((0.15, 0.4), (3.0, 1.0)),
+    st.Sampled((0.0, 0.2, 0.2, 0.3, 0.5, 0.5, 0.9), (1.0, 2.0, -1.0, 0.5, 0.5, 3.0, 0.0)),
+    st.Sampled((0.15, 0.15, 0.4, 0.4), (0.0, 1.0, 1.0, 0.0)),
 ]
 KNOTS = [0.15, 0.2, 0.3, 0.4, 0.5, 0.9]
-IDS = ["constant", "ramp", "harmonic", "sampled", "sampled late"]
+IDS = ["constant", "ramp", "harmonic", "sampled", "sampled late", "jumps", "on and off"]
 
 
 @pytest.mark.parametrize("history", HISTORIES, ids=IDS)
-def test_integral_is_the_area_under_the_factor(history):
+@pytest.mark.parametrize(("rate", "integral"), [("factor", "integral"), ("integral", "second_integral")])
+def test_integral_is_the_area_under_the_factor(history, rate, integral):
     for end in (0.0, 0.1, 0.2, 0.35, 0.77, 1.4):
-        area = (
-            quad(lambda t: float(history.factor(np.array([t]))[0]), 0, end, points=KNOTS, limit=200)[0] if end else 0.0
-        )
-        assert history.integral(np.array([end]))[0] == pytest.approx(area, abs=1e-7)
+        # From one kink or jump to the next.
+        ends = [0.0, *(knot for knot in KNOTS if knot < end), end]
+        pieces = [
+            quad(lambda t: float(getattr(history, rate)(np.array([t]))[0]), *piece, limit=200)[0]
+            for piece in pairwise(ends)
+        ]
+        assert getattr(history, integral)(np.array([end]))[0] == pytest.approx(sum(pieces), abs=1e-10)
 
 
 @pytest.mark.parametrize("history", HISTORIES, ids=IDS)
 def test_vectorised_and_pure(history):
     t = np.linspace(0, 1.2, 7)
-    for function in (history.factor, history.integral):
+    for function in (history.factor, history.integral, history.second_integral):
         values = function(t)
         assert values.shape == t.shape
         np.testing.assert_array_equal(values, [function(np.array([x]))[0] for x in t])
@@ -52,6 +60,19 @@ def test_closed_forms():
     assert sampled == st.Sampled((0.1, 0.2), (1.0, 3.0))
 
 
+def test_a_jump_is_the_mean_of_its_sides_at_its_time_however_that_is_rounded():
+    switched = st.Sampled((0.0, 0.2, 0.2), (1.0, 1.0, 0.0))
+    np.testing.assert_array_equal(switched.factor(np.array([0.0, 0.2 - 1e-9, 0.2, 0.2 + 1e-9, 5.0])), [1, 1, 0.5, 0, 0])
+    step = 0.2 / 7_000
+    assert 7_000 * step == 0.2
+    rounded = np.array([np.nextafter(0.2, 0.0), 0.2, np.nextafter(0.2, 1.0)])
+    np.testing.assert_array_equal(switched.factor(rounded), 0.5)
+    np.testing.assert_allclose(switched.integral(rounded), 0.2, rtol=1e-15)
+    np.testing.assert_allclose(switched.second_integral(np.array([0.2, 1.2])), [0.02, 0.22], rtol=1e-15)
+    close = st.Sampled((0.1, 0.1, 0.1 + 1e-9, 0.1 + 1e-9), (0.0, 1.0, 1.0, 5.0))
+    np.testing.assert_array_equal(close.factor(np.array([0.1, 0.1 + 5e-10, 0.1 + 1e-9])), [0.5, 1.0, 3.0])
+
+
 POSITIVE = [NAN, INF, 0.0, -1.0, True, "1", None]
 FINITE = [NAN, INF, True, "1", None]
 MAKERS = {
@@ -63,7 +84,7 @@ MAKERS = {
     "Sampled.time": (
         lambda v: st.Sampled(v, (0.0, 1.0)),
         "time",
-        [None, 1.0, "01", (1.0, 0.0), (-1.0, 0.0), (0.0, 0.0)],
+        [None, 1.0, "01", (1.0, 0.0), (-1.0, 0.0), (0.0, 0.0), (-1.0, -1.0)],
     ),
     "Sampled.value": (lambda v: st.Sampled((0.0, 1.0), v), "value", [None, 1.0, "01"]),
 }
@@ -92,3 +113,19 @@ def test_a_bad_number_in_a_table_is_named_with_its_place(name, value):
 def test_tables_of_unequal_or_too_short_length(time, value):
     with pytest.raises(ValueError, match=r"^time and value must have the same length, at least 2"):
         st.Sampled(time, value)
+
+
+@pytest.mark.parametrize(
+    ("time", "message"),
+    [
+        ((0.0, 1.0, 0.5), r"time must rise, got (0.0, 1.0, 0.5), with time[2] = 0.5 after 1.0"),
+        ((0.0, 1.0, 1.0, 1.0), "time must have no more than two points, a jump, at a time, got (0.0, 1.0, 1.0, 1.0), "),
+        ((0.0, 0.0, 1.0), "time must be above 0 at a jump, got (0.0, 0.0, 1.0)"),
+        ((*range(10_000), 1.0), "time must rise, got a tuple, with time[10000] = 1.0 after 9999.0"),
+    ],
+)
+def test_times_that_do_not_rise(time, message):
+    with pytest.raises(ValueError) as caught:
+        st.Sampled(time, (0.0,) * len(time))
+    assert str(caught.value).startswith(message)
+    assert len(str(caught.value)) < 150

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -546,7 +547,12 @@ def general() -> tuple[st.System, tuple[object, ...]]:
     plate = st.ModalBeam(STEEL, section, 0.8, bending_modes=5, axial_modes=2, name="plate")
     block, other, far = st.PointMass(0.2, name="track"), st.PointMass(0.2), chain(1)
     belt = st.RigidTrack(
-        velocity=0.1, normal_velocity=0.01, history=st.Ramp(0.1), normal_history=st.Harmonic(50.0), name="belt"
+        velocity=0.1,
+        normal_velocity=0.01,
+        history=st.Ramp(0.1),
+        normal_history=st.Harmonic(50.0),
+        name="belt",
+        normal_acceleration=0.3,
     )
     contacts = [
         st.PointContact(rod.tip, plate, at=0.3, gap=1e-6, friction=st.Coulomb(0.4), name="rod on plate"),
@@ -558,7 +564,7 @@ def general() -> tuple[st.System, tuple[object, ...]]:
         st.ImposedVelocity(rod.root, 0.01, normal_load=20.0),
         st.InitialVelocity(block, x=0.05),
         st.InitialState(other, velocity=(0.0, 0.01)),
-        st.Force(far.at("tip"), y=3.0, history=st.Sampled((0.0, 0.1), (1.0, 2.0))),
+        st.Force(far.at("tip"), y=3.0, history=st.Sampled((0.0, 0.1, 0.1), (1.0, 2.0, 0.0))),
     ]
     connections = [
         st.Spring(block.centre, rod.at(0.2), stiffness=5e3, direction="y"),
@@ -603,6 +609,55 @@ def test_a_record_of_many_bodies_is_shown_as_the_same_scenario_and_gone_on_from(
     other = st.load_scenario(tmp_path / "run.nc", {"contacts.1.friction.law": "coulomb", "contacts.1.friction": 0.3})
     with pytest.raises(ValueError, match="same contacts"):
         other.simulate(start=record)
+
+
+SHAKEN = """
+[bodies.block]
+kind = "point mass"
+mass = "2 kg"
+[[contacts]]
+tip = { body = "block" }
+[contacts.track]
+kind = "rigid"
+velocity = "5 cm/s"
+acceleration = "1.5 m/s2"
+normal_acceleration = -2
+history = { kind = "sampled", time = ["0 s", "10 ms", "10 ms"], value = [0, 1, 0] }
+normal_history = { kind = "sampled", time = [0, 0.01, 0.02], value = [0, 1, 0] }
+[[drives]]
+kind = "gravity"
+[simulation]
+duration = "30 ms"
+sample_rate = "10 kHz"
+"""
+
+
+def test_a_ground_of_an_accelerogram_and_back_again(tmp_path):
+    path = tmp_path / "shaken.toml"
+    path.write_text(SHAKEN, encoding="utf-8")
+    case = st.load_scenario(path)
+    track = case.system.contacts[0].track
+    assert track == st.RigidTrack(
+        velocity=0.05,
+        acceleration=1.5,
+        normal_acceleration=-2.0,
+        history=st.Sampled((0.0, 0.01, 0.01), (0.0, 1.0, 0.0)),
+        normal_history=st.Sampled((0.0, 0.01, 0.02), (0.0, 1.0, 0.0)),
+    )
+    # 5 cm/s and half of 1.5 m/s² for 10 ms.
+    assert track.speed(np.array([0.03])) == pytest.approx(0.0575)
+    record = case.simulate()
+    again = st.load_scenario(record)
+    assert again.system == case.system
+    xr.testing.assert_equal(again.simulate().drop_attrs(), record.drop_attrs())
+    shown = st.scenario_text(record)
+    assert re.search(r"normal_acceleration = -2.0 +# acceleration along its normal, .* shaken ground \[m/s²\]", shown)
+    assert "time = [0.0, 0.01, 0.01]" in shown
+    found = problems(SHAKEN.replace('"10 ms", "10 ms"', '"10 ms", "9 ms"').replace("-2", '"2 m/s"'), tmp_path)
+    assert len(found) == 1
+    assert found[0].startswith("contacts.0.track.normal_acceleration must be a number in m/s2, got '2 m/s'")
+    (found,) = problems(SHAKEN.replace('"10 ms", "10 ms"', '"10 ms", "9 ms"'), tmp_path)
+    assert found.startswith("contacts.0.track.history.time must rise, got (0.0, 0.01, 0.009)")
 
 
 def test_matrices_written_out_are_the_same_as_their_file(tmp_path):

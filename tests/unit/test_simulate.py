@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import tomllib
 from dataclasses import replace
@@ -333,7 +334,8 @@ def test_step_at_or_above_the_limit_is_refused_with_the_limit(scheme):
     for step in (limit, 1.001 * limit, 1.0):
         with pytest.raises(ValueError, match=r"^step must be below .*limit of [0-9.e-]+ s, got") as caught:
             st.simulate(system, 0.01, scheme=scheme, step=step)
-        assert f"{limit:.6g}" in str(caught.value)
+        said = float(re.search(r"limit of (\S+) s", str(caught.value))[1])
+        assert limit * (1.0 - 1e-5) < said <= limit
     run = st.simulate(system, 0.005, scheme=scheme, step=limit * (1 - 1e-9))
     assert np.all(np.isfinite(run.kinetic_and_elastic))
 
@@ -445,7 +447,7 @@ def test_a_run_goes_on_only_from_the_same_bodies_and_place():
     )
     with pytest.raises(ValueError, match=r"^start must have the same contact.at as this run, 0.3, got 0.2"):
         st.simulate(elsewhere, 1e-3, step=STEP, start=first)
-    with pytest.raises(ValueError, match=r"^start must have the same probes as this run"):
+    with pytest.raises(ValueError, match=r"^start must have the same probes.0.quantity as this run, 'velocity', got "):
         st.simulate(system, 1e-3, step=STEP, start=first, probes=[st.Velocity(system.track.centre)])
     rougher = st.PointContact(system.slider.tip, system.track, at=0.2, friction=st.Coulomb(2.0), gap=1e-6)
     assert st.simulate(st.System(rougher, system.drives), 1e-3, step=STEP, start=first).attrs["ended"] == "finished"

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..bodies import ModalBeam, ModalPlate
 from ..bodies.modes import Array
-from ..checks import brief, finite, positive
+from ..checks import at_least, at_most, brief, finite, positive
 
 FARTHEST = 1000.0
 
@@ -81,6 +81,6 @@ def check_off_beam(listeners: Array, length: float, radius: float) -> None:
         distance = float(np.hypot(along, np.hypot(place[1], place[2])))
         if distance <= radius:
             raise ValueError(
-                f"listener must be farther than {radius:.4g} m from the beam's axis, got {tuple(place.tolist())} at "
-                f"{distance:.4g} m"
+                f"listener must be farther than {at_least(radius, 4)} m from the beam's axis, "
+                f"got {tuple(place.tolist())} at {at_most(distance, 4)} m"
             )

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..bodies.modes import Array
-from ..checks import instance
+from ..checks import at_least, at_most, instance
 
 # Share of the sample interval by which samples may be off an even grid: rounding of times leaves far less.
 EVEN = 1e-3
@@ -117,10 +117,12 @@ def check_length(pressure: xr.DataArray, shortest: float, what: str) -> None:
     """Raise ValueError if a pressure lasts less than `shortest` seconds, which `what` takes."""
     lasts = pressure.sizes["time"] * _interval(pressure)
     if not is_enough(lasts, shortest):
-        raise ValueError(f"pressure must last at least {shortest:.3g} s for {what}, got {lasts:.3g} s")
+        raise ValueError(f"pressure must last at least {at_least(shortest, 3)} s for {what}, got {at_most(lasts, 3)} s")
 
 
 def check_rate(rate: float, lowest: float, what: str) -> None:
     """Raise ValueError if a sample rate is below `lowest` [Hz], which `what` takes."""
     if not is_enough(rate, lowest):
-        raise ValueError(f"pressure must be sampled at {lowest:.6g} Hz or more for {what}, got {rate:.6g} Hz")
+        raise ValueError(
+            f"pressure must be sampled at {at_least(lowest)} Hz or more for {what}, got {at_most(rate)} Hz"
+        )

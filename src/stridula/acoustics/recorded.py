@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from ..bodies.modes import Array
+from ..checks import at_least, at_most
 from .panels import Panel
 
 DIVERGED = ("not finite", "contact unsolved", "energy created")
@@ -87,6 +88,6 @@ def _check_on_track(position: Array, panel: Panel) -> None:
     if low < panel.ends[0] - slack or high > panel.ends[1] + slack:
         worst = low if low < panel.ends[0] - slack else high
         raise ValueError(
-            f"track must be the one the run presses on, here from {panel.ends[0]:g} to {panel.ends[1]:g} m, got a "
-            f"contact_position of {worst:.6g} m"
+            f"track must be the one the run presses on, here from {at_least(panel.ends[0])} to "
+            f"{at_most(panel.ends[1])} m, got a contact_position of {worst:.6g} m"
         )

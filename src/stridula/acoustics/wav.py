@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from ..bodies.modes import Array
-from ..checks import choice, positive
+from ..checks import at_least, choice, positive
 from ..disk import check_writable, read, write
 from .pressures import channels
 from .sample_rates import resampled
@@ -119,7 +119,10 @@ def write_wav(
         scale = normalised_scale(peak)
     largest = scale * (1.0 - 1.0 / STEPS)
     if subtype == "PCM_24" and peak > largest:
-        raise ValueError(f"full_scale must be above the peak of {peak:.6g} Pa, got {scale!r} Pa: it would be clipped")
+        least = at_least(peak / (1.0 - 1.0 / STEPS))
+        raise ValueError(
+            f"full_scale must be at least {least} Pa for a peak of {peak:.6g} Pa, got {scale!r} Pa: it would be clipped"
+        )
     comment = scale_comment(scale, float(pressure["time"][0]))
     write(path, encoded(sound / scale, sample_rate, subtype, comment))
     duration = sound.shape[0] / sample_rate

@@ -12,6 +12,8 @@ from .signals import of_one_contact
 
 SMOOTHING = 5e-3
 SHORTEST_STOP = 20e-3
+# Share of a sample that rounding may make of nothing.
+ROUND_OFF = 1e-9
 
 
 def phases(run: xr.Dataset, status: str, smoothing: float = SMOOTHING) -> Array:
@@ -78,7 +80,7 @@ def status_share(run: xr.Dataset, status: str, intervals: Array | None = None) -
 def settling_time(run: xr.Dataset) -> float:
     """Return the time [s] from which the contact slides at every step to the end; NaN if it does not end sliding."""
     time, interval = _clock(run)
-    slides = of_one_contact(run)["status_share"].values[:, STATUS_WORDS.index("sliding")] == 1.0
+    slides = of_one_contact(run)["status_share"].values[:, STATUS_WORDS.index("sliding")] >= 1.0 - ROUND_OFF
     if not slides[-1]:
         return float("nan")
     others = np.flatnonzero(~slides)
@@ -89,7 +91,7 @@ def longest_unchanged(run: xr.Dataset) -> float:
     """Return the longest time [s] during which the status does not change."""
     _, interval = _clock(run)
     share = of_one_contact(run)["status_share"].values
-    pure = np.where(share.max(axis=1) == 1.0, share.argmax(axis=1), -1)
+    pure = np.where(share.max(axis=1) >= 1.0 - ROUND_OFF, share.argmax(axis=1), -1)
     changes = np.flatnonzero(np.diff(pure)) + 1
     starts = np.concatenate([[0], changes])
     lengths = np.diff(np.concatenate([starts, [pure.size]]))[pure[starts] >= 0]

@@ -10,15 +10,17 @@ import numpy as np
 from ..bodies.modes import Array
 from ..checks import positive, within
 from .heard import Frames, frames, strongest_tone
-from .phases import SMOOTHING
+from .phases import ROUND_OFF, SMOOTHING
 from .status_changes import (
     MIXED,
     between_stops,
     changes,
     last_rest,
     least_landings,
+    prevailing,
     regularity,
-    stick_onsets,
+    slips,
+    vibrations,
     whole_status,
 )
 
@@ -26,6 +28,8 @@ STICKING = 1
 # Samples within which the status changes, from which the cycle lies inside the samples: one sampled eight times a
 # period has a quarter of them.
 UNRESOLVED = 0.5
+# Steps of the march of which a stick or a slip may be noise.
+NOISY_STEPS = 2.0
 # Share of `faint` from which a tone that grows counts.
 BUDDING = 0.02
 
@@ -45,6 +49,8 @@ class Signals(NamedTuple):
         Landings in each sample [1]; counted from the shares where there are none.
     lost, rubbed : ndarray, shape (samples,)
         Energy lost to damping and impacts, and to friction, since the start [J].
+    step : float
+        Step of the march [s], 0 if it is not known.
     """
 
     interval: float
@@ -53,6 +59,7 @@ class Signals(NamedTuple):
     landings: Array | None
     lost: Array
     rubbed: Array
+    step: float
 
 
 @dataclass(frozen=True)
@@ -104,11 +111,11 @@ class Measures:
     tone : float
         Frequency of what the samples hide, else of the strongest tone that is heard [Hz]; NaN if nothing is.
     cycle : float
-        Frequency of the stick phases, or of what the samples hide [Hz]; NaN for fewer than two.
+        Frequency of the slips, or of what the samples hide [Hz]; NaN for fewer than two.
     periodicity : float
-        Regularity of the beginnings of the stick phases [1], NaN for fewer than three.
+        Regularity of the ends of the slips [1], NaN for fewer than three.
     impact_rate, slip_rate : float
-        Landings, and stick phases that begin, per second [1/s].
+        Landings, and slips, per second [1/s].
     change_rate : float
         Cycles of changing status per second, the least that explain the samples [1/s].
     settle_time : float
@@ -122,8 +129,11 @@ class Measures:
         lost so in the earlier half [1].
     last_status : int
         Status in which the run settles: 0 separated, 1 sticking, 2 sliding, -1 none.
-    stick_phases : int
-        Stick phases that begin.
+    slips : int
+        Slips, each of which ends in a stick phase.
+    periods : float
+        Periods of the tone in slips that make up half of the time of all, those faster than the lowest tone as one [1];
+        infinite where it always slips, NaN where no tone is heard.
     is_short : bool
         Whether there are fewer than two frames to listen to.
     """
@@ -147,7 +157,8 @@ class Measures:
     loss: float
     loss_growth: float
     last_status: int
-    stick_phases: int
+    slips: int
+    periods: float
     is_short: bool
 
 
@@ -172,7 +183,9 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     time = (count - first) * interval
 
     mean = float(np.abs(signals.forces[0, first:]).mean()) or 1.0
-    onsets = stick_onsets(signals.share[first:, STICKING], _odd(0.5 / (limits.lowest_tone * interval)))
+    noise, fastest = NOISY_STEPS * signals.step / interval, 1.0 / (limits.lowest_tone * interval)
+    found = slips(signals.share[first:, STICKING], noise * (1.0 + ROUND_OFF), fastest)
+    caught = found[found[:, 1] < count - first, 1]
     landed = _landings(signals, first)
     change_rate = max(changes(status[first:]) / 2.0, landed) / time
     loss, loss_growth = _losses(signals, heard_from)
@@ -180,7 +193,7 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     heard = _heard(signals.forces[:, heard_from:], interval, limits)
     counted = heard.later_half() if settles else heard
     audibility = counted.level / mean
-    tonality, tone, cycle = counted.tonality, float("nan"), _cycle(onsets, interval)
+    tonality, tone, cycle = counted.tonality, float("nan"), _cycle(caught, interval)
     is_loud = audibility >= limits.faint or change_rate >= limits.lowest_tone
     if audibility < limits.faint and np.mean(status[first:] == MIXED) >= UNRESOLVED:
         tonality, tone, cycle = _likeness(signals.forces[:, first:], mean), change_rate, change_rate
@@ -200,9 +213,9 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         growth=heard.growth,
         tone=tone,
         cycle=cycle,
-        periodicity=regularity(onsets),
+        periodicity=regularity(caught),
         impact_rate=landed / time,
-        slip_rate=onsets.size / time,
+        slip_rate=caught.size / time,
         change_rate=change_rate,
         settle_time=rest * interval if rest < count else float("nan"),
         level=float(signals.forces[0, first:].std()) / mean,
@@ -211,7 +224,8 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         loss=loss,
         loss_growth=loss_growth,
         last_status=int(status[-1]) if settles else MIXED,
-        stick_phases=int(onsets.size),
+        slips=int(caught.size),
+        periods=prevailing(np.diff(vibrations(found, fastest), axis=1)[:, 0]) * interval * tone,
         is_short=(count - heard_from) * interval < 1.5 * limits.frame,
     )
 
@@ -239,9 +253,9 @@ def _landings(signals: Signals, first: int) -> float:
     return float(signals.landings[first:].sum())
 
 
-def _cycle(onsets: Array, interval: float) -> float:
-    """Return the mean frequency of the stick phases that begin at some samples [Hz], NaN for fewer than two."""
-    return (onsets.size - 1) / (float(onsets[-1] - onsets[0]) * interval) if onsets.size > 1 else float("nan")
+def _cycle(caught: Array, interval: float) -> float:
+    """Return the mean frequency of slips that end at some samples [Hz], NaN for fewer than two."""
+    return (caught.size - 1) / (float(caught[-1] - caught[0]) * interval) if caught.size > 1 else float("nan")
 
 
 def _likeness(forces: Array, mean: float) -> float:

@@ -20,6 +20,8 @@ TRANSIENT = 0.1
 # Growth of a tone from one half of the time to the other: below the first it dies away, above the second it is on its
 # way up.
 KEPT, GROWING = 0.5, 2.0
+# Periods of a tone in a slip, from which the tone is what slips: a mode that is let go is caught within one.
+SUSTAINED = 2.0
 # Ends of a run that cannot be believed.
 FAILED = ("not finite", "contact unsolved", "energy created")
 # What a record must have.
@@ -39,10 +41,10 @@ MEANINGS = {
     "sliding": ("1", "share of the time sliding"),
     "tonality": ("1", "share of the heard power that repeats itself"),
     "audibility": ("1", "heard forces over the mean normal force"),
-    "periodicity": ("1", "regularity of the stick phases"),
-    "frequency": ("Hz", "frequency of the strongest tone, or of the stick phases"),
+    "periodicity": ("1", "regularity of the slips"),
+    "frequency": ("Hz", "frequency of the strongest tone, or of the slips"),
     "impact_rate": ("1/s", "landings per second"),
-    "slip_rate": ("1/s", "stick phases per second"),
+    "slip_rate": ("1/s", "slips from one stick phase to the next, per second"),
     "settle_time": ("s", "time from which the status does not change"),
     "level": ("1", "fluctuation of the normal force over its mean"),
 }
@@ -96,8 +98,8 @@ def regime(
         Scalars: ``regime``, one of `REGIMES`; ``confidence`` [1], ``0.5 + 0.5 min(1, |log2 r|)`` with r the factor by
         which the least clear of the decisive measures is away from its threshold; the shares ``separated``,
         ``sticking`` and ``sliding``; ``tonality``, ``audibility``, ``periodicity``, ``frequency``, ``impact_rate``,
-        ``slip_rate``, ``settle_time`` and ``level``. The frequency is that of the stick phases in stick-slip, else that
-        of the strongest tone; it is NaN where nothing is heard, and a lower bound where the samples hide the cycle.
+        ``slip_rate``, ``settle_time`` and ``level``. The frequency is that of the slips in stick-slip, else that of the
+        strongest tone; it is NaN where nothing is heard, and a lower bound where the samples hide the cycle.
 
     Raises
     ------
@@ -148,6 +150,7 @@ def signals_of(run: xr.Dataset) -> Signals:
         landings=held["landings"].values if "landings" in held else None,
         lost=held["damping_loss"].values + held["impact_loss"].values,
         rubbed=held["friction_loss"].values,
+        step=float(run.attrs.get("step", 0.0)),
     )
 
 
@@ -196,7 +199,8 @@ def _on_the_move(found: Measures, limits: Thresholds) -> tuple[str, float]:
     """Return the regime of a run whose status goes on changing, and its margin."""
     # A cycle of states this fast is a limit cycle, however little of it the forces show.
     heard = max(_above(found.audibility, limits.faint), _above(found.change_rate, limits.lowest_tone))
-    squeals = min(heard, _odds_above(found.tonality, limits.tonal))
+    sustained = math.inf if math.isnan(found.periods) else _above(found.periods, SUSTAINED)
+    squeals = min(heard, _odds_above(found.tonality, limits.tonal), sustained)
     if squeals >= 0.0:
         return SQUEALS, squeals
     # Of the time that it does not stick: how long it sticks between is another matter.
@@ -204,11 +208,14 @@ def _on_the_move(found: Measures, limits: Thresholds) -> tuple[str, float]:
     opens = _odds_above(found.separated / moving if moving else 0.0, limits.rare)
     if opens >= 0.0:
         return JUDDERS, min(-squeals, opens)
-    sticks = _odds_above(found.sticking, limits.rare)
-    if sticks < 0.0:
+    # A state that is rare is an accident of the others, unless it comes back.
+    sticks, returns = _odds_above(found.sticking, limits.rare), _above(found.slips, 2.0)
+    if sticks < 0.0 and returns < 0.0:
         return SLIDES, min(-squeals, -opens, -sticks)
-    holds = _odds_above(found.sticking, 1.0 - limits.rare) if found.stick_phases < 2 else -math.inf
-    return (STICKS, min(-squeals, holds)) if holds >= 0.0 else (SLIPS, min(-squeals, -opens, sticks, -holds))
+    holds = _odds_above(found.sticking, 1.0 - limits.rare)
+    if holds >= 0.0 and returns < 0.0:
+        return STICKS, min(-squeals, holds)
+    return SLIPS, min(-squeals, -opens, max(returns, min(sticks, -holds)))
 
 
 def _above(value: float, threshold: float) -> float:

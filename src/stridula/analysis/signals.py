@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from ..bodies.modes import Array
+from ..checks import at_most, listed
 
 Recorded = TypeVar("Recorded", xr.Dataset, xr.DataArray)
 
@@ -30,7 +31,7 @@ def of_one_contact(recorded: Recorded) -> Recorded:
         If it has the dimension ``contact``.
     """
     if "contact" in recorded.dims:
-        names = ", ".join(repr(str(name)) for name in recorded["contact"].values)
+        names = listed(repr(str(name)) for name in recorded["contact"].values)
         kind = "run" if isinstance(recorded, xr.Dataset) else "signal"
         raise ValueError(
             f"{kind} must be of one contact, got those of {names}: choose one with {kind}.sel(contact=...)"
@@ -51,5 +52,5 @@ def blocks(values: Array, window: float, interval: float) -> Array:
     """Return the values in successive blocks of a window, shape (blocks, samples)."""
     size = max(1, round(window / interval))
     if values.size < size:
-        raise ValueError(f"window must be at most the signal's {values.size * interval:.6g} s, got {window!r}")
+        raise ValueError(f"window must be at most the signal's {at_most(values.size * interval)} s, got {window!r}")
     return values[: values.size // size * size].reshape(-1, size)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..bodies.modes import Array
-from .phases import moving_mean
+from .phases import ROUND_OFF, moving_mean
 
 MIXED = -1
 
@@ -18,8 +18,8 @@ def whole_status(share: Array) -> Array:
     share : ndarray, shape (samples, 3)
         Share of each status in each sample.
     """
-    status = np.where(share[:, 1] == 1.0, 1, np.where(share[:, 2] == 1.0, 2, MIXED))
-    return np.where(share[:, 0] == 1.0, 0, status)
+    whole = share >= 1.0 - ROUND_OFF
+    return np.where(whole[:, 0], 0, np.where(whole[:, 1], 1, np.where(whole[:, 2], 2, MIXED)))
 
 
 def last_rest(status: Array) -> int:
@@ -70,18 +70,85 @@ def least_landings(separated: Array) -> int:
     return int(closed.sum() + again.sum())
 
 
-def stick_onsets(sticking: Array, width: int) -> Array:
-    """Return the samples at which phases of sticking begin, those of a moving mean of the share above one half.
+def slips(sticking: Array, noise: float, fastest: float) -> Array:
+    """Return when a contact slips, or opens, between two stick phases.
+
+    A sample that sticks for a share of its interval slips next to the neighbour that sticks less. What follows within
+    `fastest`, after a stick of less than a quarter of that, is one vibration and not another slip.
 
     Parameters
     ----------
     sticking : ndarray, shape (samples,)
         Share of sticking in each sample.
-    width : int
-        Odd number of samples of the moving mean.
+    noise : float
+        Longest stick, and longest slip, that is none [samples].
+    fastest : float
+        Shortest time from the end of a slip to the end of the next [samples].
+
+    Returns
+    -------
+    ndarray, shape (slips, 2)
+        Starts and ends [samples]; the last may be cut by the end.
     """
-    prevails = moving_mean(sticking, width) > 0.5
-    return np.flatnonzero(prevails[1:] & ~prevails[:-1]) + 1
+    sticks, lengths = _joined(*_pieces(sticking))
+    sticks, lengths = _joined(sticks & (lengths > noise), lengths)
+    ends, moves = np.cumsum(lengths), np.flatnonzero(~sticks)
+    if not moves.size:
+        return np.empty((0, 2))
+    found = np.stack([(ends - lengths)[moves], ends[moves]], axis=1)
+    firsts = _firsts(found, fastest, fastest / 4.0)
+    return _merged(found, firsts)[np.add.reduceat(lengths[moves], firsts) > noise]
+
+
+def vibrations(found: Array, fastest: float) -> Array:
+    """Return slips with those made one that end within `fastest` of the one before, however long it sticks between.
+
+    Parameters
+    ----------
+    found : ndarray, shape (slips, 2)
+        Starts and ends, as `slips` returns them.
+    fastest : float
+        Shortest time from the end of a vibration to the end of the next, in the unit of those.
+    """
+    return _merged(found, _firsts(found, fastest, np.inf)) if len(found) else found
+
+
+def _firsts(found: Array, fastest: float, longest: float) -> Array:
+    """Return the slips that are apart from the one before: by a long stick, or by their ends."""
+    stuck, period = found[1:, 0] - found[:-1, 1], found[1:, 1] - found[:-1, 1]
+    return np.flatnonzero(np.concatenate([[True], (stuck >= longest) | (period >= fastest)]))
+
+
+def _merged(found: Array, firsts: Array) -> Array:
+    """Return slips from each of the first ones to the last before the next of those."""
+    lasts = np.concatenate([firsts[1:], [len(found)]]) - 1
+    return np.stack([found[firsts, 0], found[lasts, 1]], axis=1)
+
+
+def _pieces(sticking: Array) -> tuple[Array, Array]:
+    """Return three pieces of time of each sample: whether they stick, and how long they are [samples].
+
+    Like samples that stick, or slip, for all of their interval count as one.
+    """
+    mixed = (sticking > 0.0) & (sticking < 1.0)
+    firsts = np.flatnonzero(np.concatenate([[True], mixed[1:] | (sticking[1:] != sticking[:-1])]))
+    share, size = sticking[firsts], np.diff(firsts, append=sticking.size)[:, None]
+    beside = np.pad(share, 1, mode="edge")
+    before, after = beside[:-2], beside[2:]
+    level = before == after
+    slips_amid = level & (share <= before)
+    sticks = np.stack([(before > after) | slips_amid, level & ~slips_amid, (before < after) | slips_amid], axis=1)
+    inner = np.where(level, np.where(slips_amid, 1.0 - share, share), 0.0)
+    first = np.where(level, (1.0 - inner) / 2.0, np.where(before > after, share, 1.0 - share))
+    return sticks.ravel(), (np.stack([first, inner, 1.0 - first - inner], axis=1) * size).ravel()
+
+
+def _joined(sticks: Array, lengths: Array) -> tuple[Array, Array]:
+    """Return pieces of time with those of a kind that follow each other made one, and empty ones left out."""
+    kept = lengths > ROUND_OFF
+    sticks, lengths = sticks[kept], lengths[kept]
+    firsts = np.flatnonzero(np.concatenate([[True], sticks[1:] != sticks[:-1]]))
+    return sticks[firsts], np.add.reduceat(lengths, firsts)
 
 
 def between_stops(sticking: Array, width: int) -> Array:
@@ -99,6 +166,20 @@ def between_stops(sticking: Array, width: int) -> Array:
         return np.ones(sticking.size)
     inside = np.maximum(2.0 * moving_mean(moves, width) - 1.0, 0.0)
     return np.asarray(inside * inside * (3.0 - 2.0 * inside))
+
+
+def prevailing(lengths: Array) -> float:
+    """Return the length from which on lengths make up half of their sum, infinite if there are none.
+
+    Parameters
+    ----------
+    lengths : ndarray, shape (lengths,)
+        How long things are.
+    """
+    if not lengths.size:
+        return float("inf")
+    ordered = np.sort(lengths)[::-1]
+    return float(ordered[np.searchsorted(np.cumsum(ordered), 0.5 * ordered.sum())])
 
 
 def regularity(places: Array) -> float:

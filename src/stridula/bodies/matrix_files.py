@@ -16,6 +16,7 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
+from ..checks import at_least, listed
 from ..disk import one_line, write
 from .modes import Array
 
@@ -157,7 +158,7 @@ def _kind(path: str | os.PathLike[str]) -> str:
         with open(path, "rb") as file:
             head = file.read(1024)
     if size > LARGEST_FILE:
-        raise ValueError(f"cannot read {os.fspath(path)!r}: {size / 1024**3:.1f} GiB, at most 2 GiB are read")
+        raise ValueError(f"cannot read {os.fspath(path)!r}: {at_least(size / 1024**3, 3)} GiB, at most 2 GiB are read")
     if not head:
         raise ValueError(f"cannot read {os.fspath(path)!r}: the file is empty")
     if head.startswith(b"PK"):
@@ -173,7 +174,7 @@ def _npz(path: str | os.PathLike[str]) -> dict[str, Any]:
     with zipfile.ZipFile(path) as archive:
         unpacked = sum(entry.file_size for entry in archive.infolist())
     if unpacked > LARGEST_FILE:
-        raise ValueError(f"{unpacked / 1024**3:.1f} GiB when unpacked, at most 2 GiB are read")
+        raise ValueError(f"{at_least(unpacked / 1024**3, 3)} GiB when unpacked, at most 2 GiB are read")
     with np.load(path, allow_pickle=False) as file:
         wanted = [name for name in file.files if name in (*SYNONYMS, *MATRICES, *OTHERS) or name.startswith(POINT)]
         return _by_words({name: file[name] for name in wanted})
@@ -190,7 +191,7 @@ def _by_words(held: Mapping[str, Any]) -> dict[str, Any]:
         arrays[word] = held[symbol]
     for name in MATRICES[:2]:
         if name not in arrays:
-            raise ValueError(f"it must hold {name}, it holds {', '.join(sorted(arrays)) or 'nothing known'}")
+            raise ValueError(f"it must hold {name}, it holds {listed(sorted(arrays) or ['nothing known'])}")
     return arrays
 
 

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..checks import count, instance, positive, within
+from ..checks import at_least, count, instance, positive, within
 from .damping import check_damping_count, checked_damping, damping_of_modes
 from .modes import Array, BodyPoint, Modes
 from .sections import Circle, Material, Rectangle, Section
@@ -65,9 +65,9 @@ class ModalBeam:
         if self.cutoff is not None:
             positive("cutoff", self.cutoff)
             if self.harmonics[0] < 1:
+                first = at_least(float(self._bending(1)) / (2 * np.pi))
                 raise ValueError(
-                    f"cutoff must leave at least one bending mode (first at {self._bending(1) / (2 * np.pi):.6g} Hz), "
-                    f"got {self.cutoff!r} Hz"
+                    f"cutoff must leave at least one bending mode (first at {first} Hz), got {self.cutoff!r} Hz"
                 )
         check_damping_count(self.damping, sum(self.harmonics))  # type: ignore[arg-type]
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import count, finite, instance, positive, within
+from ..checks import at_least, at_most, count, finite, instance, positive, within
 from .damping import check_damping_count, checked_damping, damping_of_modes
 from .modes import Array, BodyPoint, Modes
 from .plane_stress import PlaneStress, lowest, plane_stress, rigid
@@ -146,9 +146,8 @@ class ModalPlate:
         if not isinstance(position, tuple):
             within("position", position, *self.ends)
         elif not self._holds(*_pair("position", position)):
-            raise ValueError(
-                f"position must be on the plate, from (0, 0) to ({self.length:g}, {self.width:g}), got {position!r}"
-            )
+            corner = f"({at_most(self.length)}, {at_most(self.width)})"
+            raise ValueError(f"position must be on the plate, from (0, 0) to {corner}, got {position!r}")
 
     @property
     def track_line(self) -> Line:
@@ -314,15 +313,16 @@ class ModalPlate:
         return 0.5 * np.pi * squared * math.sqrt(self.rigidity / self.surface_density)
 
     def _check_cutoff(self, highest: float) -> None:
-        if highest < self._frequency(1, 1):
+        first = self._frequency(1, 1)
+        if highest < first:
             raise ValueError(
-                f"cutoff must leave at least one mode (first at {self._frequency(1, 1):.6g} Hz), got {self.cutoff!r} Hz"
+                f"cutoff must leave at least one mode (first at {at_least(first)} Hz), got {self.cutoff!r} Hz"
             )
         first = lowest(self.material, self.length, self.width)
         if self.in_plane and highest < first:
             raise ValueError(
-                f"cutoff must leave at least one mode in the plane where in_plane is true (first at {first:.6g} Hz), "
-                f"got {self.cutoff!r} Hz"
+                "cutoff must leave at least one mode in the plane where in_plane is true "
+                f"(first at {at_least(first)} Hz), got {self.cutoff!r} Hz"
             )
 
     def _holds(self, x: float, y: float) -> bool:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
+from ..checks import at_least, at_most
 from .matrix_input import ROUND_OFF, Rayleigh, smallest_eigenvalue
 from .modes import Array, Modes
 
@@ -37,7 +38,7 @@ def reduce_body(body: Any) -> Reduction:
     kept = np.full(angular.size, True) if body.cutoff is None else angular <= 2.0 * np.pi * body.cutoff
     if not kept.any():
         first = angular[0] / (2.0 * np.pi)
-        raise ValueError(f"cutoff must leave at least one mode (first at {first:.6g} Hz), got {body.cutoff!r} Hz")
+        raise ValueError(f"cutoff must leave at least one mode (first at {at_least(first)} Hz), got {body.cutoff!r} Hz")
     angular, shapes = angular[kept], shapes[:, kept]
     shapes.flags.writeable = False
     translation = np.zeros((2, angular.size))
@@ -67,7 +68,8 @@ def _all_modes(body: Any) -> tuple[Array, Array]:
         least = smallest_eigenvalue(body.stiffness)
         raise ValueError(
             f"stiffness must be positive semidefinite, got the smallest eigenvalue {least:.6g}, "
-            f"a squared frequency of {squared[0]:.6g} 1/s² where rounding gives no less than {-threshold:.1g}"
+            f"a squared frequency of {at_most(squared[0])} 1/s² where rounding gives no less than "
+            f"{at_least(-threshold, 1)}"
         )
     return np.sqrt(np.where(squared <= threshold, 0.0, squared)), scale[:, None] * shapes
 

@@ -16,6 +16,7 @@ from ..acoustics import levels, sensation
 from ..acoustics.levels import equivalent_level, sound_level
 from ..acoustics.pressures import channels, is_enough, positions
 from ..acoustics.sensation import is_available, loudness_over_time, roughness, sharpness
+from ..checks import at_least, at_most
 from .consoles import wide_console
 
 
@@ -35,8 +36,8 @@ class Column(NamedTuple):
 
     def lacks(self, lasts: float, rate: float) -> str:
         """Return what a sound of a duration [s] at a rate [Hz] lacks for it, in words; nothing where it is enough."""
-        words = [] if is_enough(lasts, self.shortest) else [f"{self.shortest:g} s"]
-        words += [] if is_enough(rate, self.lowest_rate) else [f"{self.lowest_rate / 1e3:g} kHz"]
+        words = [] if is_enough(lasts, self.shortest) else [f"{at_least(self.shortest)} s"]
+        words += [] if is_enough(rate, self.lowest_rate) else [f"{at_least(self.lowest_rate / 1e3)} kHz"]
         return " and ".join(words)
 
 
@@ -105,7 +106,7 @@ def _too_little(left_out: Sequence[Column], lasts: float, rate: float) -> str:
     for lacks, alike in groupby(left_out, lambda column: column.lacks(lasts, rate)):
         *names, last = (column.name for column in alike)
         parts.append(f"{', '.join(names) + ' and ' if names else ''}{last} (at least {lacks})")
-    return f"{lasts:.3g} s of sound at {rate / 1e3:.4g} kHz are too little for {', '.join(parts)}"
+    return f"{at_most(lasts, 3)} s of sound at {at_most(rate / 1e3, 4)} kHz are too little for {', '.join(parts)}"
 
 
 def _names(pressure: xr.DataArray) -> list[str]:

@@ -11,6 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..checks import brief, listed
 from ..disk import read
 from ..scenarios.quantities import parts
 from ..studies.points import Grid, LatinHypercube, Range
@@ -213,8 +214,10 @@ def _rows(path: str) -> list[dict[str, str]]:
         raise ValueError(f"--points must hold a row of keys and at least one of values, got {len(lines)} in {path!r}")
     header = [key.strip() for key in lines[0][1]]
     if not all(header) or len(set(header)) < len(header):
-        raise ValueError(f"--points must name each key once in its first row, got {', '.join(header)} in {path!r}")
+        raise ValueError(f"--points must name each key once in its first row, got {listed(header)} in {path!r}")
     for number, row in lines[1:]:
         if len(row) != len(header) or not all(value.strip() for value in row):
-            raise ValueError(f"--points must have a value for each of {', '.join(header)}, got {row} in line {number}")
+            raise ValueError(
+                f"--points must have a value for each of {listed(header)}, got {brief(row)} in line {number}"
+            )
     return [dict(zip(header, (value.strip() for value in row), strict=True)) for _, row in lines[1:]]

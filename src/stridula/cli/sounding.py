@@ -13,7 +13,7 @@ from ..acoustics.panels import panel_of
 from ..acoustics.radiate import radiate
 from ..acoustics.wav import NORMALISED, RATES, SUBTYPES, write_wav
 from ..bodies import ModalBeam, ModalPlate
-from ..checks import suggestion
+from ..checks import at_most, suggestion
 from ..records.files import load
 from ..scenarios.load import load_scenario
 from ..scenarios.quantities import quantity
@@ -159,5 +159,5 @@ def _figure(pressure: xr.DataArray, record: xr.Dataset, title: str) -> Any:
 
     lasts = pressure.sizes["time"] * float(record.attrs["sample_interval"])
     if lasts < SHORTEST_FIGURE:
-        raise ValueError(f"--plot must have a sound of at least {SHORTEST_FIGURE:g} s, got {lasts:.3g} s")
+        raise ValueError(f"--plot must have a sound of at least {SHORTEST_FIGURE:g} s, got {at_most(lasts, 3)} s")
     return spectrogram(pressure.isel(listener=0), record if "contact" not in record.dims else None, title=title)

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from ..bodies.modes import Array
 from ..checks import finite, instance
-from ..histories import HISTORIES, Constant, Harmonic, Ramp, Sampled
+from ..histories import HISTORIES, Constant, Harmonic, History, Ramp, Sampled
 
 
 @dataclass(frozen=True)
 class RigidTrack:
-    """An endless rigid plane, fixed or moving as prescribed.
+    """An endless rigid plane, fixed or moving as prescribed by its velocity or by its acceleration.
+
+    Along its tangent it moves at ``velocity`` times its history. Where an ``acceleration`` is given, that has the
+    history, and ``velocity`` is the one at the start: a belt that is shaken, or the ground of an accelerogram. So it
+    does along its normal.
 
     Parameters
     ----------
@@ -19,9 +26,11 @@ class RigidTrack:
     normal_velocity : float, optional
         Velocity along its normal, towards the tip [m/s], as of a shaken plane.
     history, normal_history : Constant, Ramp, Harmonic or Sampled, optional
-        Factors on the two velocities over time.
+        Factors over time on the velocities, or on the accelerations where those are given.
     name : str, optional
         What it is called in records.
+    acceleration, normal_acceleration : float, optional
+        Acceleration along its tangent, and along its normal towards the tip [m/s²].
     """
 
     velocity: float = 0.0
@@ -29,10 +38,12 @@ class RigidTrack:
     history: Constant | Ramp | Harmonic | Sampled = field(default_factory=Constant)
     normal_history: Constant | Ramp | Harmonic | Sampled = field(default_factory=Constant)
     name: str = ""
+    acceleration: float = 0.0
+    normal_acceleration: float = 0.0
 
     def __post_init__(self) -> None:
-        finite("velocity", self.velocity)
-        finite("normal_velocity", self.normal_velocity)
+        for name in ("velocity", "normal_velocity", "acceleration", "normal_acceleration"):
+            finite(name, getattr(self, name))
         instance("history", self.history, HISTORIES)
         instance("normal_history", self.normal_history, HISTORIES)
         instance("name", self.name, str)
@@ -40,4 +51,32 @@ class RigidTrack:
     @property
     def is_still(self) -> bool:
         """Whether it does not move."""
-        return self.velocity == 0.0 and self.normal_velocity == 0.0
+        return not (self.velocity or self.normal_velocity or self.acceleration or self.normal_acceleration)
+
+    def travel(self, time: Array) -> Array:
+        """Return how far it has moved along its tangent [m]."""
+        return _travel(self.velocity, self.acceleration, self.history, time)
+
+    def normal_travel(self, time: Array) -> Array:
+        """Return how far it has moved along its normal, towards the tip [m]."""
+        return _travel(self.normal_velocity, self.normal_acceleration, self.normal_history, time)
+
+    def speed(self, time: Array) -> Array:
+        """Return its velocity along its tangent [m/s]."""
+        return _speed(self.velocity, self.acceleration, self.history, time)
+
+    def normal_speed(self, time: Array) -> Array:
+        """Return its velocity along its normal, towards the tip [m/s]."""
+        return _speed(self.normal_velocity, self.normal_acceleration, self.normal_history, time)
+
+
+def _travel(velocity: float, acceleration: float, history: History, time: Array) -> Array:
+    if acceleration:
+        return np.asarray(velocity * time + acceleration * history.second_integral(time))
+    return np.asarray(velocity * history.integral(time))
+
+
+def _speed(velocity: float, acceleration: float, history: History, time: Array) -> Array:
+    if acceleration:
+        return np.asarray(velocity + acceleration * history.integral(time))
+    return np.asarray(velocity * history.factor(time))

@@ -28,14 +28,22 @@ class Belief:
         Its energies now.
     initial_energy : float
         Stored energy at the start [J].
+    largest_energy : float, optional
+        Largest energy met before [J].
     """
 
     def __init__(
-        self, system: System, arrays: Assembly, blocks: Blocks, energies: Array, initial_energy: float
+        self,
+        system: System,
+        arrays: Assembly,
+        blocks: Blocks,
+        energies: Array,
+        initial_energy: float,
+        largest_energy: float = 0.0,
     ) -> None:
         self.initial_energy = initial_energy
         self.last_energies = energies.copy()
-        self.largest_energy = float(np.abs(energies[: at.DAMPING_LOSS + 1]).max())
+        self.largest_energy = max(largest_energy, float(np.abs(energies[: at.DAMPING_LOSS + 1]).max()))
         self.energy_of_loads = blocks.modes.energy_of_loads()
         self.dissipative = not any(contact.friction.state_units for contact in system.contacts)
         self.damped_alone = not arrays.coupled

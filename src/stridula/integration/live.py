@@ -11,7 +11,7 @@ import numpy as np
 from .._kernels import layout as at
 from .._kernels.contact import SEPARATED
 from .._kernels.march import stored_energy
-from ..assembly import Assembly, Signal, assemble
+from ..assembly import Assembly, Signal, assemble, with_travel
 from ..bodies import Track
 from ..bodies.modes import Array
 from ..checks import instance, positive
@@ -126,7 +126,7 @@ class LiveMarch:
 
     def restart(self) -> None:
         """Put everything back to the start."""
-        self._sample, self._gap = 0, self.system.contacts[0].gap
+        self._sample, self._gap, self._travel = 0, self.system.contacts[0].gap, 0.0
         self._lay_out(in_equilibrium(self.system, self._described))
         self._go(state_at_start(self._arrays, self.scheme, self.step, self._blocks, GaussSeidel()))
         self._begin_probes()
@@ -192,6 +192,7 @@ class LiveMarch:
     def _change(self, system: System, probes: Sequence[Probe], scheme: Scheme | None) -> bool:
         before, state = Before(self.system, self.scheme, self.spans, self.step), deepcopy(self._march.states[0])
         arrays = assembled(system, probes)
+        self._travel = self._root_at(self._arrays) - self._root_at(arrays)
         self._take(system, probes, before.scheme if scheme is None else scheme, arrays)
         self._begin_probes()
         place = float(state.carried[0, at.ABSCISSA] + system.contacts[0].at - before.system.contacts[0].at)
@@ -237,14 +238,19 @@ class LiveMarch:
         self._waiting = waiting[samples:]
         return waiting[:samples]
 
+    def _root_at(self, arrays: Assembly) -> float:
+        """Return how far an imposed velocity has moved the root of a system by now [m]."""
+        return float(arrays.signals[-3](np.array([self.time]), self.step)[0])
+
     def _shifted(self, place: float, position: Array) -> Assembly:
         """Return the system whose tip is at a place now: the sum of its start, its displacement and what is imposed."""
-        described, (contact,) = self._described.motion, self._described.contacts
+        moved = with_travel(self._described, self.system, self._travel)
+        described, (contact,) = moved.motion, moved.contacts
         imposed = described(np.array([self.time]), self.step)[0, 0, at.TIP_MOTION]
         offset = np.zeros(at.MOTIONS)
         offset[at.TIP_MOTION] = -imposed - contact.fixed[1] @ position
         here = replace(contact, contact=replace(contact.contact, at=place))
-        return replace(self._described, contacts=[here], motion=lambda times, step: described(times, step) + offset)
+        return replace(moved, contacts=[here], motion=lambda times, step: described(times, step) + offset)
 
     def _go_on(self, state: State, place: float, position: Array, velocity: Array, before: System) -> None:
         """March on in the same modes, under other forces and another friction."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,9 @@ import xarray as xr
 
 from .._kernels import layout as at
 from .._kernels.march import stored_energy
-from ..assembly import Assembly, with_travel
-from ..checks import instance
+from ..assembly import Assembly, Signal, going_on, with_travel
+from ..bodies.modes import Array
+from ..checks import brief, instance, listed
 from ..contact import LAWS
 from ..records import Probe
 from ..records.provenance import scenario_toml
@@ -43,7 +45,9 @@ def state_of(
         start = start.assign(state_remainder=0.0 * start["state_modal"])
     needed = (*(f"state_{name}" for name in STATE), "state_raw")
     if any(name not in start for name in needed):
-        raise ValueError(f"start must be a record of simulate with its final state, got variables {list(start)}")
+        raise ValueError(
+            f"start must be a record of simulate with its final state, got variables {listed(map(str, start))}"
+        )
     attributes = start.attrs
     if attributes["ended"] not in ("finished", "interrupted"):
         raise ValueError(f"start must be a run that can go on, got one that ended {attributes['ended']!r}")
@@ -58,7 +62,8 @@ def state_of(
     if start["state_raw"].shape[1] != len(probes):
         raise ValueError(f"start must have the same number of probes, {len(probes)}, got {start['state_raw'].shape[1]}")
     before, now = (tomllib.loads(text) for text in (attributes["scenario"], scenario_toml(system, probes, {})))
-    _check_frozen(_frozen(before), _frozen(now))
+    knows_motion = "state_motion" in start
+    _check_frozen(_frozen(before, knows_motion), _frozen(now, knows_motion))
     return State(*(np.array(start[f"state_{name}"].values, dtype=float, order="C") for name in STATE))
 
 
@@ -71,12 +76,43 @@ def imposed_at(arrays: Assembly, last_step: int, step: float) -> dict[str, float
 
 def moved_on(
     start: xr.Dataset, system: System, arrays: Assembly, modes: Recurrence, state: State, step: float
-) -> Assembly:
-    """Return a system whose root goes on from where a record left it, perhaps at another velocity.
+) -> tuple[Assembly, Array]:
+    """Return a system whose root and rigid tracks go on from where a record left them, perhaps at other velocities.
 
     What hangs at a root that is made to move faster does not move faster at once: `state` is changed so, and the energy
-    that this gives it, as the root sees it, is work of the drive.
+    that this gives it, as the root sees it, is work of the drive. What sticks to a belt has to follow it.
+
+    Returns
+    -------
+    arrays : Assembly
+        The system.
+    offset : ndarray, shape (contacts, 3)
+        By how much its contacts have been moved beyond what it describes [m].
     """
+    described = arrays.motion
+    arrays = _root_moved_on(start, system, arrays, modes, state, step)
+    last = int(start.attrs["last_step"])
+    here = motion_about(described, last, step)
+    if "state_motion" not in start:
+        return arrays, motion_about(arrays.motion, last, step)[1] - here[1]
+    kept = start["state_motion"].values
+    # Exactly as before where nothing has changed: a run then goes on to the last bit.
+    was, offset = kept[:2], kept[2] + (kept[1] - here[1])
+    turns = not np.array_equal(here, was)
+    if turns or offset.any():
+        moved = replace(arrays, motion=described)
+        arrays = going_on(moved, offset, last * step, was[0] + kept[2] if turns else None)
+    return arrays, offset
+
+
+def motion_about(motion: Signal, last_step: int, step: float) -> Array:
+    """Return the motions of the contacts one step before and after some steps [m], shape (2, contacts, 3)."""
+    return motion(np.array([last_step - 1, last_step]) * step, step)
+
+
+def _root_moved_on(
+    start: xr.Dataset, system: System, arrays: Assembly, modes: Recurrence, state: State, step: float
+) -> Assembly:
     if "root_travel" not in start.attrs or system.imposed_velocity is None:
         return arrays
     now = imposed_at(arrays, int(start.attrs["last_step"]), step)
@@ -94,14 +130,19 @@ def moved_on(
     return arrays
 
 
-def _frozen(tables: dict[str, Any]) -> dict[str, Any]:
-    """Return what a run that goes on from another must share with it: all but drives, friction and timing."""
+def _frozen(tables: dict[str, Any], knows_motion: bool) -> dict[str, Any]:
+    """Return what a run that goes on from another must share with it: all but what drives it, friction and timing.
+
+    A record that does not say how far its rigid tracks have moved must share their motion, too.
+    """
     kept = {name: value for name, value in tables.items() if name not in ("drives", "simulation")}
     kept["probes"] = tables["simulation"]["probes"]
     if "contact" in kept:
         kept["contact"] = _without_friction(kept["contact"])
     if "contacts" in kept:
         kept["contacts"] = [_without_friction(contact) for contact in kept["contacts"]]
+        if knows_motion:
+            kept["contacts"] = [_without_motion(contact) for contact in kept["contacts"]]
     return kept
 
 
@@ -110,11 +151,24 @@ def _without_friction(contact: dict[str, Any]) -> dict[str, Any]:
     return {**contact, "friction": name if name in STATEFUL else None}
 
 
-def _check_frozen(before: dict[str, Any], now: dict[str, Any], path: str = "") -> None:
+def _without_motion(contact: dict[str, Any]) -> dict[str, Any]:
+    track = contact["track"]
+    if track["kind"] != "rigid":
+        return contact
+    return {**contact, "track": {name: track[name] for name in ("kind", "name") if name in track}}
+
+
+def _check_frozen(before: Any, now: Any, path: str = "") -> None:
     """Raise a ValueError that names the first value that differs."""
-    for name in dict.fromkeys((*now, *before)):
-        old, new = before.get(name), now.get(name)
-        if isinstance(old, dict) and isinstance(new, dict):
-            _check_frozen(old, new, f"{path}{name}.")
-        elif old != new:
-            raise ValueError(f"start must have the same {path}{name} as this run, {new!r}, got {old!r}")
+    if isinstance(before, dict) and isinstance(now, dict):
+        for name in dict.fromkeys((*now, *before)):
+            _check_frozen(before.get(name), now.get(name), f"{path}.{name}" if path else name)
+    elif _is_tables(before) and _is_tables(now) and len(before) == len(now):
+        for number, pair in enumerate(zip(before, now, strict=True)):
+            _check_frozen(*pair, f"{path}.{number}")
+    elif before != now:
+        raise ValueError(f"start must have the same {path} as this run, {brief(now)}, got {brief(before)}")
+
+
+def _is_tables(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(entry, dict) for entry in value)

@@ -24,7 +24,7 @@ from .contact_solve import GaussSeidel
 from .decimation import Decimator
 from .equilibrium_start import in_equilibrium
 from .marches import Chunk, Imposed, Impositions
-from .restart import imposed_at, moved_on, state_of
+from .restart import imposed_at, motion_about, moved_on, state_of
 from .schemes import Scheme
 from .start import state_at_start
 from .stops import ENDED, contact_words
@@ -71,6 +71,7 @@ class Run:
         self.system, self.arrays, self.scheme = system, arrays, scheme
         self.timing, self.probes, self.solve, self.title = timing, probes, solve, title
         self.blocks = blocks_of(arrays, scheme, timing.step)
+        self.described, self.offset = arrays.motion, np.zeros((len(system.contacts), at.MOTIONS))
         if start is None:
             placed = in_equilibrium(system, arrays)
             self.state = state_at_start(placed, scheme, timing.step, self.blocks, solve)
@@ -78,10 +79,12 @@ class Run:
             self.decimator = Decimator(timing.ratio)
         else:
             self.state = state_of(start, system, arrays, scheme, timing, probes)
-            self.arrays = moved_on(start, system, arrays, self.blocks.modes, self.state, timing.step)
+            self.arrays, self.offset = moved_on(start, system, arrays, self.blocks.modes, self.state, timing.step)
             self.first_step, self.initial_energy = int(start.attrs["last_step"]), float(start.attrs["initial_energy"])
             self.decimator = Decimator(timing.ratio, np.array(start["state_raw"].values, dtype=float))
-        self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy)
+        # What rounding has left of large energies is there when they are gone.
+        met = 0.0 if start is None else float(start.attrs.get("largest_energy", 0.0))
+        self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy, met)
         self.impositions = Impositions(self.arrays, self.blocks, timing.step)
         self.energy_record = np.empty((at.ENERGIES, timing.samples))
         self.contact_record = np.empty((at.COLUMNS, len(system.contacts), timing.samples))
@@ -170,6 +173,7 @@ class Run:
             "modes": self.arrays.mode_count,
             "contact_tolerance": self.solve.tolerance,
             "initial_energy": self.initial_energy,
+            "largest_energy": self.belief.largest_energy,
             "last_step": last_step,
             **(imposed_at(self.arrays, last_step, timing.step) if self.system.imposed_velocity else {}),
             "compile_time": self.compile_time,
@@ -185,6 +189,7 @@ class Run:
             self.probes,
             self.probe_record[:done],
             self.state,
+            np.concatenate([motion_about(self.described, last_step, timing.step), self.offset[None]]),
             np.empty((0, len(self.probes))) if self.tail is None else self.tail,
             attributes,
         )

@@ -11,7 +11,7 @@ import xarray as xr
 from .._kernels.layout import COLUMNS, ENERGIES
 from ..assembly import Assembly, assemble
 from ..bodies import Track
-from ..checks import brief, instance, positive
+from ..checks import at_least, at_most, brief, instance, positive
 from ..records import Acceleration, Probe
 from ..system import System
 from .contact_solve import GaussSeidel
@@ -63,7 +63,8 @@ def simulate(
         How several contacts are solved together; one contact is solved exactly.
     start : xarray.Dataset, optional
         A record to go on from; the new record begins where it ended. Bodies, contact point, gap, probes, scheme, step
-        and sampling must be the same; friction and drives may change.
+        and sampling must be the same; friction, drives and the motion of rigid tracks may change. A belt goes on from
+        where it is.
     watchers : sequence of callable, optional
         Called with a `Progress` between chunks of the march.
     title : str, optional
@@ -183,16 +184,16 @@ def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float
         ratio = max(1, int(np.ceil(wanted / (scheme.default_fraction * limit) - 1e-9)))
         step = wanted / ratio
     elif (step := positive("step", step)) >= limit:
-        raise ValueError(f"step must be below the {scheme.name} scheme's limit of {limit:.6g} s, got {step!r}")
+        raise ValueError(f"step must be below the {scheme.name} scheme's limit of {at_most(limit)} s, got {step!r}")
     elif step < SMALLEST_SHARE * min(limit, 1.0):
         raise ValueError(
-            f"step must be at least {SMALLEST_SHARE * min(limit, 1.0):.3g} s for these modes, got {step!r}"
+            f"step must be at least {at_least(SMALLEST_SHARE * min(limit, 1.0), 3)} s for these modes, got {step!r}"
         )
     else:
         ratio = max(1, round(wanted / step))
     if ratio > LARGEST_RATIO:
         raise ValueError(
-            f"sample_rate must be at least {1.0 / (LARGEST_RATIO * step):.3g} Hz at a step of {step:.3g} s, "
+            f"sample_rate must be at least {at_least(1.0 / (LARGEST_RATIO * step), 3)} Hz at a step of {step:.3g} s, "
             f"got {sample_rate!r}"
         )
     return _sampled(step, ratio, duration)
@@ -201,5 +202,7 @@ def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float
 def _sampled(step: float, ratio: int, duration: float) -> Timing:
     interval = step * ratio
     if duration < 0.5 * interval:
-        raise ValueError(f"duration must be at least half a sample interval of {interval:.6g} s, got {duration!r}")
+        raise ValueError(
+            f"duration must be at least half a sample interval of {at_least(interval)} s, got {duration!r}"
+        )
     return Timing(step, ratio, max(1, round(duration / interval)))

@@ -7,6 +7,7 @@ import xarray as xr
 
 from .._kernels import layout as at
 from ..bodies.modes import Array
+from ..checks import listed
 from ..records.variables import STATUS_WORDS
 
 ENDED = {
@@ -26,6 +27,8 @@ CAUSE = {
     "contact unsolved": "bodies squeezed between others, too much friction in several contacts, or too few sweeps",
     "energy created": "a step too long for the contact, numbers at the limits of arithmetic, or a fault of the model",
 }
+# Longest list of contacts in a message, but for one that is longer.
+LONGEST_WORDS = 150
 # Share of the largest energy that round-off may make of the ledger, of the stored energy below zero and of losses
 # running back.
 LEDGER_TOLERANCE = 1e-8
@@ -58,13 +61,14 @@ def _end(record: xr.Dataset) -> float:
 
 
 def contact_words(names: tuple[str, ...], carried: Array) -> str:
-    """Return the last state of every contact, in words."""
+    """Return the last state of the contacts, in words; of many, those that press hardest."""
     lines = [
         f"{name} {STATUS_WORDS[int(one[at.STATUS])]} at {one[at.ABSCISSA]:.6g} m with {one[at.LAST_NORMAL]:.4g} N "
         f"normal, {one[at.LAST_TANGENTIAL]:.4g} N tangential"
         for name, one in zip(names, carried, strict=True)
     ]
-    return ", ".join(lines)
+    hardest = np.argsort(-np.abs(np.nan_to_num(carried[:, at.LAST_NORMAL], nan=np.inf)), kind="stable")
+    return listed([lines[number] for number in hardest], longest=LONGEST_WORDS)
 
 
 def energy_created(

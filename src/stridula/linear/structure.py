@@ -208,10 +208,27 @@ def settled_time(system: System) -> float:
         if hasattr(drive, "history"):
             histories.append((f"drives[{number}]", drive.history))
     for name, contact in zip(system.contact_names, system.contacts, strict=True):
-        if isinstance(contact.track, RigidTrack) and contact.track.velocity:
-            histories.append((f"the track of {name}", contact.track.history))
-        if isinstance(contact.track, RigidTrack) and contact.track.normal_velocity:
-            histories.append((f"the track of {name}", contact.track.normal_history))
+        if isinstance(contact.track, RigidTrack):
+            track = contact.track
+            histories += [
+                (f"the track of {name}", history)
+                for rate, history in (
+                    (track.velocity or track.acceleration, track.history),
+                    (track.normal_velocity or track.normal_acceleration, track.normal_history),
+                )
+                if rate
+            ]
+            gathers = (
+                (track.acceleration, track.history),
+                (track.normal_acceleration, track.normal_history),
+            )
+            for acceleration, history in gathers:
+                if (
+                    acceleration
+                    and history.settled is not None
+                    and history.factor(np.array([history.settled + 1.0]))[0]
+                ):
+                    raise ValueError(f"time must be given for the track of {name}, which goes on gathering speed")
     for name, history in histories:
         if history.settled is None:
             raise ValueError(f"time must be given for {name}, which never stops varying, got {brief(history)}")
@@ -261,6 +278,6 @@ def _prescribed_rates(contact: PointContact, system: System, now: Array) -> tupl
         held -= float(system.is_held(contact.track.body))
     slip, opening = held * tangent[0] * root, held * normal[0] * root
     if isinstance(contact.track, RigidTrack):
-        slip -= contact.track.velocity * float(contact.track.history.factor(now)[0])
-        opening -= contact.track.normal_velocity * float(contact.track.normal_history.factor(now)[0])
+        slip -= float(contact.track.speed(now)[0])
+        opening -= float(contact.track.normal_speed(now)[0])
     return float(slip), float(opening)

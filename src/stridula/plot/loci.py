@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..bodies.modes import Array
-from ..checks import instance
+from ..checks import instance, listed
 from .colours import LINE, LINES
 
 UNSTABLE = LINES[1]
@@ -46,7 +46,7 @@ def root_loci(loci: xr.Dataset, critical: Sequence[xr.Dataset] = ()) -> Figure:
     instance("loci", loci, xr.Dataset)
     lacking = [name for name in ("frequency", "growth_rate", "unstable", "equilibrium") if name not in loci]
     if lacking or loci["equilibrium"].ndim != 1:
-        raise ValueError(f"loci must be what root_loci returned, got {', '.join(map(str, loci.data_vars))}")
+        raise ValueError(f"loci must be what root_loci returned, got {listed(map(str, loci.data_vars))}")
     key = str(loci["equilibrium"].dims[0])
     figure = Figure(figsize=(8.0, 7.0), layout="constrained", dpi=120)
     above, below = figure.subplots(2, 1, sharex=True)

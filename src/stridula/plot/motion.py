@@ -12,7 +12,7 @@ import xarray as xr
 from ..assembly import assemble
 from ..bodies import FiniteElementBeam, ModalBeam, ModalPlate
 from ..bodies.modes import Array, BodyPoint
-from ..checks import instance, non_negative, positive
+from ..checks import at_most, instance, non_negative, positive
 from ..contact import RigidTrack
 from ..integration import simulate
 from ..integration.schemes import ExactModal, Scheme
@@ -130,9 +130,8 @@ def motion_of(
     run = simulate(system, end, scheme=chosen, step=step, sample_rate=1.0 / frame, probes=probes)
     window = run.isel(time=run["time"].values > start + 0.5 * float(run.attrs["sample_interval"]))
     if window.sizes["time"] < FEWEST_FRAMES:
-        raise ValueError(
-            f"start must be before the run ends ({run.attrs['ended']} at {float(run['time'][-1]):.4g} s), got {start!r}"
-        )
+        ended = f"{run.attrs['ended']} at {at_most(float(run['time'][-1]))} s"
+        raise ValueError(f"start must be before the run ends ({ended}), got {start!r}")
     return _motion(system, window, list(places.values()))
 
 
@@ -184,7 +183,7 @@ def _motion(system: System, run: xr.Dataset, along: list[Array]) -> Motion:
     if isinstance(contact.track, RigidTrack):
         length = BEYOND * slider.length
         ends = np.array([abscissa.min() - length, abscissa.max() + length])
-        raised = _raised(contact.track, run["time"].values)
+        raised = contact.track.normal_travel(run["time"].values)
         track_places = ends[:, None] * tangent + raised[:, None, None] * normal
         return Motion(run, slider_places, track_places, abscissa[:, None] * tangent + raised.mean() * normal)
     rest = np.stack([along[1], np.zeros_like(along[1])], axis=1)
@@ -193,8 +192,3 @@ def _motion(system: System, run: xr.Dataset, along: list[Array]) -> Motion:
     below = np.interp(abscissa, along[1], track_places[:, :, 1].mean(axis=0))
     is_cut = isinstance(contact.track, ModalPlate)
     return Motion(run, slider_places, track_places, np.stack([abscissa, below], axis=1), is_cut)
-
-
-def _raised(track: RigidTrack, time: Array) -> Array:
-    """Return how far a rigid track has moved along its normal [m]."""
-    return np.asarray(track.normal_velocity * track.normal_history.integral(time))

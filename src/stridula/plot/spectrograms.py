@@ -11,7 +11,7 @@ from scipy.signal.windows import hann
 
 from ..analysis.signals import of_one_contact
 from ..bodies.modes import Array
-from ..checks import positive
+from ..checks import bounds, positive
 from .sounds import Reference, one_signal, reference
 from .timelines import draw_line, draw_status
 
@@ -63,7 +63,8 @@ def spectrogram(
         positive(name, value)
     size = round(window / interval)
     if not 8 <= size <= values.size:
-        raise ValueError(f"window must be from {8 * interval:.3g} to {values.size * interval:.3g} s, got {window!r}")
+        least, most = bounds(8 * interval, values.size * interval, digits=3)
+        raise ValueError(f"window must be from {least} to {most} s, got {window!r}")
     time, frequency, levels = _levels(values, interval, size, reference(signal))
     heights = [1.0] if run is None else [0.6, 1.6, 0.35]
     figure = Figure(figsize=(9.0, 1.2 + 2.4 * sum(heights)), layout="constrained", dpi=120)

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ..bodies.modes import Array
-from ..checks import instance, non_negative
+from ..checks import instance, listed, non_negative
 from .export import Column, columns
 from .variables import ENERGY, SOLVE, STATUS, described
 
@@ -21,7 +21,7 @@ LEFT_OUT = (STATUS.name, *(variable.name for variable in SOLVE))
 ENERGIES = tuple(variable.name for variable in ENERGY)
 DISTANCES = ("gap", "contact_height")
 LENGTHS = (*DISTANCES, "displacement")
-UNLIKE = ("compile_time", "wall_time", "scenario", "last_step")
+UNLIKE = ("compile_time", "wall_time", "scenario", "last_step", "largest_energy")
 NOT_THERE = "not there"
 
 
@@ -59,7 +59,7 @@ def compare(a: xr.Dataset, b: xr.Dataset, tolerance: float = 1e-6) -> xr.Dataset
     theirs = {column.name: column for column in columns(second) if column.variable not in LEFT_OUT}
     names = [name for name in ours if name in theirs]
     if not names:
-        raise ValueError(f"b must have a variable of a, got {', '.join(theirs) or 'none'}")
+        raise ValueError(f"b must have a variable of a, got {listed(theirs)}")
     scales = _scales(ours)
     time = first["time"].values
     rows = [_difference(ours[name], theirs[name], scales[name], time, tolerance) for name in names]
@@ -92,13 +92,13 @@ def _common(a: xr.Dataset, b: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
     for name, record in (("a", a), ("b", b)):
         instance(name, record, xr.Dataset)
         if "time" not in record.dims or "sample_interval" not in record.attrs:
-            raise ValueError(f"{name} must be a record of simulate, got variables {list(record)}")
+            raise ValueError(f"{name} must be a record of simulate, got variables {listed(map(str, record))}")
         if not record.sizes["time"]:
             raise ValueError(f"{name} must have samples to compare, got a record without any")
         intervals.append(float(record.attrs["sample_interval"]))
         numbers.append(np.rint(record["time"].values / intervals[-1]).astype(np.int64))
     if abs(intervals[1] - intervals[0]) > 1e-9 * intervals[0]:
-        raise ValueError(f"b must have the sample interval of a, {intervals[0]:.9g} s, got {intervals[1]:.9g} s")
+        raise ValueError(f"b must have the sample interval of a, {intervals[0]!r} s, got {intervals[1]!r} s")
     _, ours, theirs = np.intersect1d(numbers[0], numbers[1], return_indices=True)
     if ours.size == 0:
         spans = [f"{r['time'].values[0]:.6g} to {r['time'].values[-1]:.6g} s" for r in (a, b)]

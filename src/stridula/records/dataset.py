@@ -37,13 +37,16 @@ def to_dataset(
     probes: Sequence[Probe],
     probe_values: Array,
     state: State,
+    motion: Array,
     raw: Array,
     attributes: dict[str, Any],
 ) -> xr.Dataset:
     """Label the arrays of a march with names, units and meanings.
 
-    Arrays of the contacts have the shapes (contacts, samples), and (samples, contacts, 3) for the status. `raw` are the
-    last values of the probes at every step, which the low-pass still needs, shape (steps, probes).
+    Arrays of the contacts have the shapes (contacts, samples), and (samples, contacts, 3) for the status. `motion`
+    is what is imposed on each contact a step before the end and at the end, and by how much it has been moved beyond
+    that, shape (3, contacts, 3). `raw` are the last values of the probes at every step, which the low-pass still needs,
+    shape (steps, probes).
     """
     words = described("s", "time at the end of the sample interval")
     coordinates: dict[str, Any] = {
@@ -78,6 +81,12 @@ def to_dataset(
         ("state_remainder", ("state_kind", "mode"), state.remainder, "what they lack in the units of the march"),
         ("state_carried", ("state_contact", "state_scalar"), state.carried, "scalars of each contact at the end"),
         ("state_energies", "state_energy", state.energies, "energies carried by the march at the end"),
+        (
+            "state_motion",
+            ("state_instant", "state_contact", "state_direction"),
+            motion,
+            "motions imposed on each contact at the last two steps, and what it has been moved beyond them",
+        ),
         ("state_raw", ("state_step", "state_probe"), raw, "last values of the probes at every step"),
     ):
         data[name] = (dimensions, values, {"long_name": meaning})

@@ -14,7 +14,7 @@ import scipy.io
 import xarray as xr
 
 from ..bodies.modes import Array
-from ..checks import instance
+from ..checks import at_least, instance, listed
 from ..disk import check_writable, write
 
 SUFFIXES = (".csv", ".mat")
@@ -69,7 +69,9 @@ def columns(run: xr.Dataset) -> list[Column]:
     """Return every variable of a record over time, one column for each contact, probe and status."""
     instance("run", run, xr.Dataset)
     if "time" not in run.coords:
-        raise ValueError(f"run must be a record with the coordinate time, got the coordinates {list(run.coords)}")
+        raise ValueError(
+            f"run must be a record with the coordinate time, got the coordinates {listed(map(str, run.coords))}"
+        )
     found = []
     for name, variable in run.data_vars.items():
         if "time" not in variable.dims:
@@ -137,7 +139,9 @@ def _mat(run: xr.Dataset) -> memoryview:
     for name, variable in {"time": run["time"], **kept}.items():
         values = variable.transpose("time", ...).values
         if values.nbytes > LARGEST_VARIABLE:
-            raise ValueError(f"{name} must be below 2 GiB for a .mat file, got {values.nbytes / 2**30:.1f} GiB")
+            raise ValueError(
+                f"{name} must be below 2 GiB for a .mat file, got {at_least(values.nbytes / 2**30, 3)} GiB"
+            )
         contents[names[name]] = values
     everything = {"time": run["time"], **kept}
     for word in ("units", "long_name"):

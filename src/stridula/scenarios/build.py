@@ -24,7 +24,7 @@ from ..bodies import (
     ReducedBody,
     Section,
 )
-from ..checks import suggestion
+from ..checks import listed, suggestion
 from ..connections import Dashpot, Spring
 from ..contact import LAWS, PointContact, RigidTrack
 from ..drives import Drive, Force, Gravity, ImposedVelocity, InitialEquilibrium, InitialState, InitialVelocity
@@ -325,7 +325,7 @@ class Builder:
         if place is None and len(known) == 1:
             place = known[0]
         if place is None:
-            self.problems.append(f"{self.words(path)} must be given: one of {', '.join(known)}")
+            self.problems.append(f"{self.words(path)} must be given: one of {listed(known)}")
         elif place in known:
             return BodyPoint(body, place)
         else:
@@ -383,4 +383,4 @@ def out_of_range(key: str) -> str:
 
 
 def _unknown(key: str, name: Any, known: Any) -> str:
-    return f"{key} must be one of {', '.join(known)}, got {name!r}{suggestion(name, list(known))}"
+    return f"{key} must be one of {listed(known)}, got {name!r}{suggestion(name, list(known))}"

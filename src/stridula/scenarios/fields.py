@@ -18,7 +18,7 @@ from pydantic_core import CoreSchema, PydanticCustomError
 from pydantic_core.core_schema import no_info_plain_validator_function
 
 from ..bodies.modes import Array
-from ..checks import STATUS_WORDS
+from ..checks import STATUS_WORDS, at_least, at_most
 from ..drives import MOST_UNSTABLE
 from ..records.packed import is_packed, unpacked
 from .quantities import UNITS, is_quantity, quantity
@@ -110,11 +110,11 @@ class Quantity(_Kind):
     def read(self, value: Any) -> float:
         number = quantity(value, self.unit)
         if self.above is not None and number <= self.above:
-            raise ValueError(f"must be above {self.above:g}")
+            raise ValueError(f"must be above {at_least(self.above)}")
         if self.least is not None and number < self.least:
-            raise ValueError(f"must be {self.least:g} or above")
+            raise ValueError(f"must be {at_least(self.least)} or above")
         if self.below is not None and number >= self.below:
-            raise ValueError(f"must be below {self.below:g}")
+            raise ValueError(f"must be below {at_most(self.below)}")
         return number
 
     def json_schema(self) -> dict[str, Any]:
@@ -415,6 +415,7 @@ Velocities = Annotated[Any, OneOrEach(Quantity("m/s"))]
 Statuses = Annotated[Any, Words(STATUS_WORDS, each=True)]
 Mode = Annotated[int | str, NumberOrWord(Words((MOST_UNSTABLE,)))]
 Acceleration = Annotated[float, Quantity("m/s2", above=0.0)]
+AnyAcceleration = Annotated[float, Quantity("m/s2")]
 Count = Annotated[int, Whole(1)]
 CountOrNone = Annotated[int, Whole(0)]
 Counts = Annotated[tuple[int, int], Pair(Whole(1), "whole numbers")]

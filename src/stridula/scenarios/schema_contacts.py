@@ -150,13 +150,17 @@ class Rigid(Table):
     kind: Literal["rigid"]
     """beam, plate, rigid or point"""
     velocity: is_.Velocity = RigidTrack.velocity
-    """velocity along its tangent, as of a belt [m/s]"""
+    """velocity along its tangent, as of a belt [m/s]; where an acceleration is given, at the start"""
     normal_velocity: is_.Velocity = RigidTrack.normal_velocity
-    """velocity along its normal, towards the tip [m/s]"""
+    """velocity along its normal, towards the tip [m/s]; where an acceleration is given, at the start"""
+    acceleration: is_.AnyAcceleration = RigidTrack.acceleration
+    """acceleration along its tangent [m/s²]"""
+    normal_acceleration: is_.AnyAcceleration = RigidTrack.normal_acceleration
+    """acceleration along its normal, towards the tip, as of shaken ground [m/s²]"""
     history: History | None = None
-    """factor on the velocity over time, constant if left out"""
+    """factor over time on the acceleration where one is given, else on the velocity; constant if left out"""
     normal_history: History | None = None
-    """factor on the normal velocity over time, constant if left out"""
+    """the same along its normal"""
     name: str = ""
     """what it is called in records"""
 

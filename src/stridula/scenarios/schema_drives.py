@@ -41,7 +41,7 @@ class Sampled(Table):
     kind: Literal["sampled"]
     """constant, ramp, harmonic or sampled"""
     time: list[is_.Instant]
-    """times, rising [s]"""
+    """times, rising; the same twice is a jump [s]"""
     value: list[is_.Ratio]
     """factors at those times"""
 

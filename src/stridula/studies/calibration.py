@@ -16,7 +16,7 @@ import xarray as xr
 
 from ..analysis.regimes import REGIMES
 from ..bodies.modes import Array
-from ..checks import brief, choice, count, instance, non_negative, positive, suggestion
+from ..checks import brief, choice, count, instance, listed, non_negative, positive, suggestion
 from ..linear.equilibrium import HELD, JAMMED, LIFTED_OFF
 from ..linear.structure import SLIDING
 from .measures import MEASURES, Value, value_of
@@ -291,7 +291,7 @@ def _first_population(
     if start is None:
         return np.asarray(scipy.stats.qmc.LatinHypercube(len(ranges), rng=random).random(population))
     if set(start) != set(ranges):
-        raise ValueError(f"start must have the keys of ranges, {', '.join(ranges)}, got {', '.join(map(str, start))}")
+        raise ValueError(f"start must have the keys of ranges, {listed(ranges)}, got {listed(map(str, start))}")
     centre = np.array([one.share(start[key]) for key, one in ranges.items()])
     outside = [key for key, share in zip(ranges, centre, strict=True) if not -1e-9 <= share <= 1.0 + 1e-9]
     if outside:

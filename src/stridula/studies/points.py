@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import brief, count, finite
+from ..checks import brief, count, finite, listed
 from ..scenarios.quantities import parts
 
 POINT = "point"
@@ -256,7 +256,9 @@ def _listed(points: Sequence[Mapping[str, Any]]) -> Layout:
         if not isinstance(point, Mapping) or not point:
             raise ValueError(f"points[{number}] must be values by key, got {point!r}")
         if set(point) != set(points[0]):
-            raise ValueError(f"points[{number}] must have the keys of points[0], {', '.join(points[0])}, got {point!r}")
+            raise ValueError(
+                f"points[{number}] must have the keys of points[0], {listed(points[0])}, got {brief(point)}"
+            )
     keys = tuple(points[0])
     columns = [_plain(key, [point[key] for point in points]) for key in keys]
     values = tuple(zip(*columns, strict=True))

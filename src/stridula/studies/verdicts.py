@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..analysis.regimes import REGIMES
-from ..checks import instance
+from ..checks import instance, listed
 
 UNSTABLE = "unstable"
 VERDICTS = (UNSTABLE, "sliding", "held", "lifted off", "jammed")
@@ -45,7 +45,7 @@ def agreement(found: xr.Dataset) -> xr.Dataset:
     for name in ("regime", "unstable_modes", "equilibrium"):
         if name not in found:
             raise ValueError(
-                f"found must have {name}, which the measure regime gives, got {', '.join(map(str, found.data_vars))}"
+                f"found must have {name}, which the measure regime gives, got {listed(map(str, found.data_vars))}"
             )
     regime = found["regime"].values.ravel()
     grows = np.nan_to_num(found["unstable_modes"].values.ravel()) > 0
