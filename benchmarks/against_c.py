@@ -64,11 +64,11 @@ class Pair:
         def run() -> None:
             chunks.extend(march.advance([imposed], STEPS // RATIO))
 
-        def given() -> Result:
+        def found() -> Result:
             (state,) = march.states
-            return result(state.modal[0], state.energies, chunks[-1].contacts[:, 0].sum(axis=0) * RATIO)
+            return result(state.modal[at.Q], state.energies, chunks[-1].contacts[:, 0].sum(axis=0) * RATIO)
 
-        return run, given
+        return run, found
 
     def theirs(self) -> tuple[Callable[[], None], Callable[[], Result]]:
         """Return the march of C, and what it gives."""
@@ -101,8 +101,10 @@ class Pair:
             **{name: ctypes.c_double(number) for name, number in numbers.items()},
             **{name: array.ctypes.data_as(ctypes.c_void_p) for name, array in arrays.items()},
         }
-        arguments = [given.pop(name) for name in parameters()]
-        assert not given
+        names = parameters()
+        if sorted(names) != sorted(given):
+            raise SystemExit(f"march of step.c must take {', '.join(given)}, takes {', '.join(names)}")
+        arguments = [given[name] for name in names]
 
         def run() -> None:
             self.compiled.march(*arguments)
