@@ -30,7 +30,7 @@ verify: .venv/installed
 	$(BIN)/stridula verify
 
 peers: .venv/installed
-	$(BIN)/python benchmarks/peers/against_siconos.py
+	$(BIN)/python benchmarks/against_siconos.py
 
 lint: .venv/installed-dev
 	$(BIN)/ruff format --check .

@@ -1,12 +1,14 @@
 """The march against hand-written C of the same step (step.c): time per step as a ratio to C's.
 
 One contact on a beam, Coulomb's law, ledger and one probe, for some 30, 100 and 400 modes, separated, sticking and
-sliding. Needs gcc; skipped without.
+sliding. Needs gcc; skipped without. What C reads and writes goes by names: places in arrays by those of the package's
+layout, arguments by those of `march` in step.c.
 """
 
 from __future__ import annotations
 
 import ctypes
+import re
 import shutil
 import subprocess
 import tempfile
@@ -19,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 import stridula as st
-from ratios import Ratio, show
+from ratios import WARM_UP, Ratio, must_agree, show, sized
 from stridula._kernels import layout as at
 from stridula.assembly import assemble
 from stridula.integration.blocks import blocks_of
@@ -31,12 +33,15 @@ from systems import REGIMES, SCHEME, SIZES, beams
 TITLE = "time of a step over that of hand-written C"
 SOURCE = Path(__file__).with_name("step.c")
 FLAGS = ("-O3", "-march=native", "-ffast-math", "-shared", "-fPIC")
-REPEATS = 7
-STEPS = 40_000
+REPEATS = sized(7, 1)
+STEPS = sized(40_000, 4_000)
 RATIO = 10
 LEDGER = [at.DRIVE_WORK, at.CONTACT_WORK, at.FRICTION_LOSS, at.CONVECTION_WORK, at.DAMPING_LOSS]
+FORCES, STATES = [at.NORMAL_FORCE, at.TANGENTIAL_FORCE], [at.SEPARATED, at.STICKING, at.SLIDING]
+TOLERANCE = 1e-6
 BAR = 1.25
-MODES = (30, 100, 400)
+MODES = sized((30, 100, 400), (30,))
+Result = dict[str, np.ndarray]
 
 
 class Pair:
@@ -50,8 +55,8 @@ class Pair:
         self.state = state_at_start(self.arrays, SCHEME, self.step, self.blocks, st.GaussSeidel())
         self.compiled = compiled
 
-    def ours(self) -> tuple[Callable[[], None], Callable[[], np.ndarray]]:
-        """Return what marches by the package, and what it gives: positions, ledger, steps in each state."""
+    def ours(self) -> tuple[Callable[[], None], Callable[[], Result]]:
+        """Return the march of the package, and what it gives."""
         march = SimpleMarch([self.blocks], [deepcopy(self.state)], self.step, RATIO)
         imposed = Imposed(np.array([[1.0, 0.0, 0.0, 0.0]]), np.zeros((1, 1, at.MOTIONS)))
         chunks = []
@@ -59,48 +64,93 @@ class Pair:
         def run() -> None:
             chunks.extend(march.advance([imposed], STEPS // RATIO))
 
-        def result() -> np.ndarray:
+        def found() -> Result:
             (state,) = march.states
-            states = chunks[-1].contacts[:, 0, at.SEPARATED : at.SLIDING + 1].sum(axis=0) * RATIO
-            return np.concatenate([state.modal[0], state.energies[LEDGER], states])
+            return result(state.modal[at.Q], state.energies, chunks[-1].contacts[:, 0].sum(axis=0) * RATIO)
 
-        return run, result
+        return run, found
 
-    def theirs(self) -> tuple[Callable[[], None], Callable[[], np.ndarray]]:
-        """Return what marches by C, and what it gives."""
+    def theirs(self) -> tuple[Callable[[], None], Callable[[], Result]]:
+        """Return the march of C, and what it gives."""
         block, one, state = self.blocks.modes.block, self.arrays.contacts[0], self.state
         slider, (bending, axial), (_, end) = one.bending[0], one.bending, one.axial
-        constants, w = self.blocks.contacts.constants[0], self.blocks.contacts.compliance
-        carried = state.carried[0, [at.MATERIAL, at.ANCHOR, at.STATUS, at.ABSCISSA, at.ABSCISSA_BEFORE]].copy()
-        numbers = np.array(
-            [*constants[: at.AMPLITUDE + 1], one.contact.friction.coefficient, w[0, 0], w[0, 1], w[1, 1]]
-        )
-        loss = block[at.HALF_LOSS] * block[at.HALF_OVER_LOAD]
-        rows = apart([block[at.B], block[at.R], block[at.LOAD], block[at.HALF_OVER_LOAD], loss, one.fixed[1], one.fixed[0],
-                      self.blocks.modes.loads[0], self.blocks.probes.row[0, bending:axial], *state.modal,
-                      *np.zeros((3, end))])  # fmt: skip
-        sums, raw = np.zeros(10), np.empty(STEPS)
-        given = [*rows[:9], numbers, *rows[9:], carried, sums, raw]
-        pointers = [array.ctypes.data_as(ctypes.c_void_p) for array in given]
-        sizes = [ctypes.c_int(number) for number in (slider, axial - bending, end - axial)]
+        w = self.blocks.contacts.compliance
+        rows = apart({
+            "b": block[at.B], "r": block[at.R], "l": block[at.LOAD], "half_l": block[at.HALF_OVER_LOAD],
+            "loss": block[at.HALF_LOSS] * block[at.HALF_OVER_LOAD], "tip_x": one.fixed[1], "tip_y": one.fixed[0],
+            "load": self.blocks.modes.loads[0], "probe": self.blocks.probes.row[0, bending:axial],
+            "q": state.modal[at.Q], "d": state.modal[at.D], "dn": np.zeros(end), "s": np.zeros(end), "c": np.zeros(end),
+        })  # fmt: skip
+        arrays = rows | {
+            "constants": self.blocks.contacts.constants[0],
+            "carried": state.carried[0].copy(),
+            "energies": np.zeros(at.ENERGIES),
+            "columns": np.zeros(at.COLUMNS),
+            "raw": np.empty(STEPS),
+        }
+        numbers = {
+            "mu": one.contact.friction.coefficient,
+            "fixed_nn": w[at.NORMAL, at.NORMAL],
+            "w_nt": w[at.NORMAL, at.TANGENTIAL],
+            "fixed_tt": w[at.TANGENTIAL, at.TANGENTIAL],
+        }
+        sizes = {"slider": slider, "bending": axial - bending, "axial": end - axial}
+        given = {
+            "steps": ctypes.c_long(STEPS),
+            **{name: ctypes.c_int(size) for name, size in sizes.items()},
+            **{name: ctypes.c_double(number) for name, number in numbers.items()},
+            **{name: array.ctypes.data_as(ctypes.c_void_p) for name, array in arrays.items()},
+        }
+        names = parameters()
+        if sorted(names) != sorted(given):
+            raise SystemExit(f"march of step.c must take {', '.join(given)}, takes {', '.join(names)}")
+        arguments = [given[name] for name in names]
 
         def run() -> None:
-            self.compiled.march(ctypes.c_long(STEPS), *sizes, *pointers)
+            self.compiled.march(*arguments)
 
-        def result() -> np.ndarray:
-            return np.concatenate([rows[9][:end], sums[:5], sums[7:10]])
+        return run, lambda: result(arrays["q"][:end], arrays["energies"], arrays["columns"])
 
-        return run, result
+    def agree(self, found: Result, expected: Result) -> None:
+        """Stop where the two marches are apart."""
+        for quantity, values in found.items():
+            must_agree(f"{quantity} of the march and of step.c", values, expected[quantity], TOLERANCE)
 
 
-def apart(rows: list[np.ndarray]) -> np.ndarray:
+def result(positions: np.ndarray, energies: np.ndarray, columns: np.ndarray) -> Result:
+    """Return what must agree; columns are sums over the steps."""
+    return {
+        "positions": positions,
+        "ledgers": energies[LEDGER],
+        "forces": columns[FORCES],
+        "steps in each state": columns[STATES],
+    }
+
+
+def parameters() -> list[str]:
+    """Return the names of the arguments of the march in C, in their order."""
+    words = re.search(r"^void march\(([^)]*)\)", SOURCE.read_text(encoding="utf-8"), re.MULTILINE)
+    return re.findall(r"(\w+)(?:,|$)", words[1])
+
+
+def built(folder: Path) -> ctypes.CDLL:
+    """Return the march in C, compiled with the places of the package's layout."""
+    places = {name: place for name, place in vars(at).items() if name.isupper()}
+    lines = [f"enum {{ {name} = {place} }};" for name, place in places.items()]
+    (folder / "layout.h").write_text("\n".join(lines), encoding="utf-8")
+    target = folder / "step.so"
+    subprocess.run(["gcc", *FLAGS, "-I", folder, "-o", target, SOURCE, "-lm"], check=True)
+    return ctypes.CDLL(str(target))
+
+
+def apart(rows: Result) -> Result:
     """Return rows laid out so that no load of one looks like the store of another: a page apart would cost C dearly."""
-    width = max(row.size for row in rows)
+    width = max(row.size for row in rows.values())
     length = next(n for n in count(width) if n % 8 == 0 and all(off_page(n * k) >= 256 for k in range(1, len(rows))))
     out = aligned(len(rows), length)
-    for place, row in zip(out, rows, strict=True):
+    for place, row in zip(out, rows.values(), strict=True):
         place[: row.size] = row
-    return out
+    return dict(zip(rows, out, strict=True))
 
 
 def off_page(numbers: int) -> int:
@@ -109,23 +159,19 @@ def off_page(numbers: int) -> int:
 
 
 def ratios(pair: Pair) -> tuple[list[float], np.ndarray]:
-    """Return the ratios of the repeats and the steps in each state."""
+    """Return the ratios of the repeats and the steps in each state; stop where the two marches are apart."""
     taken = []
-    for repeat in range(REPEATS + 1):
-        (ours, result), (theirs, reference) = pair.ours(), pair.theirs()
+    for repeat in range(WARM_UP + REPEATS):
+        (ours, found), (theirs, expected) = pair.ours(), pair.theirs()
         times = []
         for march_on in (ours, theirs):
             began = time.perf_counter()
             march_on()
             times.append(time.perf_counter() - began)
-        # The first one compiles.
-        if repeat:
+        if repeat >= WARM_UP:
             taken.append(times[0] / times[1])
-    found, expected = result(), reference()
-    worst = np.abs(found - expected)[:-3].max() / np.abs(expected[:-3]).max()
-    if not worst < 1e-6:
-        raise SystemExit(f"the two marches must agree, differ by {worst:.1e}")
-    return taken, found[-3:]
+    pair.agree(found(), expected())
+    return taken, found()["steps in each state"]
 
 
 def rows() -> Iterator[Ratio | str]:
@@ -134,9 +180,7 @@ def rows() -> Iterator[Ratio | str]:
         yield "skipped: gcc is not installed, so there is no C to compare with"
         return
     with tempfile.TemporaryDirectory() as folder:
-        target = Path(folder) / "step.so"
-        subprocess.run(["gcc", *FLAGS, "-o", target, SOURCE, "-lm"], check=True)
-        compiled = ctypes.CDLL(str(target))
+        compiled = built(Path(folder))
         for modes in MODES:
             for regime in REGIMES:
                 pair = Pair(beams(SIZES[modes], regime), compiled)

@@ -3,6 +3,7 @@
     python benchmarks/gpu.py              measure; a line and no more without a GPU
     python benchmarks/gpu.py --dry-run    compile for compute capability 9.0 without a GPU: registers, local memory
     python benchmarks/gpu.py --map 1000   also a map of 1000 x 1000 runs, friction by angle
+    python benchmarks/gpu.py --short      a few short runs against the processor, also on the simulator of numba
 
 Operations of a step, products and sums by themselves, from `_kernels.mode_rows`. A fixed mode takes 25: its push 3,
 its step 7, work 2 and loss 4, the next position 5, and 2 for each of its two sums. A harmonic takes 28: its row 1, push
@@ -16,7 +17,6 @@ the peak in double precision.
 
 from __future__ import annotations
 
-import argparse
 import os
 import re
 import shutil
@@ -35,20 +35,21 @@ from types import SimpleNamespace
 import numpy as np
 
 import stridula as st
-from ratios import REPEATS, Ratio
+from ratios import REPEATS, SHORT, Ratio, arguments, must_agree, show, sized
 from stridula._kernels.vectors import LANES
 from stridula.assembly import assemble
 from stridula.integration.blocks import Blocks, blocks_of
 from stridula.integration.cuda_march import CudaMarch, require_cuda
 from stridula.integration.marches import Imposed, SimpleMarch, imposed_on
 from stridula.integration.start import state_at_start
-from systems import Case, squeal
+from systems import FORCES, TOLERANCE, Case, squeal
 
 TITLE = "runs per second on a GPU over those on all cores"
-DURATION = 1.0
-SAMPLE_RATE = 100.0
+DURATION, SAMPLE_RATE = sized((1.0, 100.0), (1e-3, 1e4))
 CHUNK = 10
-RATIO_RUNS = (1_000, 10_000)
+# How far [samples] runs on a card and on the processor are alike.
+SAMPLES_ALIKE = 2
+RATIO_RUNS = sized((1_000, 10_000), (3,))
 SIZES = (1_000, 3_000, 10_000, 30_000, 100_000)
 THREADS = (32, 64, 128, 256)
 RUNS_OF_THE_PROCESSOR = 4 * LANES
@@ -129,6 +130,17 @@ def go(march, some, samples: int) -> float:
     return time.perf_counter() - began
 
 
+def agree(some: list[Case], at: Timing) -> None:
+    """Stop where some runs are not the same on the card and on the processor, before chaos parts them."""
+    few, sides = some[:LANES], []
+    for kind in (CudaMarch, SimpleMarch):
+        march = march_of(kind, few, at)
+        chunks = march.advance([one.imposed for one in few], SAMPLES_ALIKE)
+        sides.append(([state.modal for state in march.states], [chunk.contacts[..., FORCES] for chunk in chunks]))
+    for quantity, here, there in zip(("motion", "forces"), *sides, strict=True):
+        must_agree(f"{quantity} on the card and on the processor", here, there, TOLERANCE)
+
+
 def on_the_processor(at: Timing) -> float:
     """Return one-second runs per second on all cores, eight side by side on each."""
     cores = os.cpu_count() or 1
@@ -166,11 +178,12 @@ def rows() -> Iterator[Ratio | str]:
     try:
         require_cuda()
     except RuntimeError as error:
-        yield f"nothing measured: {error}"
+        yield f"skipped: {error}"
         return
     at = timing()
     for runs in RATIO_RUNS:
         some = first(runs, at.step)
+        agree(some, at)
         march = march_of(CudaMarch, some, at)
         go(march.copy(), some, 1)
         values = [runs / go(march.copy(), some, at.samples) / on_the_processor(at) for _ in range(REPEATS)]
@@ -274,12 +287,15 @@ def _resources(assembler: str, source: Path, most: int) -> tuple[int, ...]:
 
 def main() -> None:
     """Measure, or say why not."""
-    words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    words = arguments(__doc__)
     words.add_argument("--dry-run", action="store_true", help="compile without a GPU")
     words.add_argument("--map", type=int, default=0, metavar="SIDE", help="also a map of SIDE x SIDE runs")
     chosen = words.parse_args()
     if chosen.dry_run:
         dry_run()
+        return
+    if SHORT:
+        show(TITLE, rows())
         return
     try:
         require_cuda()

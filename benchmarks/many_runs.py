@@ -6,16 +6,14 @@ import os
 from collections.abc import Iterator
 
 import stridula as st
-from ratios import Ratio, over, seconds, show
+from ratios import Ratio, must_agree, over, seconds, show, sized
 from stridula._kernels.vectors import LANES
-from stridula.integration.marches import SimpleMarch
-from systems import SIZES, beams, case_of, limit_of, marching, squeals
+from stridula.integration.marches import Chunk, SimpleMarch
+from systems import FORCES, GIVEN, RUNS, SIZES, TOLERANCE, beams, case_of, limit_of, marching, same_start, squeals
 
 TITLE = "many runs: throughput over that of single runs in sequence"
 BAR = 3.0
-RUNS = 64
-GIVEN = {"duration": 1.0, "sample_rate": 1e3, "probes": ()}
-SAMPLES, RATIO = 400, 100
+SAMPLES, RATIO = sized(400, 10), 100
 
 
 def rows() -> Iterator[Ratio]:
@@ -25,9 +23,14 @@ def rows() -> Iterator[Ratio]:
         lambda: [st.simulate(system, **GIVEN) for system in systems],
         lambda: st.simulate_many(systems, workers=1, **GIVEN),
         lambda: st.simulate_many(systems, workers=cores, **GIVEN),
+        agree=same_start,
     )
-    yield Ratio(f"{RUNS} squeals of 1 s, one worker: lanes alone", over(sequence, one))
-    yield Ratio(f"{RUNS} squeals of 1 s, {cores} workers: lanes and threads", over(sequence, all_cores), least=BAR)
+    yield Ratio(f"{RUNS} squeals of {GIVEN['duration']:g} s, one worker: lanes alone", over(sequence, one))
+    yield Ratio(
+        f"{RUNS} squeals of {GIVEN['duration']:g} s, {cores} workers: lanes and threads",
+        over(sequence, all_cores),
+        least=BAR,
+    )
     for modes in SIZES:
         yield Ratio(f"march alone, {LANES} runs of some {modes} modes", of_the_march(modes))
 
@@ -42,8 +45,14 @@ def of_the_march(modes: int) -> list[float]:
         for group in (some[:1], some)
     )
     one, together = marching(single, some[:1], SAMPLES), marching(vector, some, SAMPLES)
-    sequence, side_by_side = seconds(lambda: [one() for _ in some], together)
+    sequence, side_by_side = seconds(lambda: [one()[0] for _ in some], together, agree=same_march)
     return over(sequence, side_by_side)
+
+
+def same_march(found: list[Chunk], expected: list[Chunk]) -> None:
+    """Stop where the recorded forces differ."""
+    here, there = ([run.contacts[..., FORCES] for run in runs] for runs in (found, expected))
+    must_agree("forces of runs marched side by side and alone", here, there, TOLERANCE)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
     python benchmarks/page.py                                   two minutes
     python benchmarks/page.py --minutes 10 --write docs/performance.md
+    python benchmarks/page.py --short                           some seconds; the server alone where there is no browser
 
 It needs Debian's chromium and playwright. Chromium plays into a sink without a sound card, at the pace of one. From
 slider to ear: from the key that moves the friction slider to the moment the first sample computed with it leaves the
@@ -10,18 +11,18 @@ queue of the player, and the limiter's look-ahead and what the browser says of i
 
 from __future__ import annotations
 
-import argparse
 import os
 import re
 import subprocess
 import sys
 import time
+import urllib.request
 from pathlib import Path
 
 import numpy as np
 
 import machine
-from ratios import write_between
+from ratios import SHORT, arguments, sized, write_between
 
 CHROMIUM = "/usr/bin/chromium"
 ARGUMENTS = ("--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update")
@@ -48,6 +49,19 @@ def processor_time(process: int) -> float:
     """Return the processor time that a process has taken [s]."""
     fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / TICKS
+
+
+def idle() -> str:
+    """Start the server and return what it takes before anybody plays."""
+    server, address = served()
+    try:
+        with urllib.request.urlopen(address) as page:
+            if b"<canvas" not in page.read():
+                raise SystemExit(f"the server at {address} must give the page, gave something else")
+        return f"server: {memory(server.pid):.0f} MB, {processor_time(server.pid):.1f} s to begin"
+    finally:
+        server.terminate()
+        server.wait(10)
 
 
 def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
@@ -112,11 +126,17 @@ def table(seen: dict[str, list[float]], minutes: float, with_map: bool) -> list[
 
 def main() -> None:
     """Measure and print, and write if asked."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--minutes", type=float, default=2.0)
+    parser = arguments(__doc__)
+    parser.add_argument("--minutes", type=float, default=sized(2.0, 0.1))
     parser.add_argument("--no-map", action="store_true")
     parser.add_argument("--write", type=Path)
     asked = parser.parse_args()
+    if not Path(CHROMIUM).exists():
+        if not SHORT:
+            raise SystemExit(f"{CHROMIUM} must be there to play the page in")
+        print(idle())
+        print(f"skipped: {CHROMIUM} is not there, so no page is played")
+        return
     lines = table(played(asked.minutes, not asked.no_map), asked.minutes, not asked.no_map)
     print("\n".join(lines))
     if asked.write:

@@ -1,16 +1,37 @@
-"""Ratios of what is timed in turns in one process, and their table."""
+"""Ratios of what is timed in turns in one process, and their table; what the sides of a ratio must agree in.
+
+With `--short` among the arguments of any benchmark, all that is `sized` is small: seconds show that everything runs and
+agrees, and the ratios mean nothing.
+"""
 
 from __future__ import annotations
 
+import argparse
 import statistics
+import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
 
 import machine
 
-REPEATS = 5
+SHORT = "--short" in sys.argv
+# For processes of its own.
+FORM = ("--short",) if SHORT else ()
+Size, Found = TypeVar("Size"), TypeVar("Found")
+
+
+def sized(usual: Size, short: Size) -> Size:
+    """Return the usual size, or that of the short form if it is asked for."""
+    return short if SHORT else usual
+
+
+# Rounds that count, and those before them, in which things are compiled.
+REPEATS, WARM_UP = sized((5, 1), (1, 0))
 HEAD = ("quantity", "bar", "min", "median", "max", "")
 
 
@@ -43,7 +64,7 @@ class Ratio:
         """Return its line of the table."""
         bar = f">= {self.least:g}" if self.least is not None else f"<= {self.most:g}" if self.most is not None else ""
         spread = (min(self.values), statistics.median(self.values), max(self.values))
-        return self.quantity, bar, *map(short, spread), "misses" if self.misses else ""
+        return self.quantity, bar, *map(short, spread), "misses" if self.misses and not SHORT else ""
 
 
 # A line that is not a ratio says why there is none.
@@ -55,16 +76,47 @@ def short(value: float) -> str:
     return f"{value:.0f}" if value >= 100.0 else f"{value:.3g}"
 
 
-def seconds(*sides: Callable[[], object], repeats: int = REPEATS) -> list[list[float]]:
-    """Return the seconds that each side took in each repeat: in turns, after a first round that compiles."""
+def seconds(*sides: Callable[[], Found], agree: Callable[[Found, Found], None] | None = None) -> list[list[float]]:
+    """Return the seconds that each side took in each repeat: in turns, after a first round that compiles.
+
+    Parameters
+    ----------
+    *sides : callable
+        What is timed.
+    agree : callable, optional
+        It stops where what a side returns and what the first one returns are not the same, as they should be.
+    """
     taken: list[list[float]] = [[] for _ in sides]
-    for repeat in range(repeats + 1):
+    for repeat in range(WARM_UP + REPEATS):
+        returned = []
         for times, side in zip(taken, sides, strict=True):
             began = time.perf_counter()
-            side()
-            if repeat:
+            returned.append(side())
+            if repeat >= WARM_UP:
                 times.append(time.perf_counter() - began)
+        if agree and repeat == 0:
+            first, *others = returned
+            for other in others:
+                agree(other, first)
     return taken
+
+
+def must_agree(quantity: str, found: object, expected: object, tolerance: float) -> None:
+    """Stop, in one line, where two sides are further apart than a share of the largest value."""
+    found, expected = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
+    same_shape = found.shape == expected.shape
+    apart = np.abs(found - expected).max() / (np.abs(expected).max() or 1.0) if same_shape else np.inf
+    if not apart <= tolerance:
+        raise SystemExit(f"{quantity} must agree to {tolerance:g}, differ by {apart:.1e}")
+
+
+def arguments(description: str) -> argparse.ArgumentParser:
+    """Return a parser of a benchmark's own arguments; the short form is chosen before it is asked."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument(
+        "--short", action="store_true", help="run all of it small: it runs and agrees, and measures nothing"
+    )
+    return parser
 
 
 def over(above: list[float], below: list[float], factor: float = 1.0) -> list[float]:

@@ -12,14 +12,14 @@ import time
 from collections.abc import Callable, Iterator
 
 import stridula as st
-from ratios import REPEATS, Ratio, show
+from ratios import REPEATS, WARM_UP, Ratio, show, sized
 from stridula._kernels.vectors import LANES
 from stridula.papers.laulagnet_2011.runs import CASES
 from stridula.scenarios import load_scenario
 
 TITLE = "simulated time over wall time, slowest case of the paper, one core"
 BAR = 100.0
-DURATION = 1.0
+DURATION = sized(1.0, 0.01)
 RECORDS = {"1 kHz": {"sample_rate": 1e3, "probes": ()}, "100 kHz": {}}
 STEPS = {"default step": None, "10 us": 1e-5}
 
@@ -36,8 +36,8 @@ def rows() -> Iterator[Ratio]:
 
 
 def slowest(systems: dict[str, st.System], speed: Callable[[st.System], float]) -> tuple[str, list[float]]:
-    """Return the case with the lowest median, and its values: all cases in each repeat, after a first round."""
-    rounds = [{name: speed(system) for name, system in systems.items()} for _ in range(REPEATS + 1)][1:]
+    """Return the case with the lowest median, and its values: all cases in each repeat, the first round apart."""
+    rounds = [{name: speed(system) for name, system in systems.items()} for _ in range(WARM_UP + REPEATS)][WARM_UP:]
     values = {name: [one[name] for one in rounds] for name in systems}
     return min(values.items(), key=lambda item: statistics.median(item[1]))
 

@@ -6,14 +6,12 @@ import os
 from collections.abc import Callable, Iterator
 
 import stridula as st
-from ratios import Ratio, over, seconds, show
+from ratios import Ratio, over, seconds, show, sized
 from stridula.integration.marches import GeneralMarch, SimpleMarch
-from systems import FEET, SIZES, beams, case_of, limit_of, marching, pad, squeals
+from systems import FEET, GIVEN, RUNS, SIZES, beams, case_of, limit_of, marching, pad, same_start, squeals
 
 TITLE = "scaling"
-SAMPLES, RATIO = 200, 100
-RUNS = 64
-GIVEN = {"duration": 1.0, "sample_rate": 1e3, "probes": ()}
+SAMPLES, RATIO = sized(200, 10), 100
 
 
 def rows() -> Iterator[Ratio]:
@@ -69,7 +67,8 @@ def cores() -> Iterator[Ratio]:
     """Yield the throughput of many runs over that of one worker."""
     systems, most = squeals(RUNS), os.cpu_count() or 1
     workers = [1, *sorted({2**power for power in range(1, most.bit_length())} | {most} - {1})]
-    first, *others = seconds(*(lambda n=n: st.simulate_many(systems, workers=n, **GIVEN) for n in workers))
+    many = [lambda n=n: st.simulate_many(systems, workers=n, **GIVEN) for n in workers]
+    first, *others = seconds(*many, agree=same_start)
     for number, times in zip(workers[1:], others, strict=True):
         yield Ratio(f"throughput, {RUNS} runs, {number} workers over 1", over(first, times))
 

@@ -1,17 +1,15 @@
 /* The step of the march for one contact on a beam under Coulomb's law, ledger and one probe included, as fast as C goes.
 
    Modes in the order slider, bending, axial. Compiled by against_c.py; what it computes is checked there against the package.
+   Places in `constants`, `carried`, `energies` and `columns` have the names of the package's own layout: layout.h is written
+   from it. Arguments of `march` are given by their names, too.
 */
 #include <math.h>
 
-#define R restrict
-
-enum { DRIVE, CONTACT, FRICTION, CONVECTION, DAMPING, NORMAL, TANGENTIAL, SEPARATED, STICKING, SLIDING, SUMS };
-enum { MATERIAL, ANCHOR, STATUS, ABSCISSA, BEFORE };
-enum { START, GAP, WAVENUMBER, AMPLITUDE, FRICTION_RATIO, W_NN, W_NT, W_TT };
+#include "layout.h"
 
 /* Sines and cosines of eight angles from 0 to pi, by the polynomials of FreeBSD's msun. */
-static void sines(const double *R theta, double *R sine, double *R cosine)
+static void sines(const double *restrict theta, double *restrict sine, double *restrict cosine)
 {
     for (int k = 0; k < 8; k++) {
         double x = 0.5 * (theta[k] - 1.57079632679489661923), z = x * x;
@@ -27,7 +25,7 @@ static void sines(const double *R theta, double *R sine, double *R cosine)
 }
 
 /* sin(k theta) and cos(k theta), k from 1: the first eight at once, the others turned on by eight at a time. */
-static void harmonics(double theta, int count, double *R s, double *R c)
+static void harmonics(double theta, int count, double *restrict s, double *restrict c)
 {
     double angle[8], sign[8];
     for (int k = 0; k < 8; k++) {
@@ -49,24 +47,31 @@ static void harmonics(double theta, int count, double *R s, double *R c)
 }
 
 /* What a constant load has given, up to a constant: the sum of its work over the steps telescopes. */
-static double work_of_load(int modes, const double *R load, const double *R hc, const double *R q, const double *R d)
+static double work_of_load(int modes, const double *restrict load, const double *restrict half_l, const double *restrict q,
+                           const double *restrict d)
 {
     double work = 0.0;
     for (int k = 0; k < modes; k++)
-        work += load[k] * hc[k] * (2.0 * q[k] - d[k]);
+        work += load[k] * half_l[k] * (2.0 * q[k] - d[k]);
     return work;
 }
 
-void march(long steps, int slider, int bending, int axial, const double *R b, const double *R r, const double *R ch,
-           const double *R hc, const double *R loss, const double *R tip_x, const double *R tip_y, const double *R load,
-           const double *R probe, const double *R constants, double *R q, double *R d, double *R dn, double *R s,
-           double *R c, double *R carried, double *R sums, double *R raw)
+void march(long steps, int slider, int bending, int axial, double mu, double fixed_nn, double w_nt, double fixed_tt,
+           const double *restrict constants, const double *restrict b, const double *restrict r,
+           const double *restrict l, const double *restrict half_l, const double *restrict loss,
+           const double *restrict tip_x, const double *restrict tip_y, const double *restrict load,
+           const double *restrict probe, double *restrict q, double *restrict d, double *restrict dn,
+           double *restrict s, double *restrict c, double *restrict carried, double *restrict energies,
+           double *restrict columns, double *restrict raw)
 {
     const int track = slider + bending, most = bending > axial ? bending : axial;
-    const double wavenumber = constants[WAVENUMBER], amplitude = constants[AMPLITUDE], mu = constants[FRICTION_RATIO];
-    double material = carried[MATERIAL], anchor = carried[ANCHOR], place = carried[ABSCISSA], before = carried[BEFORE];
+    const double wavenumber = constants[WAVENUMBER], amplitude = constants[AMPLITUDE];
+    double material = carried[MATERIAL], anchor = carried[ANCHOR];
+    double place = carried[ABSCISSA], before = carried[ABSCISSA_BEFORE], last_slip = carried[LAST_SLIP];
+    double normal = carried[LAST_NORMAL], tangential = carried[LAST_TANGENTIAL];
+    double last_gap = carried[LAST_GAP], closed = carried[CLOSED_SHARE];
     int status = (int)carried[STATUS];
-    sums[DRIVE] -= work_of_load(track + axial, load, hc, q, d);
+    energies[DRIVE_WORK] -= work_of_load(track + axial, load, half_l, q, d);
     for (long n = 0; n < steps; n++) {
         double x = 0.0, y = 0.0, bend = 0.0, w_bend = 0.0, stretch = 0.0, w_axial = 0.0;
         for (int k = 0; k < slider; k++) {
@@ -81,22 +86,28 @@ void march(long steps, int slider, int bending, int axial, const double *R b, co
             const int j = slider + k;
             dn[j] = b[j] * d[j] - r[j] * q[j] + load[j];
             bend += s[k] * (q[j] + dn[j]);
-            w_bend += s[k] * s[k] * ch[j];
+            w_bend += s[k] * s[k] * l[j];
         }
         for (int k = 0; k < axial; k++) {
             const int j = track + k;
             dn[j] = b[j] * d[j] - r[j] * q[j] + load[j];
             stretch += s[k] * (q[j] + dn[j]);
-            w_axial += s[k] * s[k] * ch[j];
+            w_axial += s[k] * s[k] * l[j];
         }
         const double gap = constants[GAP] + y - amplitude * bend, moved = trial - amplitude * stretch;
-        double normal = 0.0, tangential = 0.0;
-        double w_nn = constants[W_NN], w_nt = constants[W_NT], w_tt = constants[W_TT];
+        const double w_nn = fixed_nn + amplitude * amplitude * w_bend, w_tt = fixed_tt + amplitude * amplitude * w_axial;
         const int was = status;
+        if (was && gap >= 0.0) {
+            const double free = w_nn - tangential / normal * w_nt;
+            closed += normal / (normal + gap / (free > 0.0 ? free : w_nn)) - 1.0;
+            closed = closed > 0.0 ? closed : 0.0;
+        }
+        columns[SEPARATED] += 1.0 - closed;
+        if (was)
+            columns[SEPARATED + was] += closed;
+        normal = tangential = closed = 0.0;
         status = 0;
         if (gap < 0.0) {
-            w_nn += amplitude * amplitude * w_bend;
-            w_tt += amplitude * amplitude * w_axial;
             const double slip = moved - (was == 1 ? anchor : material), determinant = w_nn * w_tt - w_nt * w_nt;
             normal = (w_nt * slip - w_tt * gap) / determinant;
             tangential = (w_nn * slip - w_nt * gap) / determinant;
@@ -107,14 +118,35 @@ void march(long steps, int slider, int bending, int axial, const double *R b, co
                 tangential = sense * mu * normal;
                 status = 2;
             }
+            if (was == 2 && last_slip != 0.0 && (status == 1 || tangential * last_slip < 0.0)) {
+                const double ratio = last_slip < 0.0 ? -mu : mu;
+                const double free_on = w_nn - ratio * w_nt, free_back = w_nn + ratio * w_nt;
+                const double on = -gap / free_on, farther = slip + (w_nt - ratio * w_tt) * on;
+                if (free_on > 0.0 && free_back > 0.0 && farther * last_slip < 0.0) {
+                    const double share = last_slip / (last_slip - farther), undone = slip - last_slip;
+                    double pressed = (w_nt * undone - w_tt * gap) / determinant;
+                    double needed = (w_nn * undone - w_nt * gap) / determinant;
+                    status = 1;
+                    if (fabs(needed) > mu * pressed) {
+                        pressed = -gap / free_back;
+                        needed = -ratio * pressed;
+                        status = 2;
+                    }
+                    normal = share * on + (1.0 - share) * pressed;
+                    tangential = share * ratio * on + (1.0 - share) * needed;
+                }
+            }
+            closed = was ? 1.0 : gap / (gap - last_gap);
         }
+        last_gap = gap > 0.0 ? gap : 0.0;
         if (status == 1 && was != 1)
             anchor = material;
         const double slipped = moved + w_nt * normal - w_tt * tangential;
-        const double new_place = trial + w_nt * normal - constants[W_TT] * tangential;
+        const double new_place = trial + w_nt * normal - fixed_tt * tangential;
         double exchanged = 0.0, lost = 0.0, value = 0.0;
         for (int k = 0; k < slider; k++) {
-            const double push = tip_y[k] * normal - tip_x[k] * tangential, step = dn[k] + ch[k] * push, both = step + d[k];
+            const double push = tip_y[k] * normal - tip_x[k] * tangential, step = dn[k] + l[k] * push;
+            const double both = step + d[k];
             exchanged += push * both;
             lost += loss[k] * both * both;
             q[k] += step;
@@ -124,7 +156,7 @@ void march(long steps, int slider, int bending, int axial, const double *R b, co
         const double up = -amplitude * normal, along = amplitude * tangential;
         for (int k = 0; k < bending; k++) {
             const int j = slider + k;
-            const double push = up * s[k], step = dn[j] + ch[j] * push, both = step + d[j];
+            const double push = up * s[k], step = dn[j] + l[j] * push, both = step + d[j];
             exchanged += push * both;
             lost += loss[j] * both * both;
             value += probe[k] * (step - d[j]);
@@ -135,29 +167,29 @@ void march(long steps, int slider, int bending, int axial, const double *R b, co
         double along_slope = 0.0;
         for (int k = 0; k < axial; k++) {
             const int j = track + k;
-            const double push = along * s[k], step = dn[j] + ch[j] * push, both = step + d[j];
+            const double push = along * s[k], step = dn[j] + l[j] * push, both = step + d[j];
             exchanged += push * both;
             lost += loss[j] * both * both;
             q[j] += step;
             d[j] = step;
             along_slope += (k + 1) * c[k] * q[j];
         }
-        sums[DAMPING] += lost;
-        sums[CONTACT] += 0.5 * exchanged;
-        sums[FRICTION] += tangential * (slipped - material);
-        sums[CONVECTION] -= wavenumber * 0.5 * (new_place - before) * (up * slope + along * along_slope);
-        sums[NORMAL] += normal;
-        sums[TANGENTIAL] += tangential;
-        sums[SEPARATED + status] += 1.0;
+        energies[DAMPING_LOSS] += lost;
+        energies[CONTACT_WORK] += 0.5 * exchanged;
+        energies[FRICTION_LOSS] += fabs(tangential * (slipped - material));
+        last_slip = slipped - material;
+        energies[CONVECTION_WORK] -= wavenumber * 0.5 * (new_place - before) * (up * slope + along * along_slope);
+        columns[NORMAL_FORCE] += normal;
+        columns[TANGENTIAL_FORCE] += tangential;
         raw[n] = value;
         material = slipped;
         before = place;
         place = new_place;
     }
-    sums[DRIVE] += work_of_load(track + axial, load, hc, q, d);
+    energies[DRIVE_WORK] += work_of_load(track + axial, load, half_l, q, d);
     carried[MATERIAL] = material;
     carried[ANCHOR] = anchor;
     carried[STATUS] = status;
     carried[ABSCISSA] = place;
-    carried[BEFORE] = before;
+    carried[ABSCISSA_BEFORE] = before;
 }

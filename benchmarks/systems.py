@@ -7,8 +7,11 @@ from dataclasses import dataclass, replace
 from math import radians
 
 import numpy as np
+import xarray as xr
 
 import stridula as st
+from ratios import must_agree, sized
+from stridula._kernels import layout as at
 from stridula.assembly import assemble
 from stridula.integration.blocks import Blocks, blocks_of
 from stridula.integration.marches import Imposed, March, imposed_on
@@ -29,6 +32,11 @@ SIZES = {
     400: (80, 100, 60),
 }
 FEET = 8
+# How long [s] runs that differ by round-off alone are alike, and to which share of the largest force.
+BEFORE_CHAOS, TOLERANCE = 0.02, 1e-6
+FORCES = [at.NORMAL_FORCE, at.TANGENTIAL_FORCE]
+# Of which some are marched many at once.
+RUNS, GIVEN = sized(64, 8), {"duration": sized(1.0, 0.05), "sample_rate": 1e3, "probes": ()}
 
 
 def beams(size: tuple[int, int, int], regime: str) -> st.System:
@@ -55,6 +63,12 @@ def squeals(runs: int) -> list[st.System]:
     frictions = np.linspace(0.5, 2.0, 8)
     angles = np.radians(np.linspace(30.0, 60.0, -(-runs // frictions.size)))
     return [squeal(angle, friction) for angle in angles for friction in frictions][:runs]
+
+
+def same_start(found: Sequence[xr.Dataset], expected: Sequence[xr.Dataset]) -> None:
+    """Stop where the forces of two lists of runs differ before chaos parts them."""
+    here, there = ([run.normal_force.sel(time=slice(0.0, BEFORE_CHAOS)) for run in runs] for runs in (found, expected))
+    must_agree("normal forces of the same runs at the start", here, there, TOLERANCE)
 
 
 def pad(contacts: int) -> st.System:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import signal
 import sys
 from pathlib import Path
@@ -17,10 +18,38 @@ settings.register_profile("repeatable", derandomize=True, database=None)
 settings.load_profile("repeatable")
 
 
+def pytest_addoption(parser):
+    parser.addoption("--order", type=int, metavar="SEED", help="seed of the order of the tests; another each time")
+
+
+def pytest_configure_node(node):
+    """Tell a process of tests the order."""
+    node.workerinput["order"] = node.config.option.order
+
+
+def pytest_collection_modifyitems(config, items):
+    """Take files in an order that nothing can lean on, and in each its tests; all processes in the same."""
+    files: dict[Path, list[pytest.Item]] = {}
+    for item in items:
+        files.setdefault(item.path, []).append(item)
+    shuffled, groups = random.Random(config.option.order), list(files.values())
+    for group in (groups, *groups):
+        shuffled.shuffle(group)
+    items[:] = [item for group in groups for item in group]
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    terminalreporter.write_line(f"in this order again: --order {config.option.order}")
+
+
 def pytest_configure(config):
-    """Compile the march anew where any kernel is newer: numba looks at the file of the function called only."""
+    """Draw the order; compile the march anew where any kernel is newer: numba looks at the file called only."""
     kernels = Path(stridula.__file__).parent / "_kernels"
-    if not hasattr(config, "workerinput"):
+    if hasattr(config, "workerinput"):
+        config.option.order = config.workerinput["order"]
+    else:
+        if config.option.order is None:
+            config.option.order = random.SystemRandom().randrange(10**6)
         newest = max(path.stat().st_mtime for path in kernels.glob("*.py"))
         for compiled in (kernels / "__pycache__").glob("*.nb[ic]"):
             if compiled.stat().st_mtime < newest:

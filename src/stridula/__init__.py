@@ -76,15 +76,19 @@ _HOME = {
     ),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
+# Modules that are public as they stand.
+_PUBLIC = ("analysis", "papers", "plot", "scenarios", "studies", "verification")
 __all__ = ["__version__", *_MODULE]
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name from its home on first use, so that `import stridula` stays quick."""
+    """Import a public module, or a public name from its home, on first use, so that `import stridula` stays quick."""
+    if name in _PUBLIC:
+        return import_module(f".{name}", __name__)
     if name not in _MODULE:
         raise AttributeError(f"module 'stridula' has no attribute {name!r}")
     return getattr(import_module(f".{_MODULE[name]}", __name__), name)
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted((*__all__, *_PUBLIC))

@@ -14,19 +14,25 @@ from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
 from typing import Any
 
-# What takes longer has failed [s]: a loaded machine is slow, a first start compiles.
-WAIT, START = 30.0, 300.0
+from stridula.app.serve import COMPILING
+
+# What takes longer has failed [s]: a loaded machine is slow, a first start and a first map compile.
+WAIT, START = 120.0, 300.0
 COMMAND = (sys.executable, "-c", "from stridula.cli import main; main()", "app", "--no-browser")
 
 
 class Server:
-    """`stridula app` on a free port, or on one that is given."""
+    """`stridula app` on a free port, or on one that is given; with more in its environment, if asked."""
 
-    def __init__(self, errors: Path, port: int = 0) -> None:
+    def __init__(self, errors: Path, port: int = 0, **environment: str) -> None:
         self.errors = errors
         with errors.open("ab") as file:
             self.process = subprocess.Popen(
-                [*COMMAND, "--port", str(port)], stdout=subprocess.PIPE, stderr=file, text=True
+                [*COMMAND, "--port", str(port)],
+                stdout=subprocess.PIPE,
+                stderr=file,
+                text=True,
+                env=os.environ | environment,
             )
         assert self.process.stdout is not None
         ready, _, _ = select.select([self.process.stdout], [], [], START)
@@ -43,9 +49,14 @@ class Server:
         return self.address.rstrip("/")
 
     @property
-    def complaints(self) -> str:
-        """What it wrote to standard error: nothing, if all is well."""
+    def said(self) -> str:
+        """What it wrote to standard error."""
         return self.errors.read_text(encoding="utf-8")
+
+    @property
+    def complaints(self) -> str:
+        """The same but for the notice of a start that compiles: nothing, if all is well."""
+        return self.said.replace(f"{COMPILING}\n", "")
 
     def get(self, path: str, **headers: str) -> tuple[HTTPResponse, bytes]:
         """Ask for a file of the page."""

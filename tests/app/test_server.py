@@ -11,8 +11,10 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
+from stridula.app.serve import COMPILING
+
 from .conversation import conversation
-from .serving import WAIT, app
+from .serving import WAIT, Server, app
 
 PAGE = [entry for entry in files("stridula.app").joinpath("page").iterdir() if entry.is_file()]
 
@@ -106,6 +108,19 @@ def test_a_port_that_is_taken_is_named_in_one_line():
     assert (done.returncode, done.stdout) == (2, "")
     words = rf"stridula: host and port must be free, got 127.0.0.1:{port}: .*choose another --port\)\n"
     assert re.fullmatch(words, done.stderr)
+
+
+def test_a_first_start_says_that_it_compiles_and_complains_of_nothing(tmp_path):
+    server = Server(tmp_path / "errors", NUMBA_CACHE_DIR=str(tmp_path / "cache"))
+    try:
+        assert server.said == f"{COMPILING}\n"
+        assert server.complaints == ""
+        with conversation(server) as talk:
+            talk.until("hello")
+            talk.scene()
+            assert len(talk.play(480).sound) == 480
+    finally:
+        server.stop()
 
 
 def test_ctrl_c_ends_it_with_a_page_open(own):

@@ -143,6 +143,25 @@ def test_public_names_are_listed_once_and_resolve():
         _ = stridula.squeal
 
 
+def modules_that_docs_name() -> set[str]:
+    """Return the modules of the API page, and what code has that is not a public name."""
+    docs = Path(__file__).resolve().parents[2] / "docs"
+    code = "".join(page.read_text(encoding="utf-8") for page in (*docs.glob("*.rst"), docs.parent / "README.md"))
+    names = set(re.findall(r"\bst\.([a-z_]+(?:\.\w+)*)", code))
+    api = re.findall(r'^    \("stridula\.([\w.]+)",', (docs / "conf.py").read_text(encoding="utf-8"), re.MULTILINE)
+    return {name for name in names if name.partition(".")[0] not in stridula.__all__} | set(api)
+
+
+@pytest.mark.parametrize("name", sorted(modules_that_docs_name()))
+def test_modules_that_docs_name_are_there_in_a_fresh_interpreter(name):
+    code = f"import stridula as st; st.{name}; assert {name.partition('.')[0]!r} in dir(st)"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_docs_name_modules():
+    assert {"analysis", "papers.laulagnet_2011", "plot", "studies.share_of"} <= modules_that_docs_name()
+
+
 @pytest.mark.parametrize(("name", "thing"), public(), ids=[name for name, _ in public()])
 def test_public_names_are_documented(name, thing):
     """Own docstring, not the signature that dataclass writes; and one for each public method and property."""

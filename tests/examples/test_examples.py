@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import runpy
-import textwrap
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -12,34 +11,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-import scipy.linalg
 
-import stridula as st
+from .growing import unstable_frequencies
+from .pages import blocks
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
-
-
-def unstable_frequencies(system: Any, sense: float) -> np.ndarray:
-    """Return the frequencies [Hz] of the modes that grow when small motion is added to steady sliding.
-
-    No time march: with the rows ``N q = 0`` (contact stays closed) and forces along ``N - sense mu T``, the free motion
-    lies in the null space Z of N and is tested with the null space Y of ``N - sense mu T``; eigenvalues of
-    ``Y' (s² + s C + K) Z``, unsymmetric.
-    """
-    slider, track, contact = system.slider, system.track, system.contact
-    parts = slider.modes(held_x=True), track.modes()
-    angular = np.concatenate([part.angular_frequency for part in parts])
-    damping = np.concatenate([part.damping for part in parts])
-    tip, below = slider.trace(0.0, held_x=True), track.trace(contact.at)
-    tangent, normal = np.concatenate([tip, -below], axis=1)
-    z = scipy.linalg.null_space(normal[None])
-    y = scipy.linalg.null_space((normal - sense * contact.friction.coefficient * tangent)[None])
-    mass, loss, stiffness = (y.T @ (d[:, None] * z) for d in (angular**0, 2 * damping * angular, angular**2))
-    zero, one = np.zeros_like(mass), np.eye(len(mass))
-    matrix = np.block([[zero, one], [-scipy.linalg.solve(mass, stiffness), -scipy.linalg.solve(mass, loss)]])
-    roots = scipy.linalg.eigvals(matrix)
-    return roots[(roots.real > 1.0) & (roots.imag > 0.0)].imag / (2.0 * np.pi)
 
 
 def check_ten_lines(names: Mapping[str, Any], printed: str, folder: Path) -> None:
@@ -101,75 +78,6 @@ def test_example(path, tmp_path, monkeypatch, capsys):
     CHECKS[path.name](names, capsys.readouterr().out, tmp_path)
 
 
-def test_what_the_start_page_shows_of_other_systems_runs(tmp_path, monkeypatch):
-    """A mass on a belt, a body from a file against a wall, an ensemble, a sweep: the code of the page, as it stands."""
-    page = (ROOT / "docs" / "start.rst").read_text(encoding="utf-8")
-    section = page.partition("Other bodies, other tracks\n")[2].partition("\nRead a record\n")[0]
-    blocks = [textwrap.dedent(b) for b in re.findall(r"code-block:: python\n\n((?: {3}.*\n|\n)+)", section)]
-    assert len(blocks) == 5
-    monkeypatch.chdir(tmp_path)
-    stiffness = np.kron([[1e6, -1e6], [-1e6, 1.1e6]], np.eye(2))
-    st.ReducedBody(0.1 * np.eye(4), stiffness, {"tip": (0, 1), "back": (2, 3)}).save("pad.npz")
-    names: dict[str, Any] = {}
-    for block in blocks:
-        exec(block, names)
-    run = names["run"]
-    # The wall and the spring of 0.1 MN/m together hold the drag: at least the kinetic and at most the static friction.
-    reach = 1e5 * 1e-4
-    assert 0.3 * 200.0 - reach < float(run.normal_force.sel(contact="stop").sel(time=slice(0.02, None)).mean())
-    assert 0.0 < names["found"].sliding_mean <= 1.0
-    assert names["swept"].sizes == {"friction": 3, "angle": 3}
-    assert len(names["shares"]) == 20
-    assert names["shares"][0] > names["shares"][-1]
-
-
-def test_what_the_stability_page_prints(capsys):
-    page = (ROOT / "docs" / "stability.rst").read_text(encoding="utf-8")
-    code, printed = (
-        textwrap.dedent(re.search(rf"code-block:: {kind}\n\n((?: {{3}}.*\n|\n)+)", page)[1])
-        for kind in ("python", "text")
-    )
-    exec(code, {})
-    assert capsys.readouterr().out.strip() == printed.strip()
-
-
-def test_what_the_page_of_maps_shows_runs(tmp_path, monkeypatch):
-    page = (ROOT / "docs" / "maps.rst").read_text(encoding="utf-8")
-    blocks = [textwrap.dedent(b) for b in re.findall(r"code-block:: python\n\n((?: {3}.*\n|\n)+)", page)]
-    assert len(blocks) == 4
-    monkeypatch.chdir(tmp_path)
-    names: dict[str, Any] = {}
-    for block in blocks:
-        exec(block, names)
-    assert 0.635 < float(names["onset"].value) < 0.636
-    assert int(names["counts"].compared) == 12
-    assert names["best"].met.values.tolist() == [True, True]
-    # The way of 50 ms falls by 3.7 mm a unit of friction, from 3.3 mm at 0.3.
-    assert 0.35 < float(names["best"].friction) < 0.45
-    assert float(names["shares"].probability.sum()) == pytest.approx(1.0)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["map.png", "root-loci.png"]
-
-
-def test_what_the_readme_shows_runs(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    names: dict[str, Any] = {}
-    for block in shown_in_the_readme():
-        exec(block, names)
-    # The load, by the slope of the track that it bends, adds one.
-    grows = unstable_frequencies(names["system"], sense=1.0).size + 1
-    assert f"\n{grows} modes grow\n" in capsys.readouterr().out
-    assert len(names["forces"]) == 4
-    back, heard = st.read_wav("squeal.wav"), names["heard"]
-    assert back.sizes["listener"] == 2
-    # The file ends at 24 kHz, where little of the sound is left.
-    assert float((back**2).mean()) == pytest.approx(float((heard**2).mean()), rel=0.05)
-
-
-def shown_in_the_readme() -> list[str]:
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    return re.findall(r"^```python\n(.*?)^```$", readme, flags=re.DOTALL | re.MULTILINE)
-
-
 def test_the_readme_shows_the_ten_lines():
-    blocks = shown_in_the_readme()
-    assert (ROOT / "examples" / "ten_lines.py").read_text(encoding="utf-8") in blocks
+    ten_lines = (ROOT / "examples" / "ten_lines.py").read_text(encoding="utf-8")
+    assert ("python", ten_lines) in blocks(ROOT / "README.md", "python")

@@ -25,6 +25,7 @@ from .server import create_app
 GRACE = 2
 # After how long it is said that something is being compiled [s].
 PATIENCE = 2.0
+COMPILING = "stridula: compiling, once; this takes some ten seconds"
 
 
 def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
@@ -81,8 +82,7 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
 
 def _get_ready() -> None:
     """Play a moment, so that what must be compiled is; say so where it takes long, which it does the first time."""
-    words = "stridula: compiling, once; this takes some ten seconds"
-    notice = threading.Timer(PATIENCE, print, [words], {"file": sys.stderr, "flush": True})
+    notice = threading.Timer(PATIENCE, print, [COMPILING], {"file": sys.stderr, "flush": True})
     notice.daemon = True
     notice.start()
     # Under a force and under an imposed velocity; what changes friction, and what changes modes.

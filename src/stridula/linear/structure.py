@@ -209,30 +209,23 @@ def settled_time(system: System) -> float:
             histories.append((f"drives[{number}]", drive.history))
     for name, contact in zip(system.contact_names, system.contacts, strict=True):
         if isinstance(contact.track, RigidTrack):
-            track = contact.track
-            histories += [
-                (f"the track of {name}", history)
-                for rate, history in (
-                    (track.velocity or track.acceleration, track.history),
-                    (track.normal_velocity or track.normal_acceleration, track.normal_history),
-                )
-                if rate
-            ]
-            gathers = (
-                (track.acceleration, track.history),
-                (track.normal_acceleration, track.normal_history),
-            )
-            for acceleration, history in gathers:
-                if (
-                    acceleration
-                    and history.settled is not None
-                    and history.factor(np.array([history.settled + 1.0]))[0]
-                ):
-                    raise ValueError(f"time must be given for the track of {name}, which goes on gathering speed")
+            histories += [(f"the track of {name}", history) for history in _varying(contact.track, name)]
     for name, history in histories:
         if history.settled is None:
             raise ValueError(f"time must be given for {name}, which never stops varying, got {brief(history)}")
     return max((history.settled or 0.0 for _, history in histories), default=0.0)
+
+
+def _varying(track: RigidTrack, name: str) -> list[History]:
+    """Return the histories that move a rigid track."""
+    moved = (
+        (track.velocity, track.acceleration, track.history),
+        (track.normal_velocity, track.normal_acceleration, track.normal_history),
+    )
+    for _, acceleration, history in moved:
+        if acceleration and history.settled is not None and history.factor(np.array([history.settled + 1.0]))[0]:
+            raise ValueError(f"time must be given for the track of {name}, which goes on gathering speed")
+    return [history for velocity, acceleration, history in moved if velocity or acceleration]
 
 
 def _line(one: ContactRows, system: System, spans: Mapping[str, tuple[int, int]], shift: float = 0.0) -> ContactLine:

@@ -1,1 +1,5 @@
 """Papers reproduced, claim by claim."""
+
+from . import laulagnet_2011
+
+__all__ = ["laulagnet_2011"]

@@ -1,8 +1,8 @@
 """Frozen contacts in Siconos and here: trajectories until they drift apart, shares of the states, speed.
 
-``python benchmarks/peers/against_siconos.py [seed]`` draws sets of parameters from the seed, marches each in both codes
-and prints a line for each. The exit status is 1 if a set misses a tolerance. Siconos runs in a Python of its own,
-`PEER`; without it the comparison is skipped and says so.
+``python benchmarks/against_siconos.py --seed 2`` draws sets of parameters from the seed, marches each in both codes and
+prints a line for each. The exit status is 1 if a set misses a tolerance. Siconos runs in a Python of its own, `PEER`;
+without it the comparison is skipped and says so.
 
 Siconos marches Moreau-Jean with theta 1/2: implicit midpoint, contact and friction on velocities. Ours is explicit,
 with contact and stick on positions. Each landing, lift-off and turn of slip differs by a fraction of a step, so what
@@ -27,12 +27,13 @@ import numpy as np
 import xarray as xr
 
 import stridula as st
+from ratios import arguments, sized
 
 PEER = "/usr/bin/python3"
 SEED = 2011
-SETS = 12
+SETS = sized(12, 3)
 
-DURATION = 0.3
+DURATION = sized(0.3, 0.03)
 SAMPLE_RATE = 1e4
 CUTOFF = 6000.0
 GAP = 1e-6
@@ -42,14 +43,14 @@ PERTURBATION = 1e-9
 TRAJECTORY_TOLERANCE = 5e-3
 APART = TRAJECTORY_TOLERANCE / 2.0
 
-STARTS = 8
+STARTS = sized(8, 2)
 ENSEMBLE_STEP = 5e-6
 SHARE_TOLERANCE = 0.05
-SETTLED_FROM = 0.25
+SETTLED_FROM = DURATION / 1.2
 SETTLED_SHARE = 0.999
 
-SPEED_REPEATS = 5
-SPEED_DURATION = 0.02
+SPEED_REPEATS = sized(5, 1)
+SPEED_DURATION = sized(0.02, 0.002)
 
 Case = dict[str, np.ndarray | float]
 
@@ -309,7 +310,7 @@ def installed() -> bool:
 def main(seed: int) -> int:
     """Compare and print; return the exit status."""
     if not installed():
-        print(f"SKIPPED: no Siconos in {PEER}, nothing was compared (Debian: apt-get install python3-siconos)")
+        print(f"skipped: no Siconos in {PEER}, nothing was compared (Debian: apt-get install python3-siconos)")
         return 0
     began = time.perf_counter()
     pairs, jammed = draw(np.random.default_rng(seed))
@@ -327,4 +328,6 @@ def main(seed: int) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else SEED))
+    words = arguments(__doc__)
+    words.add_argument("--seed", type=int, default=SEED)
+    sys.exit(main(words.parse_args().seed))

@@ -1,0 +1,101 @@
+"""Every benchmark runs in its short form, in which its sides agree; one whose sides do not says so in a line."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import stridula
+
+FOLDER = Path(__file__).resolve().parents[2] / "benchmarks"
+BENCHMARKS = sorted(
+    path for path in FOLDER.glob("*.py") if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
+)
+# Siconos runs under a Python of its own, which has not got the package; the suite is all of its sections once more.
+APART = ("siconos_march.py", "suite.py")
+
+
+def short(path: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run the short form of a benchmark."""
+    # No card is needed: numba has a simulator of one, which is chosen when it is imported.
+    own = {"NUMBA_ENABLE_CUDASIM": "1"} if path.name == "gpu.py" else {}
+    package = {"PYTHONPATH": str(Path(stridula.__file__).parents[1])}
+    return subprocess.run(
+        [sys.executable, path, "--short"], env=os.environ | package | own | environment, capture_output=True, text=True
+    )
+
+
+@pytest.mark.parametrize("path", [path for path in BENCHMARKS if path.name not in APART], ids=lambda path: path.stem)
+def test_short_form(path):
+    done = short(path)
+    assert done.returncode == 0, done.stderr
+    said = done.stdout.strip().splitlines()[-1].strip()
+    if said.startswith("skipped: "):
+        pytest.skip(said)
+    assert said
+
+
+@pytest.fixture
+def copied(tmp_path):
+    """Return a copy of the benchmarks in which something can be wrong, and what makes it so."""
+    shutil.copytree(FOLDER, tmp_path / "benchmarks", ignore=shutil.ignore_patterns("__pycache__"))
+
+    def wrong(name: str, right: str, other: str) -> Path:
+        path = tmp_path / "benchmarks" / name
+        text = path.read_text(encoding="utf-8")
+        assert text.count(right) == 1
+        path.write_text(text.replace(right, other), encoding="utf-8")
+        return path
+
+    return wrong
+
+
+def complaint(path: Path) -> str:
+    done = short(path)
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    return line
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed, so there is no C to compare with")
+@pytest.mark.parametrize(
+    ("right", "other", "quantity"),
+    [
+        ("double *restrict raw)", "double *restrict raw, int more)", "march of step.c must take"),
+        ("constants[GAP] + y", "constants[START] + y", "positions"),
+        ("energies[FRICTION_LOSS] += tangential", "energies[FRICTION_LOSS] += normal", "ledgers"),
+        ("columns[NORMAL_FORCE] += normal", "columns[NORMAL_FORCE] += tangential", "forces"),
+        ("columns[SEPARATED + status] += 1.0", "columns[SEPARATED] += 1.0", "steps in each state"),
+    ],
+)
+def test_another_step_in_c_is_refused(copied, right, other, quantity):
+    assert complaint(copied("step.c", right, other).with_name("against_c.py")).startswith(quantity)
+
+
+WRONG_SIDES = {
+    "many_runs.py": ("simulate_many(systems, workers=1", "simulate_many(systems[::-1], workers=1", "normal forces"),
+    "maps.py": ('sweep("--workers", "1")', 'sweep("--set", "transverse=3")', "maps of one worker and of all"),
+    "gpu.py": (
+        "march_of(kind, few, at)",
+        "march_of(kind, few[:: 1 - 2 * (kind is CudaMarch)], at)",
+        "motion on the card",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG_SIDES)
+def test_sides_that_do_not_agree_are_refused(copied, name):
+    right, other, quantity = WRONG_SIDES[name]
+    assert complaint(copied(name, right, other)).startswith(quantity)
+
+
+def test_the_suite_has_every_section():
+    sections = {path.stem for path in BENCHMARKS if "\nTITLE = " in path.read_text(encoding="utf-8")}
+    suite = (FOLDER / "suite.py").read_text(encoding="utf-8")
+    listed = suite.partition("SECTIONS = (")[2].partition(")")[0]
+    assert {name.strip() for name in listed.split(",")} == sections

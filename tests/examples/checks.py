@@ -1,0 +1,108 @@
+"""What pages take as given, and what their code must come to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import stridula as st
+
+from .growing import unstable_frequencies
+from .pages import ROOT, blocks
+
+SCENARIOS = ROOT / "docs" / "scenarios.rst"
+
+
+def pad(file: Path, first: str, second: str) -> None:
+    """Write the body that pages read from a file, with two points."""
+    stiffness = np.kron([[1e6, -1e6], [-1e6, 1.1e6]], np.eye(2))
+    st.ReducedBody(0.1 * np.eye(4), stiffness, {first: (0, 1), second: (2, 3)}).save(file)
+
+
+def record(*names: str) -> None:
+    """Write records that pages have from elsewhere."""
+    run = st.load_scenario("squeal", {"duration": "20 ms"}).simulate()
+    for name in names:
+        st.save(run, name)
+
+
+# What a reader has in the folder before.
+GIVEN: dict[str, Callable[[], object]] = {
+    "README.md": lambda: record("other.nc"),
+    "command-line.rst": lambda: record("before.nc", "after.nc"),
+    "scenarios.rst": lambda: (
+        record("squeal.nc"),
+        Path("my-squeal.toml").write_text(blocks(SCENARIOS, "toml")[0][1], encoding="utf-8"),
+    ),
+    "start.rst": lambda: pad(Path("pad.npz"), "tip", "back"),
+}
+
+
+def check_readme(names: Mapping[str, Any], printed: str) -> None:
+    """The load, by the slope of the track that it bends, adds a mode that grows."""
+    grows = unstable_frequencies(names["system"], sense=1.0).size + 1
+    assert f"\n{grows} modes grow\n" in printed
+    assert len(names["forces"]) == 4
+    back, heard = st.read_wav("squeal.wav"), names["heard"]
+    assert back.sizes["listener"] == 2
+    # The file ends at 24 kHz, where little of the sound is left.
+    assert float((back**2).mean()) == pytest.approx(float((heard**2).mean()), rel=0.05)
+
+
+def check_start(names: Mapping[str, Any], printed: str) -> None:
+    """The wall and its spring of 0.1 MN/m together hold the drag: at least the kinetic, at most the static friction."""
+    reach = 1e5 * 1e-4
+    stop = names["braked"].normal_force.sel(contact="stop", time=slice(0.02, None))
+    assert 0.3 * 200.0 - reach < float(stop.mean()) < 0.5 * 200.0
+    assert 0.0 < names["found"].sliding_mean <= 1.0
+    assert names["swept"].sizes == {"friction": 3, "angle": 3}
+    assert len(names["shares"]) == 20
+    assert names["shares"][0] > names["shares"][-1]
+    assert names["whole"].sizes["time"] == 2 * names["second"].sizes["time"]
+    # The last run is watched to its end.
+    assert printed.rstrip().endswith(" s of 1 s")
+
+
+def check_maps(names: Mapping[str, Any], printed: str) -> None:
+    """The way of 50 ms falls by 3.7 mm a unit of friction, from 3.3 mm at 0.3."""
+    assert 0.635 < float(names["onset"].value) < 0.636
+    assert int(names["counts"].compared) == 12
+    assert names["best"].met.values.tolist() == [True, True]
+    assert 0.35 < float(names["best"].friction) < 0.45
+    assert float(names["shares"].probability.sum()) == pytest.approx(1.0)
+
+
+def check_measures(names: Mapping[str, Any], printed: str) -> None:
+    """Each stop that is complete ends, and between stops it squeals."""
+    assert len(names["lengths"]) > 0
+    assert (names["lengths"] > 0.0).all()
+    assert names["squeal"] > 1e3
+
+
+def check_scenarios(names: Mapping[str, Any], printed: str) -> None:
+    """The value that is set is in the system."""
+    assert names["scenario"].system.contact.friction == st.Coulomb(1.2)
+
+
+def check_sound(names: Mapping[str, Any], printed: str) -> None:
+    """Two listeners hear a second."""
+    assert dict(names["heard"].sizes) == {"time": 48_000, "listener": 2}
+
+
+# One number at least where it says more than that it runs.
+CHECKS: dict[str, Callable[[Mapping[str, Any], str], None]] = {
+    "README.md": check_readme,
+    "maps.rst": check_maps,
+    "measures.rst": check_measures,
+    "scenarios.rst": check_scenarios,
+    "sound.rst": check_sound,
+    "start.rst": check_start,
+}
+WRITTEN = {
+    "hearing.rst": {"ears.wav", "spectrogram.png", "spectrum.png", "squeal.gif"},
+    "maps.rst": {"map.png", "root-loci.png"},
+}

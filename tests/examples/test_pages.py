@@ -1,0 +1,96 @@
+"""All code and all commands that the documentation shows, page by page, each in an empty folder."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import pytest
+
+import stridula as st
+from stridula import studies
+
+from .checks import CHECKS, GIVEN, SCENARIOS, WRITTEN, pad
+from .pages import PAGES, ROOT, blocks, commands, few, shorter, smaller
+
+
+@pytest.fixture
+def page(request, tmp_path, monkeypatch):
+    """A page, in a folder that has nothing but what the page takes as given."""
+    monkeypatch.chdir(tmp_path)
+    GIVEN.get(request.param.name, lambda: None)()
+    return request.param
+
+
+def of_pages(language: str) -> pytest.MarkDecorator:
+    """Run a test for each page with blocks in a language."""
+    pages = [page for page in PAGES if blocks(page, language)]
+    return pytest.mark.parametrize("page", pages, indirect=True, ids=[page.name for page in pages])
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_no_code_is_missed(page):
+    written = re.findall(
+        r"code-block:: python|literalinclude:: \S+\.py\b|^```python", page.read_text("utf-8"), re.MULTILINE
+    )
+    assert len(blocks(page, "python")) == len(written)
+
+
+def test_rules_that_make_short_leave_the_rest():
+    assert shorter("f(duration=60.0, step=60.0, duration=20.0)") == "f(duration=0.6, step=60.0, duration=20.0)"
+    assert few({"a": [*range(12)], "b": ["x", "y", "z"]}) == {"a": [0, 11], "b": ["x", "y", "z"]}
+    words = ["sweep", "--vary", "a=1deg:2deg:40", "--vary", "b=1:2:log", "--samples", "64", "--duration", "40"]
+    assert smaller(words) == ["sweep", "--vary", "a=1deg:2deg:3", *words[3:6], "4", *words[7:]]
+
+
+@of_pages("python")
+def test_code(page, tmp_path, monkeypatch, capsys):
+    """Text that follows code is what it prints."""
+    grid = studies.Grid
+    monkeypatch.setattr(studies, "Grid", lambda keys: grid(few(keys)))
+    names: dict[str, Any] = {}
+    printed = [""]
+    for language, text in blocks(page, "python", "text"):
+        if language == "text":
+            assert printed[-1].strip() == text.strip()
+        else:
+            exec(compile(shorter(text), page.name, "exec"), names)
+            printed.append(capsys.readouterr().out)
+    plt.close("all")
+    if page.name in CHECKS:
+        CHECKS[page.name](names, "".join(printed))
+    if page.name in WRITTEN:
+        assert {path.name for path in tmp_path.iterdir()} == WRITTEN[page.name]
+
+
+@of_pages("console")
+def test_commands(page, stridula, monkeypatch):
+    """Each is good; two records that differ, too. The page that one plays on is not waited for."""
+    monkeypatch.setattr("stridula.app.serve.serve", lambda *words: None)
+    targets = (ROOT / "Makefile").read_text(encoding="utf-8")
+    for words in commands(page):
+        program, *arguments = smaller(words)
+        if program == "make":
+            assert f"\n{arguments[0]}:" in targets
+            continue
+        assert program == "stridula"
+        *arguments, to, file = arguments if ">" in arguments else (*arguments, "", "")
+        code, out, error = stridula(*arguments)
+        assert code == 0 or (code, arguments[0]) == (1, "compare"), (words, error)
+        if to:
+            Path(file).write_text(out, encoding="utf-8")
+
+
+def test_whole_scenarios_of_a_page_are_good_and_parts_are_toml(tmp_path):
+    texts = [text for _, text in blocks(SCENARIOS, "toml")]
+    assert all(tomllib.loads(text) for text in texts)
+    whole = [text for text in texts if text.startswith("title")]
+    assert len(whole) == 2
+    pad(tmp_path / "pad.npz", "leading", "back")
+    for text in whole:
+        file = tmp_path / "scenario.toml"
+        file.write_text(text, encoding="utf-8")
+        assert st.load_scenario(file).system.contacts
