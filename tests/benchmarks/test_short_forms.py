@@ -68,9 +68,9 @@ def complaint(path: Path) -> str:
     [
         ("double *restrict raw)", "double *restrict raw, int more)", "march of step.c must take"),
         ("constants[GAP] + y", "constants[START] + y", "positions"),
-        ("energies[FRICTION_LOSS] += tangential", "energies[FRICTION_LOSS] += normal", "ledgers"),
+        ("energies[FRICTION_LOSS] += fabs(tangential", "energies[FRICTION_LOSS] += fabs(normal", "ledgers"),
         ("columns[NORMAL_FORCE] += normal", "columns[NORMAL_FORCE] += tangential", "forces"),
-        ("columns[SEPARATED + status] += 1.0", "columns[SEPARATED] += 1.0", "steps in each state"),
+        ("columns[SEPARATED + was] += closed", "columns[SEPARATED] += closed", "steps in each state"),
     ],
 )
 def test_another_step_in_c_is_refused(copied, right, other, quantity):

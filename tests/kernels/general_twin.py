@@ -523,8 +523,9 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
         answers = np.array([load @ row - b @ start_under(row, still, still) for row in rows])
         first = a @ q - b @ q_before + load @ force(0.0)
         moved = [np.subtract(one.motions(h), one.motions(0.0)) for one in closed]
-        gaps = [one.contact.gap + rows[2 * i] @ first + moved[i][2] for i, one in enumerate(closed)]
-        slips = [rows[2 * i + 1] @ (first - q) + moved[i][0] - moved[i][1] for i in range(len(closed))]
+        there = [one.rows(one.abscissa(first, h)) for one in closed]
+        gaps = [one.contact.gap + row[0] @ first + move[2] for one, row, move in zip(closed, there, moved, strict=True)]
+        slips = [row[1] @ first - rows[2 * i + 1] @ q + moved[i][0] - moved[i][1] for i, row in enumerate(there)]
         _, found = solve_contacts(gaps, slips, [0.0] * len(closed), rows @ answers.T, closed, h)[0]
         pushes = np.array([value for _, normal, tangential in found for value in (normal, -tangential)])
         q_before = start_under(force(0.0) + pushes @ rows)

@@ -11,6 +11,9 @@ from ..checks import at_least, at_most, instance
 # Share of the sample interval by which samples may be off an even grid: rounding of times leaves far less.
 EVEN = 1e-3
 
+# Share of a duration or a rate that rounding may take.
+ROUNDING = 1e-9
+
 
 def channels(pressure: xr.DataArray) -> tuple[Array, float]:
     """Return sound pressures as an array and their sample rate.
@@ -110,14 +113,15 @@ def over_time(pressure: xr.DataArray, time: Array, values: Array, name: str, uni
 
 def is_enough(value: float, least: float) -> bool:
     """Return whether a duration or a rate is at least another one, but for rounding."""
-    return value >= least * (1.0 - 1e-9)
+    return value >= least * (1.0 - ROUNDING)
 
 
 def check_length(pressure: xr.DataArray, shortest: float, what: str) -> None:
     """Raise ValueError if a pressure lasts less than `shortest` seconds, which `what` takes."""
     lasts = pressure.sizes["time"] * _interval(pressure)
     if not is_enough(lasts, shortest):
-        raise ValueError(f"pressure must last at least {at_least(shortest, 3)} s for {what}, got {at_most(lasts, 3)} s")
+        got = at_most(lasts * (1.0 + ROUNDING), 3)
+        raise ValueError(f"pressure must last at least {at_least(shortest, 3)} s for {what}, got {got} s")
 
 
 def check_rate(rate: float, lowest: float, what: str) -> None:

@@ -61,7 +61,7 @@ class LastSeconds:
 
     def keep(self, part: Part, source: str) -> None:
         """Keep a part and let go of what is too old."""
-        small = {variable.name: part.chunk.contact[variable.name].astype("f4") for variable in CONTACT}
+        small = {variable.name: part.chunk.contact[variable.name].astype("f4") for variable in (*CONTACT, STATUS)}
         shares, acceleration = part.chunk.status_share.astype("f4"), part.chunk.probes[:, 0].astype("f4")
         kept = _Kept(source, part.clock, part.stroke, part.sound.astype("f4"), small, shares, acceleration)
         self._parts.append(kept)

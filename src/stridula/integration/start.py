@@ -16,7 +16,7 @@ from ..bodies import Track
 from ..bodies.modes import Array
 from ..contact import FrictionLaw, RateAndState
 from ..records.state import State
-from .blocks import Blocks, ContactBlocks, Recurrence
+from .blocks import Blocks
 from .contact_solve import GaussSeidel
 from .schemes import Scheme
 
@@ -37,47 +37,20 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
     ValueError
         If a contact overlaps.
     """
-    modes, contacts = blocks.modes, blocks.contacts
-    start = _Start(arrays, scheme, step, contacts)
+    modes = blocks.modes
+    start = _Start(arrays, scheme, step, blocks)
     force = start.factors @ arrays.loads
     first = start.increment(force)
     carried = start.carried(first)
     closed = np.flatnonzero(start.gaps == 0.0)
     if closed.size:
-        pushes = start.rows[closed].reshape(-1, arrays.mode_count)
-        gap, slip = start.at_first_step(modes.free(arrays.position, first) + start.factors @ modes.loads)
-        forces, solved = np.zeros((len(arrays.contacts), 2)), np.zeros((closed.size, 2))
-        compliance, constants, laws = start.compliance(modes, pushes), contacts.constants[closed], contacts.laws[closed]
-        ratios = start.known_ratios(carried)[closed]
-        for i in np.flatnonzero(np.isfinite(ratios)):
-            # Where the ratio is known, the contact is one without friction whose push is inclined.
-            inclined = compliance[:, 2 * i] - ratios[i] * compliance[:, 2 * i + 1]
-            if inclined[2 * i] > 0.0:
-                compliance[:, 2 * i], constants[i, at.LAW], laws[i, 0] = inclined, at.COULOMB, 0.0
-            else:
-                ratios[i] = np.nan
-        solve_all(
-            gap[closed],
-            slip[closed],
-            compliance,
-            constants,
-            laws,
-            carried[closed],
-            step,
-            solve.tolerance,
-            solve.sweeps,
-            solved,
-            np.zeros(closed.size, dtype=np.int64),
-            np.zeros(closed.size, dtype=np.bool_),
-        )
-        solved[:, 1] = np.where(np.isfinite(ratios), ratios * solved[:, 0], solved[:, 1])
-        forces[closed] = solved
-        first = start.increment(force + (solved * [1.0, -1.0]).ravel() @ pushes)
+        forces = start.forces(closed, first, carried, solve)
+        first = start.increment(force + (forces * [1.0, -1.0]).ravel() @ start.pushes(closed))
         carried = start.carried(first)
-        carried[:, [at.LAST_NORMAL, at.LAST_TANGENTIAL]] = forces
-        pressed = forces[:, 0] > 0.0
+        carried[closed[:, None], [at.LAST_NORMAL, at.LAST_TANGENTIAL]] = forces
+        pressed = closed[forces[:, 0] > 0.0]
         carried[pressed, at.CLOSED_SHARE] = 1.0
-        carried[pressed & (carried[:, at.STATUS] == SEPARATED), at.STATUS] = SLIDING
+        carried[pressed, at.STATUS] = np.where(start.speeds[pressed] == 0.0, STICKING, SLIDING)
     modal, energies = np.stack([arrays.position, first]), np.zeros(at.ENERGIES)
     energies[at.STORED] = stored_energy(modes.block, modes.matrices, modal)
     return State(modal, np.zeros_like(modal), carried, energies)
@@ -86,9 +59,10 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
 class _Start:
     """A system about its start: from one step before to one step after."""
 
-    def __init__(self, arrays: Assembly, scheme: Scheme, step: float, contacts: ContactBlocks) -> None:
+    def __init__(self, arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks) -> None:
         times = np.array([-step, 0.0, step])
-        self.arrays, self.scheme, self.step, self.contacts = arrays, scheme, step, contacts
+        self.arrays, self.scheme, self.step = arrays, scheme, step
+        self.modes, self.contacts = blocks.modes, blocks.contacts
         self.before, self.after = np.diff(arrays.motion(times, step), axis=0)
         self.factors = np.array([signal(times[1:2], step)[0] for signal in arrays.signals[: len(arrays.loads)]])
         self.fixed = np.array([one.fixed for one in arrays.contacts])
@@ -122,7 +96,7 @@ class _Start:
         speeds = terms.sum(axis=1) + imposed.sum(axis=1)
         return np.where(np.abs(speeds) > ROUND_OFF * scale, speeds, 0.0)
 
-    def known_ratios(self, carried: Array) -> Array:
+    def _known_ratios(self, carried: Array) -> Array:
         """Return the ratio of tangential to normal force of contacts whose motion settles it, NaN of others."""
         ratios, laws = np.full(len(self.speeds), np.nan), self.contacts.laws
         for i, speed in enumerate(self.speeds):
@@ -160,15 +134,59 @@ class _Start:
         # The age of a contact stays above zero.
         return max(before, state / 2.0) if isinstance(law, RateAndState) else before
 
-    def at_first_step(self, increments: Array) -> tuple[Array, Array]:
-        """Return gaps and slips after the first step, without contact force."""
-        gaps = self.gaps + self.rows[:, 0] @ increments + self.after[:, 2]
-        return gaps, self.rows[:, 1] @ increments + self.after[:, 0] - self.after[:, 1]
+    def pushes(self, closed: Array) -> Array:
+        """Return the rows of closed contacts, normal and tangent in turn."""
+        return self.rows[closed].reshape(-1, self.arrays.mode_count)
 
-    def compliance(self, modes: Recurrence, pushes: Array) -> Array:
+    def forces(self, closed: Array, first: Array, carried: Array, solve: GaussSeidel) -> Array:
+        """Return the normal and the tangential force of closed contacts, shape (closed, 2)."""
+        gap, slip = self._at_first_step(self.modes.free(self.arrays.position, first) + self.factors @ self.modes.loads)
+        compliance = self._compliance(self.pushes(closed))
+        constants, laws = self.contacts.constants[closed], self.contacts.laws[closed]
+        ratios = self._known_ratios(carried)[closed]
+        for i in np.flatnonzero(np.isfinite(ratios)):
+            # Where the ratio is known, the contact is one without friction whose push is inclined.
+            inclined = compliance[:, 2 * i] - ratios[i] * compliance[:, 2 * i + 1]
+            if inclined[2 * i] > 0.0:
+                compliance[:, 2 * i], constants[i, at.LAW], laws[i, 0] = inclined, at.COULOMB, 0.0
+            else:
+                ratios[i] = np.nan
+        forces = np.zeros((closed.size, 2))
+        solve_all(
+            gap[closed],
+            slip[closed],
+            compliance,
+            constants,
+            laws,
+            carried[closed],
+            self.step,
+            solve.tolerance,
+            solve.sweeps,
+            forces,
+            np.zeros(closed.size, dtype=np.int64),
+            np.zeros(closed.size, dtype=np.bool_),
+        )
+        forces[:, 1] = np.where(np.isfinite(ratios), ratios * forces[:, 0], forces[:, 1])
+        return forces
+
+    def _at_first_step(self, increments: Array) -> tuple[Array, Array]:
+        """Return gaps and slips after the first step, without contact force, where the tips are then."""
+        places = [
+            one.contact.at + one.fixed[1] @ (self.arrays.position + increments) + moved
+            for one, moved in zip(self.arrays.contacts, self.after[:, 0], strict=True)
+        ]
+        there = np.array([rows_at(one, place) for one, place in zip(self.arrays.contacts, places, strict=True)])
+        # What the rows gain on the way is small: a difference of its own keeps its digits.
+        travelled = (there - self.rows) @ (self.arrays.position + increments)
+        gaps = self.gaps + self.rows[:, 0] @ increments + travelled[:, 0] + self.after[:, 2]
+        return gaps, self.rows[:, 1] @ increments + travelled[:, 1] + self.after[:, 0] - self.after[:, 1]
+
+    def _compliance(self, pushes: Array) -> Array:
         """Return how far rows have moved after the first step under unit forces on them since before the start."""
         still = np.zeros(self.arrays.mode_count)
-        answers = [modes.free(still, self._increment(still, still, push)) + modes.mobility(push) for push in pushes]
+        answers = [
+            self.modes.free(still, self._increment(still, still, push)) + self.modes.mobility(push) for push in pushes
+        ]
         return np.ascontiguousarray(pushes @ np.array(answers).T)
 
 
@@ -176,8 +194,8 @@ def rows_at(one: ContactRows, place: float) -> Array:
     """Return the rows of a contact along normal and tangent, those of a track's modes at an abscissa [m]."""
     if not isinstance(one.contact.track, Track):
         return one.fixed
-    full = one.fixed.copy()
-    full[:, one.bending[0] : one.axial[1]] -= one.contact.track.trace(place)[::-1]
+    full, (low, high) = one.fixed.copy(), one.contact.track.ends
+    full[:, one.bending[0] : one.axial[1]] -= one.contact.track.trace(min(max(place, low), high))[::-1]
     return full
 
 

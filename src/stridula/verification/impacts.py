@@ -92,18 +92,15 @@ def force_of_scheme(
 ) -> Array:
     """Return the force [N] of each step when a free bar hits a rigid floor, from the bar's closed-form modes alone.
 
-    The tip's displacement n steps after a unit impulse is, summed over the modes,
-    ``h sin(n phi) / sin(phi)`` with ``sin(phi / 2) = w h / 2`` for central differences and ``sin(w n h) / w`` for exact
-    modes. Each step has the impulse that closes the gap at its end, none if that would pull.
+    The tip's displacement n steps after the step of a unit impulse is, summed over the modes,
+    ``2 tan(phi / 2) sin(n phi) / (w² h)`` with ``sin(phi / 2) = w h / 2`` for central differences and ``phi = w h`` for
+    exact modes. Each step has the impulse that closes the gap at its end, none if that would pull.
     """
     angular, modal = bar.frequencies(mass)
     count = floor(duration / step)
     n = np.arange(1, count + 1)
-    if central:
-        phase = 2.0 * np.arcsin(angular * step / 2.0)
-        moved = step * np.sin(np.outer(n, phase)) / np.sin(phase)
-    else:
-        moved = np.sin(np.outer(n, angular * step)) / angular
+    phase = 2.0 * np.arcsin(angular * step / 2.0) if central else angular * step
+    moved = 2.0 * np.tan(phase / 2.0) * np.sin(np.outer(n, phase)) / (angular**2 * step)
     response = n * step / bar.mass + moved @ (1.0 / modal)
     impulse = np.zeros(count)
     for k in range(count):
