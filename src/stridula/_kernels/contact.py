@@ -14,19 +14,18 @@ from .friction import (
     sliding_ratio,
     speed_scale,
     state_ratio,
+    state_ratio_and_slope,
     sticking_speed,
 )
 from .lanes import choose, magnitude
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
-# Steps of Newton's method for a slip speed; the bracketed search takes over from what they do not find.
+# Steps of Newton's or Halley's method for a slip velocity; the bracketed search takes over from what they do not find.
 NEWTON = 12
-# Relative step of Newton's method whose square is round-off.
-QUADRATIC = 1e-9
+# Relative steps of these methods whose square, and whose cube, are round-off.
+QUADRATIC, CUBIC = 1e-8, 1e-4
 # Trials of a root search; each at least halves the bracket in the end.
 TRIALS = 200
-# Relative distance over which the slope of a ratio is seen.
-NEARBY = 1e-6
 # Halvings of a bracket that leave nothing of it.
 HALVINGS = 60
 
@@ -52,6 +51,11 @@ def solve_contact(gap, slip, strayed, w, law, laws, i, before, let_go, step):
     if law == at.COULOMB:
         normal, tangential, status, jammed = solve_coulomb(gap, slip + strayed, w, laws[i, 0])
     else:
+        if law > at.STATIC_KINETIC and before[0] == SLIDING:
+            ratio = slide_on(gap, slip, w, law, laws, i, before, step)
+            if ratio != 0.0:
+                normal = -gap / (w[0] - ratio * w[1])
+                return normal, ratio * normal, SLIDING, False
         normal, tangential, status, jammed = stick_or_slide(gap, slip, strayed, w, law, laws, i, before, let_go, step)
     last_slip = before[1]
     if before[0] == SLIDING and (status == STICKING or tangential * last_slip < 0.0):
@@ -182,35 +186,55 @@ def velocity_under(ratio, gap, slip, w, before, step):
     return velocity_at(slip - gap / free * (w_tn - ratio * w_tt), before, step)
 
 
-@numba.njit(**STRICT)
+@numba.njit(inline="always", **STRICT)
+def slide_on(gap, slip, w, law, laws, i, before, step):
+    """Return the ratio of forces of a contact that slides on in its sense, 0 where that is not settled at once."""
+    w_nn, w_nt, w_tn, w_tt = w
+    at_rest = math.copysign(sliding_ratio(law, laws, i, 0.0), before[1])
+    free = w_nn - at_rest * w_nt
+    if before[1] == 0.0 or free <= 0.0 or (slip - gap / free * (w_tn - at_rest * w_tt)) * before[1] <= 0.0:
+        return 0.0
+    velocity, ratio = sliding_velocity(gap, slip, w, law, laws, i, before, math.copysign(1.0, before[1]), step)
+    return ratio if slip_at(velocity, before, step) * before[1] > 0.0 else 0.0
+
+
+@numba.njit(inline="always", **STRICT)
 def sliding_velocity(gap, slip, w, law, laws, i, before, sense, step):
     """Return slip velocity and ratio of forces of a contact that slides under a law whose ratio depends on the speed.
 
-    Newton's method for the speed, from the one that the ratio of the last step leads to.
+    Halley's method for the speed, from the one that the ratio of the last step leads to: mostly one evaluation of the
+    law, whose own expansion gives the ratio at what is found.
     """
     w_nn, w_nt, w_tn, w_tt = w
-    at_rest = sense * velocity_under(sense * sliding_ratio(law, laws, i, 0.0), gap, slip, w, before, step)
-    if at_rest <= 0.0:
-        return 0.0, sense * sliding_ratio(law, laws, i, 0.0)
-    ratio = sense * before[5] / before[4] if before[4] > 0.0 else sliding_ratio(law, laws, i, 0.0)
-    speed = sense * velocity_under(sense * ratio, gap, slip, w, before, step)
-    area = (w_nn * w_tt - w_nt * w_tn) * 9.0 / (16.0 * step)
+    ratio = abs(before[5] / before[4]) if before[4] > 0.0 else sliding_ratio(law, laws, i, 0.0)
+    free = w_nn - sense * ratio * w_nt
+    share = 1.0 / (16.0 * step)
+    moved = sense * (9.0 * slip + 6.0 * before[1] + before[2]) * share
+    speed = moved - sense * 9.0 * share * gap / free * (w_tn - sense * ratio * w_tt)
+    area = 9.0 * share * (w_nn * w_tt - w_nt * w_tn)
     for _ in range(NEWTON):
         if not 0.0 < speed < math.inf:
             break
-        ratio, slope = ratio_and_slope(law, laws, i, speed)
+        ratio, slope, bend = ratio_and_slope(law, laws, i, speed)
         free = w_nn - sense * ratio * w_nt
         if free <= 0.0:
             break
-        normal = -gap / free
-        reached = sense * velocity_at(slip + normal * (w_tn - sense * ratio * w_tt), before, step)
-        steepness = 1.0 + normal / free * area * slope
+        freed = 1.0 / free
+        normal = -gap * freed
+        reached = moved + sense * 9.0 * share * normal * (w_tn - sense * ratio * w_tt)
+        softness = normal * freed * area
+        steepness = 1.0 + softness * slope
         if steepness <= 0.0:
             break
         change = (reached - speed) / steepness
+        curvature = softness * (bend + 2.0 * slope * slope * sense * w_nt * freed)
+        change -= 0.5 * curvature / steepness * change * change
         speed += change
-        if abs(change) <= QUADRATIC * speed:
-            return sense * speed, sense * (ratio + slope * change)
+        if abs(change) <= CUBIC * speed:
+            return sense * speed, sense * (ratio + (slope + 0.5 * bend * change) * change)
+    at_rest = sliding_ratio(law, laws, i, 0.0)
+    if sense * velocity_under(sense * at_rest, gap, slip, w, before, step) <= 0.0:
+        return 0.0, sense * at_rest
     velocity = slip_velocity(gap, slip, w, law, laws, i, before, sense, step)
     return velocity, sense * sliding_ratio(law, laws, i, abs(velocity))
 
@@ -219,21 +243,44 @@ def sliding_velocity(gap, slip, w, law, laws, i, before, sense, step):
 def slide_with_state(gap, slip, w, law, laws, i, before, step):
     """Return the contact under a law with internal state, which never sticks exactly."""
     w_nn, w_nt, w_tn, w_tt = w
-    state = before[3]
-    velocity = slip_velocity(gap, slip, w, law, laws, i, before, 0.0, step)
+    velocity, ratio, slope = velocity_with_state(gap, slip, w, law, laws, i, before, step)
     status = STICKING if abs(velocity) < sticking_speed(law, laws, i) else SLIDING
     # Where the ratio is flat in the velocity it gives the forces to round-off, where it is steep, in creep, the motion.
-    ratio = state_ratio(law, laws, i, state, velocity, step)
-    led_to = velocity_under(ratio, gap, slip, w, before, step)
-    nearby = state_ratio(law, laws, i, state, velocity * (1.0 + NEARBY), step)
-    change = velocity_under(nearby, gap, slip, w, before, step) - led_to
-    if abs(change) <= abs(NEARBY * velocity):
+    free = w_nn - ratio * w_nt
+    if -gap / (free * free) * (w_nn * w_tt - w_nt * w_tn) * 9.0 * slope <= 16.0 * step:
         normal = -gap / (w_nn - ratio * w_nt)
         return normal, ratio * normal, status, False
     travelled = slip_at(velocity, before, step)
     tangential = (slip - w_tn / w_nn * gap - travelled) / (w_tt - w_nt * w_tn / w_nn)
     normal = (w_nt * tangential - gap) / w_nn
     return normal, tangential, status, False
+
+
+@numba.njit(inline="always", **STRICT)
+def velocity_with_state(gap, slip, w, law, laws, i, before, step):
+    """Return the slip velocity under a law with internal state, the ratio of the forces there and its slope.
+
+    Newton's method from the velocity of the last two slips, never down to a hundredth at once: the ratio of a
+    law with age goes with the logarithm.
+    """
+    w_nn, w_nt, w_tn, w_tt = w
+    velocity = (3.0 * before[1] - before[2]) / (2.0 * step)
+    area = (w_nn * w_tt - w_nt * w_tn) * 9.0 / (16.0 * step)
+    for _ in range(NEWTON):
+        ratio, slope = state_ratio_and_slope(law, laws, i, before[3], velocity, step)
+        free = w_nn - ratio * w_nt
+        steepness = 1.0 - gap / (free * free) * area * slope
+        if free <= 0.0 or not steepness > 0.0:
+            break
+        change = (velocity_under(ratio, gap, slip, w, before, step) - velocity) / steepness
+        if abs(change) <= QUADRATIC * abs(velocity + change):
+            return velocity + change, ratio + slope * change, slope
+        if law != at.LUGRE and velocity * (velocity + change) <= 0.01 * velocity * velocity:
+            break
+        velocity += change
+    velocity = slip_velocity(gap, slip, w, law, laws, i, before, 0.0, step)
+    ratio, slope = state_ratio_and_slope(law, laws, i, before[3], velocity, step)
+    return velocity, ratio, slope
 
 
 @numba.njit(**STRICT)

@@ -46,17 +46,20 @@ def sliding_ratio(law, laws, i, speed):
     return max(laws[i, 0] - laws[i, 1] * speed, laws[i, 2])
 
 
-@numba.njit(**STRICT)
+@numba.njit(inline="always", **STRICT)
 def ratio_and_slope(law, laws, i, speed):
-    """Return the ratio of a law that depends on the slip speed, above zero, and its derivative [s/m]."""
+    """Return the ratio of a law that depends on the slip speed, above zero, and its first two derivatives."""
     if law == at.LINEAR_WEAKENING:
         ratio = laws[i, 0] - laws[i, 1] * speed
-        return (ratio, -laws[i, 1]) if ratio > laws[i, 2] else (laws[i, 2], 0.0)
+        falls = ratio > laws[i, 2]
+        return ratio if falls else laws[i, 2], -laws[i, 1] if falls else 0.0, 0.0
     exponent, relative = laws[i, 3], speed / laws[i, 2]
     if exponent != 1.0:
         relative = relative * relative if exponent == 2.0 else relative**exponent
     weakened = (laws[i, 0] - laws[i, 1]) * math.exp(-relative)
-    return laws[i, 1] + weakened + laws[i, 4] * speed, laws[i, 4] - weakened * exponent * relative / speed
+    fall = exponent * relative / speed
+    bend = weakened * fall * (fall - (exponent - 1.0) / speed)
+    return laws[i, 1] + weakened + laws[i, 4] * speed, laws[i, 4] - weakened * fall, bend
 
 
 @numba.njit(**STRICT)
@@ -110,6 +113,47 @@ def state_ratio(law, laws, i, state, velocity, step):
     )
     ratio = exponent + math.log(2.0) if exponent > 30.0 else math.asinh(math.exp(exponent))
     return math.copysign(laws[i, 1] * ratio, velocity)
+
+
+@numba.njit(**STRICT)
+def state_ratio_and_slope(law, laws, i, state, velocity, step):
+    """Return the ratio of a law with internal state over a step, and its derivative by the slip velocity."""
+    speed = abs(velocity)
+    if law == at.LUGRE:
+        weakened = (laws[i, 0] - laws[i, 1]) * math.exp(-((speed / laws[i, 2]) ** 2))
+        limit = (laws[i, 1] + weakened) / laws[i, 3]
+        limit_slope = -2.0 * speed / (laws[i, 2] * laws[i, 2]) * weakened / laws[i, 3]
+        passed = speed * step / limit
+        passed_slope = math.copysign(step / limit * (1.0 - speed * limit_slope / limit), velocity)
+        kept = math.exp(-passed)
+        share = 1.0 - 0.5 * passed if passed < 1e-8 else -math.expm1(-passed) / passed
+        share_slope = passed / 3.0 - 0.5 if passed < 1e-4 else (kept - share) / passed
+        new = state * kept + velocity * step * share
+        new_slope = -state * kept * passed_slope + step * (share + velocity * share_slope * passed_slope)
+        ratio = laws[i, 3] * 0.5 * (state + new) + laws[i, 4] * (new - state) / step + laws[i, 5] * velocity
+        return ratio, (0.5 * laws[i, 3] + laws[i, 4] / step) * new_slope + laws[i, 5]
+    turned, kept = speed * step / laws[i, 3], 1.0
+    new, new_slope = state, 0.0
+    if law == at.AGING:
+        kept = math.exp(-turned)
+        share = 1.0 - 0.5 * turned if turned < 1e-8 else -math.expm1(-turned) / turned
+        share_slope = turned / 3.0 - 0.5 if turned < 1e-4 else (kept - share) / turned
+        new = state * kept + step * share
+        new_slope = (step * share_slope - state * kept) * step / laws[i, 3]
+    elif turned > 0.0:
+        kept, age = math.expm1(-turned), math.log(speed * state / laws[i, 3])
+        new = state * math.exp(age * kept)
+        new_slope = new * (kept / speed - age * (kept + 1.0) * step / laws[i, 3])
+    middle = 0.5 * (state + new)
+    ageing = (laws[i, 0] + laws[i, 2] * math.log(laws[i, 4] * middle / laws[i, 3])) / laws[i, 1]
+    if speed == 0.0:
+        return 0.0, laws[i, 1] * math.exp(min(ageing, 600.0)) / (2.0 * laws[i, 4])
+    exponent = ageing + math.log(speed / (2.0 * laws[i, 4]))
+    argument = math.exp(min(exponent, 300.0))
+    ratio = exponent + math.log(2.0) if exponent > 30.0 else math.asinh(argument)
+    bent = argument / math.sqrt(1.0 + argument * argument)
+    slope = laws[i, 1] * bent * (1.0 / speed + laws[i, 2] / laws[i, 1] * 0.5 * new_slope / middle)
+    return math.copysign(laws[i, 1] * ratio, velocity), slope
 
 
 @numba.njit(**STRICT)
