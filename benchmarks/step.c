@@ -105,6 +105,7 @@ void march(long steps, int slider, int bending, int axial, double mu, double fix
         columns[SEPARATED] += 1.0 - closed;
         if (was)
             columns[SEPARATED + was] += closed;
+        const double last_normal = normal, last_tangential = tangential, was_closed = closed;
         normal = tangential = closed = 0.0;
         status = 0;
         if (gap < 0.0) {
@@ -135,6 +136,14 @@ void march(long steps, int slider, int bending, int axial, double mu, double fix
                     normal = share * on + (1.0 - share) * pressed;
                     tangential = share * ratio * on + (1.0 - share) * needed;
                 }
+            }
+            if (was == 1 && status == 2) {
+                const double pressed = (w_nt * slip - w_tt * gap) / determinant, needed = (w_nn * slip - w_nt * gap) / determinant;
+                const double sense = needed < 0.0 ? -1.0 : 1.0;
+                const double inside = mu * last_normal - sense * last_tangential, outside = sense * needed - mu * pressed;
+                const double sooner = outside > 0.0 ? was_closed * outside / (inside + outside) : 0.0;
+                columns[STICKING] -= sooner;
+                columns[SLIDING] += sooner;
             }
             closed = was ? 1.0 : gap / (gap - last_gap);
         }

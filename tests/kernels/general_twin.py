@@ -20,6 +20,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq, root
 
 import stridula as st
+from kernels.twin import stuck_until
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
 KEPT = ["normal", "tangential", "status", "landings", "share", "position", "gap", "height", "state", "solutions"]
@@ -583,8 +584,12 @@ def march(system: st.System, scheme, h: float, steps: int) -> SimpleNamespace:
             if one.status != SEPARATED and status == SEPARATED:
                 missing = gap / (w[0, 0] - one.tangential / one.normal * w[0, 1])
                 closed = max(0.0, closed - missing / (one.normal + missing))
-            shares.append([1 - closed, closed * (one.status == STICKING), closed * (one.status == SLIDING)])
             alone = gap - w[0] @ [normal, -tangential]
+            held = closed * (one.status == STICKING)
+            if one.status == STICKING and status == SLIDING and not has_state(one.law):
+                slip = slips[i] + rows[2 * i + 1] @ (q_new - trial) - w[1] @ [normal, -tangential] + strayed[i]
+                held *= stuck_until(one.normal, one.tangential, alone, slip, w, held_up_to(one.law, True))
+            shares.append([1 - closed, held, closed - held])
             one.closed = 0.0 if status == SEPARATED else 1.0 if one.status != SEPARATED else alone / (alone - one.gap)
             one.gap = gap
         out.share.append(shares)

@@ -156,6 +156,14 @@ def closed_until(closed, status, normal, tangential, gap, w):
     return max(0.0, closed - missing / (normal + missing))
 
 
+def stuck_until(normal, tangential, gap, slip, w, mu):
+    """Share of the step before in which a contact still stuck that slides now, as its force leaves the cone."""
+    pressed, needed = np.linalg.solve(w, [-gap, -slip]) * [1, -1]
+    sense = np.sign(needed)
+    margins = [mu * n - sense * t for n, t in ((normal, tangential), (pressed, needed))]
+    return margins[0] / (margins[0] - margins[1]) if margins[1] < 0 else 1.0
+
+
 def march(system: st.System, scheme, h: float, steps: int) -> Trail:
     """March `steps` steps of `h` [s] and return everything."""
     rod, bar, mu = system.slider, system.track, system.contact.friction.coefficient
@@ -212,8 +220,11 @@ def march(system: st.System, scheme, h: float, steps: int) -> Trail:
         )
         states = contact_states(gap, material_trial - target, compliance, mu, last_slip if status == 2 else 0.0)
         closed = closed_until(closed, status, last_normal, last_tangential, gap, compliance)
-        out.share.append([1 - closed, closed * (status == 1), closed * (status == 2)])
         was, (status, normal, tangential) = status, states[0]
+        held = closed * (was == 1)
+        if was == 1 and status == 2:
+            held *= stuck_until(last_normal, last_tangential, gap, material_trial - target, compliance, mu)
+        out.share.append([1 - closed, held, closed - held])
         closed = 0.0 if status == 0 else 1.0 if was else gap / (gap - gap_before)
         if status == 1 and was != 1:
             anchor = material

@@ -7,7 +7,7 @@ whose gaps differ by up to 10 %: enough to part the unstable cases at the first 
 independent.
 
 Writes docs/step-table.rst, docs/step-near-table.rst, docs/step-cutoff-table.rst and docs/images/step.png, in several
-minutes on one core.
+minutes on two cores.
 """
 
 from __future__ import annotations
@@ -45,8 +45,6 @@ UNSTABLE = ("judder", "weak-pressure", "strong-pressure")
 STATES = ("separated", "sticking", "sliding")
 # A cut-off little above the tone of strong pressure, 2.8 kHz, and what the steps are multiplied by there.
 NEAR, LONGER = 5e3, 3.0
-LANDINGS_OUT = {state: f"{state}, landings out" for state in STATES}
-SHARES = (*STATES, *LANDINGS_OUT.values())
 FORCE = "99.9th percentile of force [N]"
 PERTURBATION = 0.1
 # Forces are compared as means over this interval [s], a whole number of every step below.
@@ -76,23 +74,6 @@ Means = dict[str, Mean]
 Measure = Callable[[xr.Dataset], float]
 
 
-def landings_out(state: str) -> Measure:
-    """Return a measure: the share of a state, had the step in which the tip lands counted as separated.
-
-    A contact is counted from the beginning of the step in which the tip lands to the end of the one in which it leaves:
-    half a step too early and half a step too late on average.
-    """
-
-    def share(run: xr.Dataset) -> float:
-        shares = run["status_share"].values
-        off = shares[:, 0] > 0.0
-        landings = shares[1:][off[:-1] & ~off[1:]]
-        moved = float(len(landings)) if state == "separated" else -float(landings[:, STATES.index(state)].sum())
-        return share_of(state)(run) + moved * float(run.attrs["step"]) / float(run["time"][-1])
-
-    return share
-
-
 def travel(run: xr.Dataset) -> float:
     """Return how far the tip has come [mm]."""
     position = run["contact_position"].values
@@ -119,7 +100,6 @@ def measures(interval: float) -> dict[str, Measure]:
     """Return the statistics by name, forces as means over an interval."""
     return {
         **{state: share_of(state) for state in STATES},
-        **{LANDINGS_OUT[state]: landings_out(state) for state in STATES},
         "travel [mm]": travel,
         "mean force [N]": mean_force,
         FORCE: highest_force(interval),
@@ -138,7 +118,6 @@ def ensemble(
         measures(interval),
         runs=STARTS[case],
         perturbation=PERTURBATION,
-        workers=1,
         scheme=scheme,
         step=step,
         sample_rate=rate,
@@ -172,7 +151,7 @@ def moved(name: str, found: Mean, reference: Mean) -> str:
     """Return by how many percent a mean moved, ± the 95 % interval of the difference; shares also in points."""
     half = 100.0 * hypot(found.half, reference.half) / abs(reference.value)
     text = f"{signed(100.0 * share_moved(found, reference))} ± {half:.1f}"
-    text += f" ({signed(100.0 * (found.value - reference.value))})" if name in SHARES else ""
+    text += f" ({signed(100.0 * (found.value - reference.value))})" if name in STATES else ""
     return marked(text, found, reference)
 
 
@@ -245,11 +224,8 @@ def draw_steps(panels: np.ndarray, case: str, reference: Means, check: Means, fo
     for axes, name in ((shares, "separated"), (forces, FORCE)):
         band(axes, reference[name])
         draw(axes, [1e6 * CHECK], [check], name, fmt="s", color="black", label="explicit, 1 µs")
-        draw(axes, places, found, name, marker="o", color=plot.LINES[0], label="exact, as counted")
+        draw(axes, places, found, name, marker="o", color=plot.LINES[0], label="exact")
         logarithmic(axes, [1e6 * CHECK, *places], "step [µs]")
-    aside = [1.04 * place for place in places]
-    name = LANDINGS_OUT["separated"]
-    draw(shares, aside, found, name, marker="o", color=plot.LINES[1], label="exact, landings counted out")
 
 
 def draw_cutoffs(axes: Axes, cutoffs: dict[str, tuple[Means, list[Means]]], name: str) -> None:

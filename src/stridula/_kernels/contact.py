@@ -382,3 +382,15 @@ def closed_share(normal, tangential, gap, w_nn, w_nt):
     """
     free = w_nn - tangential / normal * w_nt
     return normal / (normal + gap / choose(free > 0.0, free, w_nn))
+
+
+@numba.njit(inline="always", **STRICT)
+def stuck_share(normal, tangential, gap, slip, w, mu):
+    """Return the share of the step before that a contact still stuck in which slides now.
+
+    The tangential force went from `tangential` through the border of the cone to what sticking on would take.
+    """
+    pressed, needed = sticking_forces(gap, slip, w)
+    sense = choose(needed < 0.0, -1.0, 1.0)
+    inside, outside = mu * normal - sense * tangential, sense * needed - mu * pressed
+    return choose(outside > 0.0, inside, 1.0) / choose(outside > 0.0, inside + outside, 1.0)

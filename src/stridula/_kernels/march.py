@@ -6,9 +6,9 @@ import numba
 import numpy as np
 
 from . import layout as at
-from .contact import SEPARATED, STICKING, closed_share, landed_share, velocity_at
+from .contact import SEPARATED, SLIDING, STICKING, closed_share, landed_share, stuck_share, velocity_at
 from .friction import next_state, set_valued
-from .gauss_seidel import displacement, solve_all
+from .gauss_seidel import displacement, own_compliance, solve_all, strayed
 from .traces import FASTMATH, harmonics
 
 # Error of the contact forces, relative to the largest, beyond which none can be believed.
@@ -356,8 +356,14 @@ def march(
                 status, was = statuses[i], int(carried[i, at.STATUS])
                 closed = closed_before(carried, i, status, gap, w)
                 sums[i, at.SEPARATED] += 1.0 - closed
-                if was != SEPARATED:
-                    sums[i, at.STICKING if was == STICKING else at.SLIDING] += closed
+                held = closed if was == STICKING else 0.0
+                if was == STICKING and status == SLIDING and set_valued(int(contacts[i, at.LAW])):
+                    own = own_compliance(w, i)
+                    alone = gap - displacement(w, 2 * i, i, forces), slip - displacement(w, 2 * i + 1, i, forces)
+                    last = carried[i, at.LAST_NORMAL], carried[i, at.LAST_TANGENTIAL]
+                    held *= stuck_share(last[0], last[1], alone[0], alone[1] + strayed(carried, i), own, laws[i, 0])
+                sums[i, at.STICKING] += held
+                sums[i, at.SLIDING] += closed - held
                 steps_in[i, status] += 1
                 closed = 0.0
                 if status != SEPARATED:

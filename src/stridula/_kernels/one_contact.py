@@ -6,7 +6,7 @@ import numba
 
 from . import layout as at
 from .block_rows import LOADS, NORMAL, WAVES, D, Q
-from .contact import SLIDING, STICKING, closed_share, landed_share, velocity_at
+from .contact import SLIDING, STICKING, closed_share, landed_share, stuck_share, velocity_at
 from .friction import set_valued
 from .lanes import anywhere, choose, everywhere, magnitude, read, spread, total, write
 from .mode_rows import (
@@ -213,6 +213,7 @@ def steps(
                 closed = choose(choose(touched, gap, -1.0) < 0.0, closed, choose(left < 0.0, zero, left))
             sticking += choose(stuck, closed, zero)
             sliding += choose(stuck, zero, closed)
+            was_closed = closed
             normal, tangential, new_status, jammed, closed = zero, zero, zero, zero, zero
             if anywhere(gap < 0.0):
                 strayed = choose(stuck, material - anchor, zero)
@@ -227,6 +228,12 @@ def steps(
                         )
                 else:
                     normal, tangential, new_status, jammed = solve(gap, slip, strayed, w, law, laws, run, before, step)
+                slips = choose(stuck, new_status, zero) > SLIDING - 0.5
+                if not with_state and anywhere(slips):
+                    held = stuck_share(before[4], before[5], gap, slip + strayed, w, coefficient)
+                    sooner = choose(slips, (1.0 - held) * was_closed, zero)
+                    sticking -= sooner
+                    sliding += sooner
                 closed = choose(touched, 1.0, landed_share(last_gap, gap))
                 closed = choose(gap < 0.0, closed, zero)
                 gap += w_nn * normal - w_nt * tangential
