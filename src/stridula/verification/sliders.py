@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan, hypot, pi, sqrt
+from math import atan, cos, hypot, pi, sin, sqrt
 
 import numpy as np
 import xarray as xr
@@ -14,6 +14,7 @@ from ..connections import Spring
 from ..contact import Coulomb, PointContact, RigidTrack, StaticKinetic
 from ..contact.point_contact import FrictionLaw
 from ..drives import Force, InitialState
+from ..histories import Harmonic
 from ..integration import simulate
 from ..integration.schemes import Scheme
 from ..records import Displacement
@@ -37,6 +38,8 @@ class Slider:
         Start [m, m/s].
     belt : float, optional
         Velocity of the floor [m/s].
+    push : Harmonic, optional
+        Force on the mass along the floor, times 1 N; none if left out.
     """
 
     mass: float
@@ -46,6 +49,7 @@ class Slider:
     position: float
     velocity: float = 0.0
     belt: float = 0.0
+    push: Harmonic | None = None
 
     def run(self, duration: float, step: float, scheme: Scheme) -> xr.Dataset:
         """March and record every step."""
@@ -55,6 +59,7 @@ class Slider:
             drives=[
                 Force(body.centre, y=-self.normal),
                 InitialState(body, displacement=(self.position, 0.0), velocity=(self.velocity, 0.0)),
+                *([Force(body.centre, x=1.0, history=self.push)] if self.push else []),
             ],
             connections=[Spring(body.centre, stiffness=self.stiffness)],
         )
@@ -252,7 +257,50 @@ def belt_without_jump() -> Outcome:
     return Outcome(found, Sketch("time [s]", "displacement from the kinetic limit [m]", curves))
 
 
+FREQUENCY, FRICTION = 0.8, 0.2
+
+
+def den_hartog() -> Outcome:
+    """Mass and spring of 1 under ``cos(w t)`` N, rubbed so little that it never stops: its amplitude, steps a period.
+
+    With ``V = 1 / (1 - w²)`` and ``U = sin(pi/w) / (w (1 + cos(pi/w)))`` it is ``sqrt(V² - (U mu N)²)``.
+    """
+    high = 1.0 / (1.0 - FREQUENCY**2)
+    wide = sin(pi / FREQUENCY) / (FREQUENCY * (1.0 + cos(pi / FREQUENCY)))
+    amplitude, period = sqrt(high**2 - (wide * FRICTION) ** 2), 2.0 * pi / FREQUENCY
+    swung = Slider(1.0, 1.0, 1.0, Coulomb(FRICTION), 0.0, push=Harmonic(1.0 / period))
+    counts = np.array([100.0, 200.0, 400.0, 800.0])
+    curves: list[Curve] = []
+
+    def peak(scheme: Scheme, count: float) -> float:
+        place = swung.run(150.0 * period, period / count, scheme)["displacement"].values[-int(20 * count) :, 0]
+        top = np.flatnonzero((place[1:-1] > place[:-2]) & (place[1:-1] >= place[2:])) + 1
+        before, highest, after = place[top - 1], place[top], place[top + 1]
+        return float(np.mean(highest + (before - after) ** 2 / (8.0 * (2.0 * highest - before - after))))
+
+    def rows(scheme: Scheme) -> list[Row]:
+        errors = np.array([abs(peak(scheme, float(count)) / amplitude - 1.0) for count in counts])
+        curves.append(Curve(period / counts, errors, scheme.name, marks=True))
+        found = peak(scheme, 400.0)
+        words = "(w h)² of it: reversals are of second order, also with whole numbers of steps a period"
+        within = amplitude * (2.0 * pi / 400.0) ** 2
+        order = -float(np.polyfit(np.log(counts), np.log(errors), 1)[0])
+        return [
+            Row("amplitude, 400 steps a period", amplitude, found, within, words, "m", scheme.name),
+            Row("order of the amplitude", 2.0, order, 0.1, "declared order within 0.1", "1", scheme.name),
+        ]
+
+    sketch = Sketch("step [s]", "relative error of the amplitude", curves, logarithmic=True)
+    return Outcome(by_scheme(rows), sketch)
+
+
 CASES = (
+    Case(
+        "den-hartog",
+        "Forced oscillator with dry friction, without stops",
+        "J. P. Den Hartog 1931, Trans. ASME 53, APM-107: closed form of the amplitude",
+        den_hartog,
+    ),
     Case(
         "sdnd100",
         "Slider with Coulomb friction, let go",
