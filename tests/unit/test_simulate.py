@@ -423,6 +423,22 @@ def test_a_start_of_another_run_is_refused(change):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("name", "change", "words"),
+    [
+        ("state_carried", lambda state: state[:, :-3], r"state_carried of shape \(1, 12\), .*, got \(1, 9\)"),
+        ("state_energies", lambda state: state[:-1], "state_energies of shape"),
+        ("state_modal", lambda state: state * np.nan, "a finite state_modal"),
+    ],
+)
+def test_a_state_of_another_shape_is_refused(name, change, words):
+    """Compiled code would read beyond its end."""
+    record = st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3)
+    damaged = record.drop_vars(name).assign({name: (record[name].dims, change(record[name].values))})
+    with pytest.raises(ValueError, match=f"^start must have {'' if words.startswith('a ') else 'a '}{words}"):
+        st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3, start=damaged)
+
+
 def test_no_probes_and_no_drives_are_allowed():
     quiet = replace(SYSTEM, drives=())
     run = st.simulate(quiet, 1e-3, step=STEP, probes=[])

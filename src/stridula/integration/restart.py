@@ -41,8 +41,6 @@ def state_of(
         and duration.
     """
     instance("start", start, xr.Dataset)
-    if "state_modal" in start and "state_remainder" not in start:
-        start = start.assign(state_remainder=0.0 * start["state_modal"])
     needed = (*(f"state_{name}" for name in STATE), "state_raw")
     if any(name not in start for name in needed):
         raise ValueError(
@@ -64,7 +62,23 @@ def state_of(
     before, now = (tomllib.loads(text) for text in (attributes["scenario"], scenario_toml(system, probes, {})))
     knows_motion = "state_motion" in start
     _check_frozen(_frozen(before, knows_motion), _frozen(now, knows_motion))
-    return State(*(np.array(start[f"state_{name}"].values, dtype=float, order="C") for name in STATE))
+    state = State(*(np.array(start[f"state_{name}"].values, dtype=float, order="C") for name in STATE))
+    _check_shapes(state, arrays)
+    return state
+
+
+def _check_shapes(state: State, arrays: Assembly) -> None:
+    """Raise a ValueError where a state is not as the march keeps it."""
+    modal = (2, arrays.mode_count)
+    for name, shape in zip(STATE, (modal, modal, (len(arrays.contacts), at.CARRIED), (at.ENERGIES,)), strict=True):
+        values = getattr(state, name)
+        if values.shape != shape:
+            raise ValueError(
+                f"start must have a state_{name} of shape {shape}, as this version keeps it, got {values.shape}: "
+                "a record of another version runs again, but cannot be gone on from"
+            )
+        if not np.isfinite(values).all():
+            raise ValueError(f"start must have a finite state_{name}, got one that is not")
 
 
 def imposed_at(arrays: Assembly, last_step: int, step: float) -> dict[str, float]:
