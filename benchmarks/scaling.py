@@ -1,9 +1,10 @@
-"""How time grows: with modes, with contacts, with runs, with cores."""
+"""How time grows: with modes, with laws of friction, with contacts, with runs, with cores."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import stridula as st
 from ratios import Ratio, over, seconds, show, sized
@@ -12,11 +13,21 @@ from systems import FEET, GIVEN, RUNS, SIZES, beams, case_of, limit_of, marching
 
 TITLE = "scaling"
 SAMPLES, RATIO = sized(200, 10), 100
+# Laws of about the ratio of the sliding case, and how much longer than Coulomb's a step may take.
+LAWS = {
+    "exponential weakening": st.ExponentialWeakening(0.12, 0.1, 0.1),
+    "linear weakening": st.LinearWeakening(0.12, 0.1, 0.1),
+    "Stribeck, exponent 1.5": st.Stribeck(0.12, 0.1, 0.1, exponent=1.5),
+    "LuGre": st.LuGre(0.12, 0.1, 0.1, stiffness=1e4, damping=10.0),
+    "rate and state": st.RateAndState(0.1, 0.01, 0.008, 1e-4, 1e-2),
+}
+LAW_BAR, LAW_MODES = 1.5, 60
 
 
 def rows() -> Iterator[Ratio]:
     """Yield every scaling."""
     yield from modes()
+    yield from laws()
     yield from contacts()
     yield from runs()
     yield from cores()
@@ -27,6 +38,16 @@ def modes() -> Iterator[Ratio]:
     first, *others = seconds(*(stepping(beams(size, "sliding")) for size in SIZES.values()))
     for number, times in zip(list(SIZES)[1:], others, strict=True):
         yield Ratio(f"time of a step, some {number} modes over 30", over(times, first))
+
+
+def laws() -> Iterator[Ratio]:
+    """Yield the time of a step under laws that depend on the slip speed over that under Coulomb's; sliding."""
+    system = beams(SIZES[LAW_MODES], "sliding")
+    others = [replace(system, contact=replace(system.contacts[0], friction=law)) for law in LAWS.values()]
+    first, *timed = seconds(*(stepping(one) for one in (system, *others)))
+    for name, times in zip(LAWS, timed, strict=True):
+        quantity = f"time of a step, {name} over Coulomb, some {LAW_MODES} modes"
+        yield Ratio(quantity, over(times, first), most=LAW_BAR)
 
 
 def contacts() -> Iterator[Ratio]:
