@@ -185,7 +185,7 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     mean = float(np.abs(signals.forces[0, first:]).mean()) or 1.0
     noise, fastest = NOISY_STEPS * signals.step / interval, 1.0 / (limits.lowest_tone * interval)
     found = slips(signals.share[first:, STICKING], noise * (1.0 + ROUND_OFF), fastest)
-    caught = found[found[:, 1] < count - first, 1]
+    caught = found[found[:, 1] < (count - first) * (1.0 - ROUND_OFF), 1]
     landed = _landings(signals, first)
     change_rate = max(changes(status[first:]) / 2.0, landed) / time
     loss, loss_growth = _losses(signals, heard_from)
