@@ -114,7 +114,9 @@ class Pair:
     def agree(self, found: Result, expected: Result) -> None:
         """Stop where the two marches are apart."""
         for quantity, values in found.items():
-            must_agree(f"{quantity} of the march and of step.c", values, expected[quantity], TOLERANCE)
+            # Where a force only grazes the border of its cone, rounding has its say in the share of that step.
+            tolerance = 4.0 / STEPS if quantity == "steps in each state" else TOLERANCE
+            must_agree(f"{quantity} of the march and of step.c", values, expected[quantity], tolerance)
 
 
 def result(positions: np.ndarray, energies: np.ndarray, columns: np.ndarray) -> Result:
