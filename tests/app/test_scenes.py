@@ -173,4 +173,4 @@ def test_what_is_played_runs_elsewhere_as_it_is(talk, tmp_path):
     # Its text is played as the case was.
     again = talk.scene(text=answer["toml"])
     assert (again["values"], again["toml"]) == (answer["values"], answer["toml"])
-    assert again["goes_on"]
+    assert not again["goes_on"]

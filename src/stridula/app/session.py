@@ -94,7 +94,7 @@ class Session:
         elif isinstance(message, Repeat):
             self.repeats = message.on
             if self.instrument is not None:
-                self.instrument.repeats = message.on
+                self.instrument.repeat(message.on)
         elif self.instrument is None:
             raise ValueError("scene must be given first")
         elif isinstance(message, Pull):

@@ -121,7 +121,7 @@ function problem(lines) {
 
 function stroke({ why, goes_on: goesOn }) {
   $("stroke").textContent = `Last stroke: ${why}.`;
-  if (!goesOn) problem([`The stroke has ended: ${why}. Press New stroke, or change something.`]);
+  if (!goesOn) problem([`The stroke has ended: ${why}. Press New stroke, switch Stroke again on, or change something.`]);
 }
 
 function theory({ equilibrium, modes }) {
@@ -266,7 +266,10 @@ $("restart").addEventListener("click", () => {
   say({ type: "restart" });
 });
 $("speed").addEventListener("change", pace);
-$("repeat").addEventListener("change", () => say({ type: "repeat", on: $("repeat").checked }));
+$("repeat").addEventListener("change", () => {
+  if ($("repeat").checked) $("problem").hidden = true;
+  say({ type: "repeat", on: $("repeat").checked });
+});
 $("sound").addEventListener("click", async () => {
   const on = !sound.on;
   $("sound").setAttribute("aria-pressed", String(on));
