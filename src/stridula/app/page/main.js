@@ -27,6 +27,7 @@ stream.onmessage = ({ data }) => {
   else if (data.told) told(data.told);
   else if (data.file) save(data.file);
   else if (data.lost) lost(data);
+  else if ("behind" in data) $("behind").hidden = !data.behind;
 };
 
 function told(message) {
@@ -180,7 +181,10 @@ function heard(data) {
     $("latency").textContent = `${Math.round(stats.latency)} ms`;
   }
   if (!("peak" in data)) return;
-  if (data.dropouts > stats.dropouts) stream.postMessage({ more: true });
+  if (data.dropouts > stats.dropouts) {
+    stream.postMessage({ more: true });
+    map?.hold();
+  }
   stats.dropouts = data.dropouts;
   stats.peak = data.peak;
   $("dropouts").textContent = data.dropouts;
