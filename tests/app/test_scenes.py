@@ -138,7 +138,7 @@ def test_a_text_reads_no_file(plays, text, named, tmp_path):
 
 def test_only_keys_of_the_page_are_set(plays):
     for key in ("slider.elements", "simulation.duration", "title", "no.such.key", "base"):
-        answer = plays.scene("squeal", {key: 1})
+        answer = plays.scene("stable-sliding", {key: 1})
         assert answer["problems"] == [f"key must be one of the page's, got {key!r}"]
 
 
@@ -163,6 +163,52 @@ def test_what_cannot_be_played_in_time_is_refused(plays, text, begins):
     assert problem.startswith(begins)
 
 
+def test_a_refused_value_stays_as_it_was_and_the_others_are_played(talk):
+    talk.scene("stable-sliding", {"damping": 0.03})
+    short = talk.scene("stable-sliding", {"damping": 0.03, "track.length": 0.2})
+    assert short["type"] == "refused"
+    assert short["refused"] == {"track.length": short["problems"]}
+    assert short["kept"] == {"case": "stable-sliding", "text": None, "overrides": {"damping": 0.03}}
+    # One turns on before the answer has come.
+    more = {"damping": 0.02, "track.length": 0.2, "slider.angle": 9.0, "slider.length": 0.4}
+    answer = talk.scene("stable-sliding", more)
+    assert (answer["type"], set(answer["refused"])) == ("scene", {"track.length", "slider.angle"})
+    assert answer["kept"]["overrides"] == {"damping": 0.02, "slider.length": 0.4}
+    assert (answer["values"]["damping"], answer["values"]["slider.length"]) == (0.02, 0.4)
+    assert answer["goes_on"]
+
+
+def test_a_kind_is_played_though_a_value_beside_it_is_refused(talk):
+    talk.scene("squeal")
+    kind = {"contact.friction.law": "static-kinetic", "contact.friction.static": 0.6, "contact.friction.kinetic": 0.4}
+    answer = talk.scene("squeal", kind | {"slider.length": -1.0})
+    assert (answer["type"], set(answer["refused"])) == ("scene", {"slider.length"})
+    assert answer["kept"]["overrides"] == kind
+    assert answer["values"]["contact.friction.law"] == "static-kinetic"
+
+
+@pytest.mark.parametrize(
+    ("case", "overrides", "refused", "kept"),
+    [
+        ("judder", {"friction": 1.2}, "friction", {}),
+        ("judder", {"friction": 1.2, "damping": 0.02}, "friction", {"damping": 0.02}),
+        ("judder", {"contact.friction.coefficient": "1,2"}, "contact.friction.coefficient", {}),
+        ("nonsense", {"damping": 0.02}, "", {}),
+    ],
+    ids=str,
+)
+def test_a_link_plays_what_is_right_of_it(talk, case, overrides, refused, kept):
+    answer = talk.scene(case, overrides)
+    assert (answer["type"], set(answer["refused"])) == ("scene", {refused})
+    assert answer["kept"] == {"case": "judder" if refused else "squeal", "text": None, "overrides": kept}
+    assert len(talk.play(480).sound) == 480
+
+
+def test_a_text_nested_too_deep_is_refused_in_one_line(plays):
+    (problem,) = plays.scene(text="[" + "a." * 20_000 + "a]\n")["problems"]
+    assert "\n" not in problem
+
+
 def test_what_is_played_runs_elsewhere_as_it_is(talk, tmp_path):
     overrides = {"contact.friction.coefficient": 0.7, "slider.angle": 0.6, "section.height": 0.009}
     answer = talk.scene("squeal", overrides)
@@ -173,4 +219,4 @@ def test_what_is_played_runs_elsewhere_as_it_is(talk, tmp_path):
     # Its text is played as the case was.
     again = talk.scene(text=answer["toml"])
     assert (again["values"], again["toml"]) == (answer["values"], answer["toml"])
-    assert again["goes_on"]
+    assert not again["goes_on"]

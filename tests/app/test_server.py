@@ -11,9 +11,10 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
-from stridula.app.serve import COMPILING
+from stridula.app.serve import COMPILING, addresses
 
 from .conversation import conversation
+from .scripting import result_of
 from .serving import WAIT, Server, app
 
 PAGE = [entry for entry in files("stridula.app").joinpath("page").iterdir() if entry.is_file()]
@@ -101,6 +102,37 @@ def test_another_host_wants_to_be_let_in():
     assert re.fullmatch(r"stridula: host must be .* unless --open lets other machines in, got '0.0.0.0'\n", done.stderr)
 
 
+@pytest.mark.parametrize(
+    ("host", "first", "tunnel"),
+    [
+        ("0.0.0.0", "http://localhost:87/", "ssh -L 87:localhost:87 bench there"),
+        ("::", "http://localhost:87/", "ssh -L 87:localhost:87 bench there"),
+        ("192.168.0.7", "http://192.168.0.7:87/", "ssh -L 87:192.168.0.7:87 bench there"),
+    ],
+)
+def test_an_open_server_prints_addresses_that_work(monkeypatch, host, first, tunnel):
+    monkeypatch.setattr(socket, "gethostname", lambda: "bench.example.org")
+    address, silent, sounds = addresses(host, 87)
+    assert address == first
+    # A name with a dot would be refused.
+    name = "192.168.0.7" if host[0] == "1" else "bench"
+    assert silent.startswith(f"other machines open http://{name}:87/, which is silent")
+    assert tunnel in sounds
+
+
+@pytest.mark.parametrize(("host", "shown"), [("127.0.0.1", "127.0.0.1"), ("localhost", "localhost"), ("::1", "[::1]")])
+def test_a_server_for_this_machine_prints_one_address(host, shown):
+    assert addresses(host, 87) == [f"http://{shown}:87/"]
+
+
+def test_a_page_that_can_have_no_sound_says_how_to_get_it(tmp_path):
+    code = """import { Sound } from "./sound.js";
+result = [true, false].map((secure) => Sound.missing(secure, { hostname: "bench", port: "87" }));"""
+    secure, other = result_of(tmp_path, code)
+    assert secure == ""
+    assert "ssh -L 87:localhost:87 bench" in other
+
+
 def test_a_port_that_is_taken_is_named_in_one_line():
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
@@ -171,7 +203,7 @@ def test_a_message_that_is_none_is_told_in_one_line_and_all_goes_on(talk, text):
 
 def test_a_number_without_end_is_refused(talk):
     talk.socket.send('{"type": "scene", "revision": 9, "overrides": {"slider.length": 1' + 400 * "0" + "}}")
-    assert talk.until("problem", "refused")["problems"]
+    assert set(talk.until("scene")["refused"]) == {"slider.length"}
     assert talk.scene()["type"] == "scene"
 
 

@@ -193,6 +193,37 @@ def test_off_the_track_it_says_so_and_starts_anew():
     assert live.advance(480)[1] == "finished"
 
 
+@pytest.mark.parametrize("case", ["squeal", "judder", "weak-pressure"])
+def test_a_contact_that_is_moved_far_keeps_its_opening(case):
+    for chunks in (7, 20, 31):
+        live, before = played(case, chunks=chunks)
+        place, was_open = before["contact_position"][-1], live._march.states[0].carried[0, at.STATUS] == 0.0
+        for moved in (-0.15, 0.3):
+            assert changed(live, case, contact__at=live.system.contacts[0].at + moved)
+            chunk, ended = live.advance(480)
+            assert ended == "finished"
+            place += moved
+            assert chunk.contact["contact_position"][0] == pytest.approx(place, abs=1e-4)
+            if not was_open:
+                assert abs(chunk.contact["gap"][0]) < 1e-4
+            place = chunk.contact["contact_position"][-1]
+            was_open = live._march.states[0].carried[0, at.STATUS] == 0.0
+
+
+def test_it_begins_as_another_system_whatever_became_of_it(monkeypatch):
+    live, _ = played("squeal", chunks=5)
+    monkeypatch.setattr(live._belief, "initial_energy", live._belief.initial_energy + 1.0)
+    assert live.advance(480)[1] == "energy created"
+    what = system("judder")
+    live.begin(what, probes(what))
+    _, first = played("judder", chunks=2)
+    again = marched(live, 2)
+    assert all(np.array_equal(again[name], first[name]) for name in first)
+    with pytest.raises(ValueError, match="probe must be on a body of this system"):
+        live.begin(system("squeal"), probes(system("squeal-on-plate")))
+    assert live.system is what
+
+
 def test_schemes_change_on_the_way():
     live, before = played("weak-pressure", chunks=30)
     assert changed(live, "weak-pressure", st.CentralDifference())

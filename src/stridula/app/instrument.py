@@ -19,6 +19,8 @@ from .sources import source_of
 RATE = 48_000
 # A tip that sticks under a constant force, or has been off the track, for so long [s] begins another stroke.
 PATIENCE = 0.5
+# After so long [s] without one, a stroke that cannot be believed is followed by another.
+TRUST = 0.5
 # Time in which a jump of what is heard dies away [s]: a stroke that begins anew does not click.
 BLEND = 0.004
 TRACK_POINTS = 65
@@ -42,14 +44,24 @@ class Instrument:
         self.repeats, self.stroke, self.played_samples = True, 1, 0
         self.ended = ""
         self._still, self._blend, self._last = 0, 0.0, 0.0
+        # Samples since a stroke last followed another by itself.
+        self._since_repeat = round(TRUST * RATE)
         self._must_blend = False
         self.last_seconds = LastSeconds(RATE)
         self.last_seconds.changed(0.0, played.toml)
 
     def change(self, played: Playable, revision: int) -> bool:
-        """Go on as another scenario and return whether the motion went on; else a stroke begins."""
+        """Go on as another scenario and return whether the motion went on; else a stroke begins.
+
+        Another case or text begins one, and so does whatever follows a stroke that has ended.
+        """
         track, steps = self.live.system.track, self.live.ratio
-        goes_on = self.live.change(played.system, played.probes, played.scenario.scheme)
+        what = (played.system, played.probes, played.scenario.scheme)
+        goes_on = played.origin == self.played.origin and not self.ended
+        if goes_on:
+            goes_on = self.live.change(*what)
+        else:
+            self.live.begin(*what)
         self.played, self.revision = played, revision
         self.last_seconds.changed(self.played_samples / RATE, played.toml)
         if (track, steps) != (self.live.system.track, self.live.ratio):
@@ -57,8 +69,7 @@ class Instrument:
         self._must_blend, self._still = True, 0
         if not goes_on:
             self._begin_stroke()
-        elif self.ended:
-            self.restart()
+        self._since_repeat = round(TRUST * RATE)
         return goes_on
 
     def listen_to(self, name: str) -> None:
@@ -70,6 +81,13 @@ class Instrument:
         self.live.restart()
         self._begin_stroke()
 
+    def repeat(self, on: bool) -> None:
+        """Let strokes follow each other or not; what has ended or is at rest begins anew."""
+        self.repeats = on
+        if on and self.ended:
+            self.restart()
+        self._still = max(self._still, 0)
+
     def play(self, samples: int) -> Iterator[Part | Stop]:
         """Play on and return what was played, and what ended strokes; nothing once a stroke ended for good."""
         while samples and not self.ended:
@@ -77,12 +95,15 @@ class Instrument:
             if len(chunk.time):
                 yield self._part(chunk)
             samples -= len(chunk.time)
+            self._since_repeat += len(chunk.time)
             why = ended if ended != "finished" else self._at_rest(chunk)
             if not why:
                 continue
-            # What could not be believed goes on only when one says so.
-            goes_on = self.repeats and ended in ("finished", "off the track")
+            # What ends as soon as it begins would begin without end.
+            needed = 1 if ended in ("finished", "off the track") else TRUST * RATE
+            goes_on = self.repeats and self._since_repeat >= needed
             if goes_on:
+                self._since_repeat = 0
                 self.restart()
             elif ended == "finished":
                 self._still = -(2**62)

@@ -33,10 +33,13 @@ class Playable:
         What is played.
     tables : dict
         The scenario in full and in SI.
+    origin : str
+        Name of the shipped scenario, or the text, that it was before values were set.
     """
 
     scenario: Scenario
     tables: dict[str, Any]
+    origin: str
 
     @property
     def system(self) -> System:
@@ -84,7 +87,8 @@ def playable(case: str, text: str | None, overrides: Mapping[str, Any]) -> Playa
     scenario = scenario_of_tables(changed, problems)
     _check_kind(scenario.system)
     simulation = {"duration": scenario.duration, "scheme": scenario.scheme.name}
-    return Playable(scenario, tomllib.loads(scenario_toml(scenario.system, scenario.probes or (), simulation)))
+    full = tomllib.loads(scenario_toml(scenario.system, scenario.probes or (), simulation))
+    return Playable(scenario, full, case if text is None else text)
 
 
 def _check_size(tables: dict[str, Any]) -> None:

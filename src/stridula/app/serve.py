@@ -25,6 +25,8 @@ from .server import create_app
 GRACE = 2
 # After how long it is said that something is being compiled [s].
 PATIENCE = 2.0
+# Hosts that stand for all addresses of this machine.
+EVERYWHERE = ("0.0.0.0", "::")
 COMPILING = "stridula: compiling, once; this takes some ten seconds"
 
 
@@ -57,9 +59,8 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
     # What is there now stays: to look for garbage in it would stop the sound.
     gc.collect()
     gc.freeze()
-    shown = f"[{host}]" if ":" in host else host
-    address = f"http://{shown}:{listening.getsockname()[1]}/"
-    print(f"stridula plays at {address} (Ctrl-C stops it)", flush=True)
+    address, *others = addresses(host, listening.getsockname()[1])
+    print("\n".join([f"stridula plays at {address} (Ctrl-C stops it)", *others]), flush=True)
     # A page that goes in the middle of what it asked for is no news.
     logging.getLogger("asyncio").setLevel(logging.ERROR)
     if opens_browser:
@@ -93,6 +94,29 @@ def _get_ready() -> None:
             instrument.change(playable(case, None, {key: 0.5}), number)
         list(instrument.play(RATE // 100))
     notice.cancel()
+
+
+def addresses(host: str, port: int) -> list[str]:
+    """Return where this machine opens the page, then lines on how other machines do, if they may.
+
+    Parameters
+    ----------
+    host : str
+        Address that is listened on.
+    port : int
+        Port.
+    """
+    shown = "localhost" if host in EVERYWHERE else f"[{host}]" if ":" in host else host
+    address = f"http://{shown}:{port}/"
+    if is_loopback(host):
+        return [address]
+    name = socket.gethostname().partition(".")[0]
+    return [
+        address,
+        f"other machines open http://{name if host in EVERYWHERE else shown}:{port}/, which is silent: browsers play "
+        "sound from https or localhost only",
+        f"with sound: ssh -L {port}:{shown}:{port} {name} there, and then http://localhost:{port}/",
+    ]
 
 
 def is_loopback(host: str) -> bool:

@@ -16,12 +16,13 @@ from ..scenarios.errors import ScenarioError
 from ..version import __version__
 from . import controls
 from .beside import Beside
+from .held import held, is_of_one_case
 from .instrument import RATE, Instrument
 from .last_seconds import KEPT
 from .maps import rows
 from .messages import Listen, Map, Message, NoMap, Pull, Repeat, Restart, Save, Scene, message_of
 from .parts import Stop, packed
-from .playable import Playable, playable
+from .playable import Playable
 from .presets import presets
 from .sources import SOURCES
 
@@ -49,6 +50,7 @@ class Session:
     def __init__(self, socket: WebSocket, beside: Beside) -> None:
         self.socket, self.beside = socket, beside
         self.instrument: Instrument | None = None
+        self.scene: Scene | None = None
         self.source, self.repeats = "pressure", True
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._began, self._played = clock.monotonic(), 0
@@ -94,7 +96,7 @@ class Session:
         elif isinstance(message, Repeat):
             self.repeats = message.on
             if self.instrument is not None:
-                self.instrument.repeats = message.on
+                self.instrument.repeat(message.on)
         elif self.instrument is None:
             raise ValueError("scene must be given first")
         elif isinstance(message, Pull):
@@ -107,19 +109,26 @@ class Session:
             self._map(self.instrument.played, message)
 
     async def _scene(self, scene: Scene) -> None:
-        """Play something else, if it can be played."""
+        """Play something else, as much of it as can be played."""
+        refused: dict[str, list[str]] = {}
         try:
-            played = await asyncio.to_thread(playable, scene.case, scene.text, scene.overrides)
+            found = await asyncio.to_thread(held, scene, self.scene)
+            refused, played = found.refused, found.played
+            if refused and self.scene is not None and _is_same(found.scene, self.scene):
+                raise ScenarioError(found.problems)
             live, goes_on = await asyncio.to_thread(self._play, played, scene.revision)
         except MemoryError:
             problems = ["scenario must fit into memory"]
         except ValueError as error:
             problems = _lines(error)
         else:
-            await self._tell("scene", revision=scene.revision, goes_on=goes_on, **_described(played, live))
+            self.scene = found.scene
+            told = {"goes_on": goes_on, "refused": refused, "kept": _said(found.scene) if refused else None}
+            await self._tell("scene", revision=scene.revision, **told, **_described(played, live))
             self._do("theory", self._theory(played, scene.revision))
             return
-        await self._tell("refused", revision=scene.revision, problems=problems)
+        told = {"problems": problems, "refused": refused or {"": problems}, "kept": _said(self.scene)}
+        await self._tell("refused", revision=scene.revision, **told)
 
     def _play(self, played: Playable, revision: int) -> tuple[LiveMarch, bool]:
         """Return what marches, and whether its motion went on."""
@@ -202,6 +211,15 @@ async def _sent(sending: Coroutine[Any, Any, None]) -> None:
         await sending
     except RuntimeError:
         raise WebSocketDisconnect(GONE) from None
+
+
+def _is_same(one: Scene, other: Scene) -> bool:
+    return is_of_one_case(one, other) and one.overrides == other.overrides
+
+
+def _said(scene: Scene | None) -> dict[str, Any] | None:
+    """Return a scene as a page says it."""
+    return None if scene is None else scene.model_dump(include={"case", "text", "overrides"})
 
 
 def _lines(error: ValueError) -> list[str]:

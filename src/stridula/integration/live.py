@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from copy import deepcopy
 from dataclasses import dataclass, replace
 
@@ -65,7 +66,8 @@ class LiveMarch:
     """A system of one contact on the march, sample by sample, for as long as one likes.
 
     What it is may change on the way: its motion goes on from where it is. Friction and forces change at once; bodies
-    that change keep their deflections, the contact its opening and its place on the track.
+    that change keep their deflections, the contact its opening and its place on the track. A contact that is moved
+    along the track keeps its opening there.
 
     Parameters
     ----------
@@ -145,7 +147,7 @@ class LiveMarch:
             Fewer samples where the march ended.
         ended : str
             ``finished``, ``off the track``, ``not finite``, ``contact unsolved`` or ``energy created``; after all but
-            the first, only `restart` helps.
+            the first, only `restart` and `begin` help.
         """
         imposed = self._impositions.on(self._sample * self.ratio, samples * self.ratio)
         (chunk,) = self._march.advance([imposed], samples)
@@ -158,6 +160,27 @@ class LiveMarch:
         energies = {name: energy[column].copy() for name, column in ENERGY_COLUMN.items()}
         shares = record[at.SEPARATED : at.SLIDING + 1].T.copy()
         return LiveChunk(time, contact, shares, energies, self._low_passed(chunk.raw, done)), ENDED[ended]
+
+    def begin(self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None) -> None:
+        """Start anew as another system, whatever became of the march before.
+
+        Parameters
+        ----------
+        system : System
+            What it becomes.
+        probes : sequence of probe
+            What is recorded beside the contact from now on.
+        scheme : CentralDifference or ExactModal, optional
+            Time scheme, as it was if left out.
+
+        Raises
+        ------
+        ValueError
+            As at the start; then all stays as it was.
+        """
+        with self._as_it_was_if_refused():
+            self._take(system, probes, self.scheme if scheme is None else scheme, assembled(system, probes))
+            self.restart()
 
     def change(self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None) -> bool:
         """Go on as another system.
@@ -182,9 +205,14 @@ class LiveMarch:
         ValueError
             As at the start; then all goes on as it was.
         """
+        with self._as_it_was_if_refused():
+            return self._change(system, probes, scheme)
+
+    @contextmanager
+    def _as_it_was_if_refused(self) -> Iterator[None]:
         kept = dict(vars(self))
         try:
-            return self._change(system, probes, scheme)
+            yield
         except ValueError:
             vars(self).update(kept)
             raise
@@ -195,13 +223,15 @@ class LiveMarch:
         self._travel = self._root_at(self._arrays) - self._root_at(arrays)
         self._take(system, probes, before.scheme if scheme is None else scheme, arrays)
         self._begin_probes()
-        place = float(state.carried[0, at.ABSCISSA] + system.contacts[0].at - before.system.contacts[0].at)
+        moved = system.contacts[0].at - before.system.contacts[0].at
+        place = float(state.carried[0, at.ABSCISSA] + moved)
         low, high = system.track.ends
         if not (before.goes_on_as(system) and low < place < high):
             self.restart()
             return False
         position, velocity = before.motion_as(system, arrays, state, self.time)
-        if system.bodies == before.system.bodies and self.step == before.step and self.scheme == before.scheme:
+        has_same_modes = system.bodies == before.system.bodies and self.step == before.step
+        if has_same_modes and self.scheme == before.scheme and not moved:
             self._go_on(state, place, position, velocity, before.system)
         else:
             is_closed = state.carried[0, at.STATUS] != SEPARATED
@@ -262,7 +292,7 @@ class LiveMarch:
         self._put(state, place)
 
     def _start_from(self, position: Array, velocity: Array, place: float, gap: float) -> None:
-        """March on in other modes, the contact opened by a gap."""
+        """March on in other modes or at another place on the track, the contact opened by a gap."""
         position = position + _opening(self._shifted(place, position), position, gap)
         self._lay_out(self._shifted(place, position))
         now = self.time

@@ -20,7 +20,7 @@ export class Controls {
     row.className = "control";
     row.innerHTML = `<label for="${id}"></label>
       <div class="row"><input type="range" id="${id}-slide"><input type="number" id="${id}"><span class="unit"></span></div>
-      <p class="words" id="${id}-words"></p>`;
+      <p class="refused" role="alert" hidden></p><p class="words" id="${id}-words"></p>`;
     const [label, slide, number, unit, words] = ["label", "[type=range]", "[type=number]", ".unit", ".words"].map((one) => row.querySelector(one));
     const named = control.unit ? `${control.label} in ${spoken(control.unit)}` : control.label;
     label.textContent = control.label;
@@ -46,16 +46,16 @@ export class Controls {
       if (number.value.trim() === "" || !Number.isFinite(Number(number.value))) this.show(this.values, true);
       else this.scene.value(control.key, si(Number(number.value), control));
     });
-    this.rows.set(control.key, { row, control, show: (value) => this.#show(value, slide, number, control) });
+    this.rows.set(control.key, { row, control, show: (value, again) => this.#show(value, slide, number, control, again) });
     return row;
   }
 
-  #show(value, slide, number, control) {
+  #show(value, slide, number, control, again) {
     const shown = Number((value / control.scale).toPrecision(7));
     slide.min = Math.min(control.low, shown);
     slide.max = Math.max(control.high, shown);
-    if (document.activeElement !== slide || Math.abs(Number(slide.value) - shown) > control.step) slide.value = shown;
-    if (document.activeElement !== number) number.value = shown;
+    if (again || document.activeElement !== slide || Math.abs(Number(slide.value) - shown) > control.step) slide.value = shown;
+    if (again || document.activeElement !== number) number.value = shown;
     slide.setAttribute("aria-valuetext", `${shown} ${spoken(control.unit)}`.trim());
   }
 
@@ -63,9 +63,9 @@ export class Controls {
     const id = choice.key.replaceAll(".", "-");
     const row = document.createElement("div");
     row.className = "control";
-    row.innerHTML = `<label class="field" for="${id}"></label><select id="${id}"></select><p class="words" id="${id}-words"></p>`;
+    row.innerHTML = `<label class="field" for="${id}"></label><select id="${id}"></select><p class="refused" role="alert" hidden></p><p class="words" id="${id}-words"></p>`;
     row.querySelector("label").textContent = choice.label;
-    row.querySelector("p").textContent = choice.words;
+    row.querySelector(".words").textContent = choice.words;
     const select = row.querySelector("select");
     select.setAttribute("aria-describedby", `${id}-words`);
     for (const [value, word] of Object.entries(choice.kinds)) select.append(new Option(word, value));
@@ -84,8 +84,19 @@ export class Controls {
     this.values = values;
     for (const [key, { row, show }] of this.rows) {
       row.hidden = !(key in values);
-      if (key in values && (again || values[key] !== before[key])) show(values[key]);
+      if (key in values && (again || values[key] !== before[key])) show(values[key], again);
     }
+  }
+
+  // Say beside each control why it was refused, and show the value that is played; return what no control is to blame for.
+  refuse(refused) {
+    for (const [key, { row, show }] of this.rows) {
+      const words = row.querySelector(".refused");
+      words.hidden = !(key in refused);
+      words.textContent = (refused[key] ?? []).join("\n");
+      if (key in refused && key in (this.values ?? {})) show(this.values[key], true);
+    }
+    return Object.keys(refused).filter((key) => !this.rows.has(key) || this.rows.get(key).row.hidden);
   }
 
   numbers() {

@@ -13,6 +13,7 @@ const pictures = new Pictures();
 const scene = new Scene(changed);
 const sound = new Sound(stream, heard);
 const moves = new Map();
+const sent = new Map(); // Scenes that were not answered yet, by revision.
 const LONG = 5; // Time of drawing from which every other frame is left out [ms].
 const stats = { drawing: 0, revision: 0, played: 0, samples: 0, frames: 0, fps: 0, dropouts: 0, latency: null, latencies: [], connected: false, level: 0, peak: 0 };
 let hello, controls, map, described;
@@ -26,6 +27,7 @@ stream.onmessage = ({ data }) => {
   else if (data.told) told(data.told);
   else if (data.file) save(data.file);
   else if (data.lost) lost(data);
+  else if ("behind" in data) $("behind").hidden = !data.behind;
 };
 
 function told(message) {
@@ -69,15 +71,21 @@ function send() {
   revision += 1;
   moves.set(revision, performance.now());
   if (moves.size > 200) moves.delete(moves.keys().next().value);
+  sent.set(revision, structuredClone(scene.now));
   say({ type: "scene", revision, ...scene.now, case: scene.now.case || "squeal" });
 }
 
 function changed() {
-  clearTimeout(changed.timer);
-  changed.timer = setTimeout(async () => history.replaceState(null, "", await scene.link()), 150);
+  note();
+  send();
+}
+
+// Let address bar and buttons follow what is to be played.
+function note() {
+  clearTimeout(note.timer);
+  note.timer = setTimeout(async () => history.replaceState(null, "", await scene.link()), 150);
   $("undo").disabled = !scene.canUndo;
   $("redo").disabled = !scene.canRedo;
-  send();
 }
 
 function shown(message) {
@@ -87,16 +95,32 @@ function shown(message) {
   $("problem").hidden = !badLink;
   badLink = false;
   controls.show(message.values);
+  putBack(message);
   pictures.describe(message);
   map.follow();
+  showCase(message);
+  showToml();
+  write("numbers", `${message.modes} modes, ${message.steps} steps of ${short(1e6 * message.step)} µs a sample. `);
+}
+
+function showCase(message) {
   const own = scene.now.text !== null;
   const preset = hello.presets.find(({ name }) => name === scene.now.case);
   if (own && ![...$("case").options].some((one) => one.value === "")) $("case").append(new Option("Your own", ""));
   if (!own) [...$("case").options].filter((one) => one.value === "").forEach((one) => one.remove());
   $("case").value = own ? "" : scene.now.case;
   write("case-words", own ? message.description || message.title : preset.description);
-  showToml();
-  write("numbers", `${message.modes} modes, ${message.steps} steps of ${short(1e6 * message.step)} µs a sample. `);
+}
+
+// What was refused goes back to what is played; why it was is said beside its control, or above all where there is none.
+function putBack({ revision: number, refused, kept }) {
+  const asked = sent.get(number);
+  for (const one of [...sent.keys()]) if (one <= number) sent.delete(one);
+  const others = controls.refuse(refused);
+  if (others.length) problem([...new Set(others.flatMap((key) => refused[key]))]);
+  if (!kept || !asked) return;
+  scene.putBack(asked, refused, kept);
+  note();
 }
 
 // Write where something changed: what is written is laid out again.
@@ -111,7 +135,8 @@ function showToml() {
 }
 
 function refused(message) {
-  problem(message.problems);
+  putBack(message);
+  if (described) showCase(described);
 }
 
 function problem(lines) {
@@ -121,7 +146,7 @@ function problem(lines) {
 
 function stroke({ why, goes_on: goesOn }) {
   $("stroke").textContent = `Last stroke: ${why}.`;
-  if (!goesOn) problem([`The stroke has ended: ${why}. Press New stroke, or change something.`]);
+  if (!goesOn) problem([`The stroke has ended: ${why}. Press New stroke, switch Stroke again on, or change something.`]);
 }
 
 function theory({ equilibrium, modes }) {
@@ -156,7 +181,10 @@ function heard(data) {
     $("latency").textContent = `${Math.round(stats.latency)} ms`;
   }
   if (!("peak" in data)) return;
-  if (data.dropouts > stats.dropouts) stream.postMessage({ more: true });
+  if (data.dropouts > stats.dropouts) {
+    stream.postMessage({ more: true });
+    map?.hold();
+  }
   stats.dropouts = data.dropouts;
   stats.peak = data.peak;
   $("dropouts").textContent = data.dropouts;
@@ -266,9 +294,17 @@ $("restart").addEventListener("click", () => {
   say({ type: "restart" });
 });
 $("speed").addEventListener("change", pace);
-$("repeat").addEventListener("change", () => say({ type: "repeat", on: $("repeat").checked }));
+$("repeat").addEventListener("change", () => {
+  if ($("repeat").checked) $("problem").hidden = true;
+  say({ type: "repeat", on: $("repeat").checked });
+});
 $("sound").addEventListener("click", async () => {
   const on = !sound.on;
+  const missing = Sound.missing(window.isSecureContext, location);
+  if (missing) {
+    problem([missing]);
+    return;
+  }
   $("sound").setAttribute("aria-pressed", String(on));
   $("sound").textContent = on ? "Mute" : "Sound on";
   moves.clear();

@@ -3,6 +3,7 @@ import { si } from "./controls.js";
 import { short } from "./pictures.js";
 
 const POINTS = 16;
+const HELD = 5000; // Time without a drop-out after which a map that was held back goes on [ms].
 const QUIET = 700; // Time without a change after which a map is computed [ms].
 // What tells regimes apart without colours.
 const SIGNS = { "stable sliding": "", sticking: "–", "stick-slip": "/", squeal: "~", judder: "×", "off the track": "·" };
@@ -59,8 +60,19 @@ export class RegimeMap {
     this.words.textContent = "";
     this.say({ type: "no map" });
     clearTimeout(this.timer);
+    this.pending = null;
     if (!this.on.checked) return;
     this.timer = setTimeout(() => this.#ask(a, b), at_once ? 0 : QUIET);
+  }
+
+  // Make room for the sound: a map that is being computed waits.
+  hold() {
+    if (!this.pending) return;
+    const [a, b] = this.pending;
+    this.say({ type: "no map" });
+    this.words.textContent = "waits: the sound comes first";
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.#ask(a, b), HELD);
   }
 
   again() {
@@ -92,6 +104,7 @@ export class RegimeMap {
     }
     const axis = ({ key, control, low, high }) => ({ key, low: si(low, control), high: si(high, control) });
     this.words.textContent = "computing";
+    this.pending = [a, b];
     this.say({ type: "map", x: axis(a), y: axis(b), points: POINTS });
   }
 
@@ -101,6 +114,7 @@ export class RegimeMap {
   }
 
   done() {
+    this.pending = null;
     this.words.textContent = "each point marched for up to 1 s from the start";
   }
 

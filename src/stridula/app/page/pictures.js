@@ -1,8 +1,11 @@
 // The pictures: what has come since the last one, drawn once for each frame of the screen.
+import { hann, spectrum, strongestTone } from "./spectrum.js";
+
 const RATE = 48000;
 const KEPT = 1 << 15; // Points of force and state that are kept.
 const SIZE = 1024; // Samples of a spectrum.
 const HOP = 256; // Samples between spectra.
+const HEARD = 1 << 14; // Samples in which the strongest tone is looked for: bins of 3 Hz.
 const HIGHEST = 12000; // Highest frequency shown [Hz].
 const WINDOW = 1.0; // Time shown live [s].
 const PORTRAIT = 0.06; // Time of the phase portrait live [s].
@@ -22,7 +25,8 @@ export class Pictures {
     this.slow = 1;
     this.exaggeration = 0;
     this.loudest = 1e-9;
-    this.window = Float32Array.from({ length: SIZE }, (_, i) => 0.5 - 0.5 * Math.cos((2 * Math.PI * i) / SIZE));
+    this.window = hann(SIZE);
+    this.heard = new Float32Array(0);
     this.theme();
   }
 
@@ -65,7 +69,7 @@ export class Pictures {
 
   pace(slow) {
     this.slow = slow;
-    this.sound = new Float32Array(0);
+    this.sound = this.heard = new Float32Array(0);
   }
 
   // Shares of the states over the time shown, and the root mean square of what was heard last.
@@ -259,29 +263,20 @@ export class Pictures {
 
   // Keep the spectra of what is heard.
   #hear(sound) {
-    const joined = new Float32Array(this.sound.length + sound.length);
-    joined.set(this.sound);
-    joined.set(sound, this.sound.length);
+    this.heard = joined(this.heard, sound).slice(-HEARD);
+    const all = joined(this.sound, sound);
     let start = 0;
-    for (; start + SIZE <= joined.length; start += HOP) this.columns.push({ power: spectrum(joined.subarray(start, start + SIZE), this.window) });
-    this.sound = joined.slice(start);
+    for (; start + SIZE <= all.length; start += HOP) this.columns.push({ power: spectrum(all.subarray(start, start + SIZE), this.window) });
+    this.sound = all.slice(start);
     let [sum, mean] = [0, 0];
     for (const value of sound) mean += value / sound.length;
     for (const value of sound) sum += (value - mean) ** 2;
     this.level = Math.sqrt(sum / Math.max(1, sound.length));
   }
 
-  // Frequency of the strongest tone over the last spectra [Hz], null where there is silence.
+  // Frequency of the strongest tone of what was heard last [Hz], null where there is none or too little was heard.
   get tone() {
-    const last = this.columns.slice(-64);
-    if (!last.length) return null;
-    const mean = last[0].power.map((_, i) => last.reduce((sum, { power }) => sum + power[i], 0));
-    let best = 2;
-    for (let i = 3; i < mean.length - 1; i++) if (mean[i] > mean[best]) best = i;
-    if (!(mean[best] > 1e-9 * this.loudest)) return null;
-    // The peak of a parabola through three points on a logarithmic scale.
-    const [a, b, c] = [best - 1, best, best + 1].map((i) => Math.log(mean[i] + 1e-30));
-    return ((best + (0.5 * (a - c)) / (a - 2 * b + c || 1)) * RATE) / SIZE;
+    return this.heard.length === HEARD ? strongestTone(this.heard, RATE) : null;
   }
 
   #spectrogram() {
@@ -330,6 +325,13 @@ export class Pictures {
   }
 }
 
+function joined(one, other) {
+  const found = new Float32Array(one.length + other.length);
+  found.set(one);
+  found.set(other, one.length);
+  return found;
+}
+
 function line(draw, points) {
   draw.beginPath();
   points.forEach(([x, y], i) => (i ? draw.lineTo(x, y) : draw.moveTo(x, y)));
@@ -374,32 +376,4 @@ function heat(share, dark) {
   const at = Math.min(stops.length - 2, Math.floor(t * (stops.length - 1)));
   const part = t * (stops.length - 1) - at;
   return stops[at].map((one, i) => one + part * (stops[at + 1][i] - one));
-}
-
-// Power of a real signal at the frequencies of its samples, by the fast Fourier transform.
-function spectrum(signal, window) {
-  const size = signal.length;
-  const [re, im] = [new Float32Array(size), new Float32Array(size)];
-  let mean = 0;
-  for (const value of signal) mean += value / size;
-  const bits = Math.log2(size);
-  for (let i = 0; i < size; i++) {
-    let j = 0;
-    for (let b = 0; b < bits; b++) j |= ((i >> b) & 1) << (bits - 1 - b);
-    re[j] = (signal[i] - mean) * window[i];
-  }
-  for (let half = 1; half < size; half *= 2) {
-    for (let k = 0; k < half; k++) {
-      const [c, s] = [Math.cos((-Math.PI * k) / half), Math.sin((-Math.PI * k) / half)];
-      for (let i = k; i < size; i += 2 * half) {
-        const j = i + half;
-        const [x, y] = [re[j] * c - im[j] * s, re[j] * s + im[j] * c];
-        re[j] = re[i] - x;
-        im[j] = im[i] - y;
-        re[i] += x;
-        im[i] += y;
-      }
-    }
-  }
-  return Float32Array.from({ length: size / 2 }, (_, i) => re[i] ** 2 + im[i] ** 2);
 }

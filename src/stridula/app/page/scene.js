@@ -20,6 +20,21 @@ export class Scene {
     this.set({ overrides: { ...this.now.overrides, [key]: value } }, goesOn);
   }
 
+  // Put back what was refused of what was sent, unless it was turned again since.
+  putBack(sent, refused, kept) {
+    if ("" in refused) {
+      if (sent.case === this.now.case && sent.text === this.now.text) this.now = { ...structuredClone(kept), case: kept.text === null ? kept.case : "" };
+      return;
+    }
+    const overrides = { ...this.now.overrides };
+    for (const key of Object.keys(refused)) {
+      if (!(key in overrides) || overrides[key] !== sent.overrides[key]) continue;
+      if (key in kept.overrides) overrides[key] = kept.overrides[key];
+      else delete overrides[key];
+    }
+    this.now = { ...this.now, overrides };
+  }
+
   // Another kind of table: what belonged to the old one goes.
   kind(key, value, begins) {
     const table = key.slice(0, key.lastIndexOf(".") + 1);

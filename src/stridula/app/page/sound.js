@@ -7,6 +7,13 @@ export class Sound {
     this.fullScale = 1;
   }
 
+  // Why this page can have no sound, nothing if it can: browsers keep the thread of the sound to secure addresses.
+  static missing(secure, { hostname, port }) {
+    if (secure) return "";
+    const local = `localhost:${port}`;
+    return `Sound needs a secure address, which this is not: open ${local} on the machine that serves the page; elsewhere, run ssh -L ${port}:localhost:${port} ${hostname} and open ${local} there.`;
+  }
+
   async turn(on) {
     if (on === this.on) return;
     this.on = on;

@@ -1,20 +1,17 @@
 // The thread that speaks with the server: it asks for the next parts in time, hands sound to the player and pictures to
 // the page, so that neither waits for the other.
 import { parts } from "./parts.js";
+import { Queue } from "./queue.js";
 
 const PART = 480; // Samples of a part while live.
 const FEWEST = 2; // Parts asked for at once.
 const RATE = 48000;
-const BUFFER = 0.08; // Sound kept ahead [s]; more after a drop-out, and less again after a while without one.
-const MOST_BUFFER = 0.1;
-const MORE = 0.01; // How much more after a drop-out [s].
-const CALM = 20000; // Time without a drop-out after which half of that is let go [ms].
 const RETRY = 1000; // Time between attempts to come back [ms].
 const FRAME = 1000 / 60;
 
 let socket, player, url;
-let buffer = BUFFER;
-let calm;
+const queue = new Queue();
+let behind = false;
 let pace = { mode: "live", slow: 1 };
 let asked = 0; // Samples asked for that have not come.
 let left = 0; // Samples the player has.
@@ -49,9 +46,8 @@ self.onmessage = ({ data }) => {
   } else if (data.step) {
     pull(1, 1);
   } else if (data.more) {
-    buffer = Math.min(MOST_BUFFER, buffer + MORE);
-    clearInterval(calm);
-    calm = setInterval(() => (buffer = Math.max(BUFFER, buffer - MORE / 2)), CALM);
+    queue.drop(performance.now());
+    judge();
   } else if (data.say) {
     if (data.say.type === "scene") scene(data.say);
     else say(data.say);
@@ -133,7 +129,7 @@ function feed() {
     const now = performance.now();
     if (!player) left = Math.max(0, left - ((now - clock) * RATE) / 1000);
     clock = now;
-    const missing = buffer * RATE - left;
+    const missing = queue.length * RATE - left;
     if (missing >= FEWEST * PART) {
       const count = Math.min(10, Math.floor(missing / PART));
       if (!player) left += count * PART;
@@ -151,6 +147,15 @@ function feed() {
   }
 }
 
+// Say where it changed whether the machine keeps up.
+function judge() {
+  const now = performance.now();
+  queue.rest(now);
+  if (queue.isBehind(now) === behind) return;
+  behind = !behind;
+  postMessage({ behind });
+}
+
 function pull(count, samples) {
   if (asked) return;
   asked = count * samples;
@@ -160,3 +165,5 @@ function pull(count, samples) {
 setInterval(() => {
   if (!player || pace.mode !== "live") feed();
 }, 10);
+
+setInterval(judge, 1000);

@@ -1,0 +1,102 @@
+"""What is played of what a page asks for: as much of it as can be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ..scenarios.errors import ScenarioError
+from .messages import Scene
+from .playable import PRESETS, Playable, playable
+
+
+@dataclass(frozen=True)
+class Held:
+    """What is played of a scene.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene without what was refused.
+    played : Playable
+        What it is.
+    refused : dict
+        What is wrong, a list of lines by key; the key is empty where case or text are refused.
+    problems : list of str
+        What is wrong with the scene as a whole.
+    """
+
+    scene: Scene
+    played: Playable
+    refused: dict[str, list[str]]
+    problems: list[str]
+
+
+def held(wanted: Scene, last: Scene | None) -> Held:
+    """Return as much of a scene as can be played.
+
+    A value that is refused stays as it was last, or as the case has it; the others are played. Where nothing is played
+    yet, the first case takes the place of one that cannot be.
+
+    Parameters
+    ----------
+    wanted : Scene
+        What is asked for.
+    last : Scene or None
+        What is played, if anything.
+
+    Raises
+    ------
+    ScenarioError
+        If nothing of it can be played, with what is wrong with all of it.
+    """
+    try:
+        return Held(wanted, _playable(wanted), {}, [])
+    except ScenarioError as error:
+        problems = list(error.problems)
+    before = last.overrides if last is not None and is_of_one_case(wanted, last) else {}
+    turned = [key for key, value in wanted.overrides.items() if before.get(key) != value]
+    for key in turned:
+        # One that is alone to blame.
+        found = _tried(_put_back(wanted, before, [key]))
+        if found is not None:
+            return Held(*found, {key: problems}, problems)
+    refused = {}
+    found = _tried(_put_back(wanted, before, turned))
+    if found is None:
+        if last is not None:
+            raise ScenarioError(problems)
+        first = Scene(type="scene", revision=wanted.revision, case=PRESETS[0])
+        return Held(first, _playable(first), {"": problems}, problems)
+    for key in turned:
+        try:
+            more = found[0].model_copy(update={"overrides": {**found[0].overrides, key: wanted.overrides[key]}})
+            found = more, _playable(more)
+        except ScenarioError as error:
+            refused[key] = list(error.problems)
+    return Held(*found, refused, problems)
+
+
+def is_of_one_case(one: Scene, other: Scene) -> bool:
+    """Return whether two scenes differ in values alone."""
+    return one.text == other.text and (one.text is not None or one.case == other.case)
+
+
+def _put_back(scene: Scene, before: Mapping[str, Any], keys: Iterable[str]) -> Scene:
+    kept = {key: value for key, value in scene.overrides.items() if key not in keys}
+    return scene.model_copy(update={"overrides": kept | {key: before[key] for key in keys if key in before}})
+
+
+def _tried(scene: Scene) -> tuple[Scene, Playable] | None:
+    try:
+        return scene, _playable(scene)
+    except ScenarioError:
+        return None
+
+
+def _playable(scene: Scene) -> Playable:
+    try:
+        return playable(scene.case, scene.text, scene.overrides)
+    except RecursionError:
+        raise ScenarioError(["scenario must not be nested so deep"]) from None

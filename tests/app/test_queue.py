@@ -1,0 +1,60 @@
+"""How much sound the page keeps ahead."""
+
+from __future__ import annotations
+
+import pytest
+
+from .scripting import result_of
+
+QUEUE = """import { Queue } from "./queue.js";
+const queue = new Queue();
+result = given.map(([what, now]) => {
+  if (what === "drop") queue.drop(now);
+  else queue.rest(now);
+  return [queue.length, queue.isBehind(now)];
+});"""
+
+
+def test_the_queue_grows_while_drop_outs_go_on_and_shrinks_again(tmp_path):
+    drops = [["drop", 1000.0 * k] for k in range(1, 31)]
+    rests = [["rest", 30_000.0 + 10_000.0 * k] for k in range(1, 101)]
+    found = result_of(tmp_path, QUEUE, [["rest", 0.0], *drops, *rests])
+    lengths = [length for length, _ in found]
+    assert lengths[:3] == pytest.approx([0.08, 0.10, 0.12])
+    assert lengths[30] == max(lengths) == pytest.approx(0.3)
+    calm = lengths[30:]
+    assert calm == sorted(calm, reverse=True)
+    assert lengths[31] == pytest.approx(0.3)
+    assert lengths[32] == pytest.approx(0.295)
+    assert lengths[-1] == pytest.approx(0.08)
+
+
+def test_a_machine_that_cannot_keep_up_is_told_so_until_it_can(tmp_path):
+    drops = [["drop", 1000.0 * k] for k in range(1, 13)]
+    behind = [said for _, said in result_of(tmp_path, QUEUE, [*drops, ["rest", 21_000.0], ["rest", 22_100.0]])]
+    assert behind == [False] * 10 + [True, True, True, False]
+
+
+MAP = """import { RegimeMap } from "./map.js";
+const one = () => ({ addEventListener() {}, replaceChildren() {}, dataset: {}, checked: true });
+globalThis.document = { getElementById: one };
+globalThis.Option = class {};
+const timers = [];
+globalThis.setTimeout = (then) => timers.push(then);
+globalThis.clearTimeout = () => {};
+const numbers = ["a", "b"].map((key) => ({ key, label: key, low: 0, high: 1, scale: 1 }));
+const said = [];
+const controls = { numbers: () => numbers, values: { a: 0.5, b: 0.5 } };
+const map = new RegimeMap(null, controls, {}, ({ type }) => said.push(type));
+map.hold();
+map.follow();
+timers.pop()();
+map.hold();
+timers.pop()();
+map.done();
+map.hold();
+result = said;"""
+
+
+def test_a_map_that_is_computed_waits_after_a_drop_out_and_then_goes_on(tmp_path):
+    assert result_of(tmp_path, MAP) == ["no map", "map", "no map", "map"]
