@@ -50,6 +50,32 @@ def test_show_prints_toml_and_schema_json(stridula):
     assert json.loads(out) == st.scenario_schema()
 
 
+def test_a_scenario_and_the_schema_are_written_to_a_file(stridula, tmp_path):
+    for words in (("show", "squeal"), ("schema",)):
+        printed = stridula(*words)[1]
+        assert stridula(*words, "--out", "text") == (0, "", "")
+        assert (tmp_path / "text").read_bytes() == printed.encode()
+    assert stridula("show", "squeal", "--out", "none/a.toml")[0] == 2
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "cp932", "ascii"])
+def test_texts_do_not_hang_on_the_code_page(encoding):
+    surroundings = os.environ | {"PYTHONIOENCODING": encoding}
+    printed = {}
+    for verb in (("show", "squeal"), ("schema",), ("list",)):
+        command = [sys.executable, "-c", "from stridula.cli import main; main()", *verb]
+        printed[verb[0]] = subprocess.run(command, env=surroundings, capture_output=True, check=True).stdout
+    assert printed["show"].decode() == st.scenario_text("squeal")
+    assert json.loads(printed["schema"].decode()) == st.scenario_schema()
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-8-sig"])
+def test_scenarios_with_a_mark_of_their_encoding_are_read(encoding, tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(st.scenario_text("squeal"), encoding=encoding)
+    assert st.load_scenario(path).system == st.load_scenario("squeal").system
+
+
 def test_a_run_leaves_garbage_collection_on(stridula):
     assert stridula("run", "squeal", *SHORT)[0] == 0
     assert gc.isenabled()
@@ -119,7 +145,7 @@ BAD = [
 )
 def test_bad_input_is_one_line_and_writes_nothing(stridula, tmp_path, arguments, message):
     (tmp_path / "empty.toml").touch()
-    (tmp_path / "binary.toml").write_bytes(b"\xff\x00\x81")
+    (tmp_path / "binary.toml").write_bytes(b"\xff\x00\x80")
     (tmp_path / "syntax.toml").write_text("a = 1\nb = ]\n")
     (tmp_path / "nan.toml").write_text('base = "squeal"\n[contact]\ngap = nan\n')
     before = sorted(tmp_path.iterdir())

@@ -446,7 +446,7 @@ def test_a_bad_file_says_what_is_wrong(text, message, tmp_path):
 
 
 def test_what_is_no_scenario_file_is_refused(tmp_path):
-    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00\x81")
+    (tmp_path / "binary.toml").write_bytes(b"\xff\x00\x80")
     (tmp_path / "cut.nc").write_bytes(b"\x89HDF\r\n\x1a\nrest")
     for name, message in [
         ("binary.toml", "text file in UTF-8"),

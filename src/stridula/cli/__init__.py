@@ -7,6 +7,7 @@ import gc
 import sys
 
 from .commands import app
+from .consoles import print_anything
 from .exits import GOOD, INTERRUPTED, failed, say
 
 
@@ -14,6 +15,7 @@ def main() -> None:
     """Run `stridula` and exit: 0 good, 1 a failed run or a full disk, 2 bad input, 130 interrupted."""
     # At its end Python would look for garbage in all that was imported, for longer than a short run takes.
     atexit.register(gc.freeze)
+    print_anything()
     code = _run()
     try:
         if sys.stdout is not None:

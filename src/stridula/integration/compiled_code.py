@@ -18,7 +18,8 @@ def find_a_place() -> None:
     except RuntimeError:
         folder = tempfile.mkdtemp(prefix="stridula-")
         atexit.register(shutil.rmtree, folder, ignore_errors=True)
-        os.environ["NUMBA_CACHE_DIR"] = numba.config.CACHE_DIR = folder
+        os.environ["NUMBA_CACHE_DIR"] = folder
+        numba.config.CACHE_DIR = folder  # type: ignore[attr-defined]
         warnings.warn(
             "compiled code cannot be kept, neither beside the package nor in the home folder: each start compiles "
             "again, which is slower; set NUMBA_CACHE_DIR to a folder that can be written",

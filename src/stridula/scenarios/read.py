@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from pathlib import Path
 from typing import Any
 
@@ -95,9 +96,12 @@ def _file_tables(path: Path) -> dict[str, Any]:
         title, text = scenario_of(path)
         return {"title": title} | _parsed(text, str(path))
     try:
-        text = content.decode("utf-8-sig")
+        # PowerShell writes UTF-16 and says so in the first two bytes.
+        text = content.decode("utf-16" if content.startswith((BOM_UTF16_LE, BOM_UTF16_BE)) else "utf-8-sig")
     except UnicodeDecodeError:
-        raise ScenarioError([f"scenario must be a text file in UTF-8, got {str(path)!r}"]) from None
+        raise ScenarioError(
+            [f"scenario must be a text file in UTF-8 or, with a mark, UTF-16, got {str(path)!r}"]
+        ) from None
     tables = _parsed(text, str(path))
     if not tables:
         raise ScenarioError(
