@@ -18,6 +18,7 @@ import scipy.io
 import stridula as st
 from stridula.cli import running, sweeping
 from stridula.cli.card import card
+from stridula.cli.doubts import doubts
 from stridula.plot.colours import REGIME_COLOURS
 from stridula.studies.measures import MEASURES, Column, Measure
 
@@ -74,6 +75,26 @@ def test_scenarios_with_a_mark_of_their_encoding_are_read(encoding, tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(st.scenario_text("squeal"), encoding=encoding)
     assert st.load_scenario(path).system == st.load_scenario("squeal").system
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"young": 210, "cutoff": 10.0}, "Young's modulus of 210 Pa; did you mean GPa?"),
+        ({"density": 7.8}, "density of 7.8 kg/m3; did you mean g/cm3?"),
+        ({"section.height": 8.624}, "8.624 m thick and "),
+        ({"track.length": 1360.0}, "modes below its cutoff"),
+    ],
+)
+def test_values_that_are_hardly_meant_are_named(changes, words):
+    assert any(words in line for line in doubts(st.load_scenario("squeal", changes).system))
+
+
+def test_shipped_scenarios_are_beyond_doubt_and_the_card_shows_what_is_not(stridula):
+    assert not any(doubts(st.load_scenario(case.name).system) for case in st.list_scenarios())
+    assert "doubtful" not in stridula("run", "squeal", *SHORT)[1]
+    out = stridula("run", "squeal", *SHORT, "--set", "density=7.8", "--set", "cutoff=5e3")[1]
+    assert "did you mean g/cm3?" in out
 
 
 def test_a_run_leaves_garbage_collection_on(stridula):
