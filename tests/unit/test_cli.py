@@ -7,6 +7,7 @@ import gc
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import tomllib
@@ -300,8 +301,13 @@ def interrupt(*arguments, **fields):
     raise KeyboardInterrupt
 
 
-def test_ctrl_c_keeps_what_was_recorded(stridula, monkeypatch):
-    monkeypatch.setattr(running.Progress, "update", interrupt)
+def terminate(*arguments, **fields):
+    signal.raise_signal(signal.SIGTERM)
+
+
+@pytest.mark.parametrize("stop", [interrupt, terminate])
+def test_ctrl_c_and_sigterm_keep_what_was_recorded(stridula, monkeypatch, stop):
+    monkeypatch.setattr(running.Progress, "update", stop)
     code, out, err = stridula("run", "squeal", "--duration", "0.25", "--out", "part.nc")
     assert code == 130
     assert err.startswith("stridula: interrupted at t = ")

@@ -8,7 +8,7 @@ import sys
 
 from .commands import app
 from .consoles import print_anything
-from .exits import GOOD, INTERRUPTED, failed, say
+from .exits import GOOD, INTERRUPTED, failed, say, terminated_as_interrupted
 
 
 def main() -> None:
@@ -16,7 +16,8 @@ def main() -> None:
     # At its end Python would look for garbage in all that was imported, for longer than a short run takes.
     atexit.register(gc.freeze)
     print_anything()
-    code = _run()
+    with terminated_as_interrupted():
+        code = _run()
     try:
         if sys.stdout is not None:
             sys.stdout.flush()

@@ -20,6 +20,9 @@ from .shipped import shipped
 
 FILES = ("file", "mass", "stiffness", "damping")
 
+# Scenarios take 5; what recurses over tables takes far more.
+DEEPEST = 50
+
 
 def read_tables(name_or_path: str | Path | xr.Dataset) -> dict[str, Any]:
     """Return the tables of a shipped case, a scenario file or a record, with those of its base.
@@ -137,10 +140,22 @@ def _files_of(body: Any) -> dict[str, str]:
 
 def _parsed(text: str, name: str) -> dict[str, Any]:
     try:
-        return spelled_out(tomllib.loads(text))
+        tables = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         where = str(error).replace("at end of document", f"at its end, line {text.count(chr(10))}")
         raise ScenarioError([f"scenario must be TOML, got {name!r}: {where}"]) from None
+    if _is_deeper(tables, DEEPEST):
+        raise ScenarioError([f"scenario must nest its tables at most {DEEPEST} deep, got {name!r} with more"])
+    return spelled_out(tables)
+
+
+def _is_deeper(tables: dict[str, Any], depth: int) -> bool:
+    """Return whether tables and lists lie in each other deeper than that."""
+    level: list[Any] = [tables]
+    for _ in range(depth):
+        inside = [value.values() if isinstance(value, dict) else value for value in level]
+        level = [value for values in inside for value in values if isinstance(value, (dict, list))]
+    return bool(level)
 
 
 def _with_base(tables: dict[str, Any], folder: Path, above: tuple[Path, ...]) -> dict[str, Any]:
