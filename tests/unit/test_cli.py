@@ -133,6 +133,8 @@ BAD = [
     (("run", "sqeal"), "did you mean 'squeal'?"),
     (("run", "none.toml"), "must be a file"),
     (("run", "."), "a directory"),
+    (("run", "squeal", "--out", "a.csv"), "--out must be a NetCDF file, .nc, got 'a.csv'"),
+    (("run", "squeal", "--out", "a.PNG"), "--out must be a NetCDF file, .nc, got 'a.PNG'"),
     (("run", "empty.toml"), "must not be empty"),
     (("run", "binary.toml"), "UTF-8"),
     (("run", "syntax.toml"), "line 2"),

@@ -22,6 +22,9 @@ from .doubts import doubts
 from .exits import FAILED, INTERRUPTED, Stopped
 from .outputs import check_outputs
 
+# What a record is not written as, whatever its name says.
+OTHER_FORMATS = (".csv", ".mat", ".png", ".pdf", ".svg", ".wav", ".toml")
+
 
 def run_scenario(
     name: str, overrides: dict[str, Any], out: str | None, plot: str | None, wav: str | None = None
@@ -38,6 +41,10 @@ def run_scenario(
         On Ctrl-C, or if the run failed, once what was recorded is written.
     """
     check_outputs(out, plot)
+    if out is not None and Path(out).suffix.lower() in OTHER_FORMATS:
+        raise ValueError(
+            f"--out must be a NetCDF file, .nc, got {out!r}; `stridula export` writes tables, --plot figures"
+        )
     scenario = load_scenario(name, overrides)
     if wav is not None:
         _check_wav(wav, name, out, plot, scenario.system)
