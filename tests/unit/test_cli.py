@@ -7,6 +7,7 @@ import gc
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import tomllib
@@ -18,6 +19,7 @@ import scipy.io
 import stridula as st
 from stridula.cli import running, sweeping
 from stridula.cli.card import card
+from stridula.cli.doubts import doubts
 from stridula.plot.colours import REGIME_COLOURS
 from stridula.studies.measures import MEASURES, Column, Measure
 
@@ -48,6 +50,52 @@ def test_show_prints_toml_and_schema_json(stridula):
     code, out, _ = stridula("schema")
     assert code == 0
     assert json.loads(out) == st.scenario_schema()
+
+
+def test_a_scenario_and_the_schema_are_written_to_a_file(stridula, tmp_path):
+    for words in (("show", "squeal"), ("schema",)):
+        printed = stridula(*words)[1]
+        assert stridula(*words, "--out", "text") == (0, "", "")
+        assert (tmp_path / "text").read_bytes() == printed.encode()
+    assert stridula("show", "squeal", "--out", "none/a.toml")[0] == 2
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "cp932", "ascii"])
+def test_texts_do_not_hang_on_the_code_page(encoding):
+    surroundings = os.environ | {"PYTHONIOENCODING": encoding}
+    printed = {}
+    for verb in (("show", "squeal"), ("schema",), ("list",)):
+        command = [sys.executable, "-c", "from stridula.cli import main; main()", *verb]
+        printed[verb[0]] = subprocess.run(command, env=surroundings, capture_output=True, check=True).stdout
+    assert printed["show"].decode() == st.scenario_text("squeal")
+    assert json.loads(printed["schema"].decode()) == st.scenario_schema()
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-8-sig"])
+def test_scenarios_with_a_mark_of_their_encoding_are_read(encoding, tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(st.scenario_text("squeal"), encoding=encoding)
+    assert st.load_scenario(path).system == st.load_scenario("squeal").system
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"young": 210, "cutoff": 10.0}, "Young's modulus of 210 Pa; did you mean GPa?"),
+        ({"density": 7.8}, "density of 7.8 kg/m3; did you mean g/cm3?"),
+        ({"section.height": 8.624}, "8.624 m thick and "),
+        ({"track.length": 1360.0}, "modes below its cutoff"),
+    ],
+)
+def test_values_that_are_hardly_meant_are_named(changes, words):
+    assert any(words in line for line in doubts(st.load_scenario("squeal", changes).system))
+
+
+def test_shipped_scenarios_are_beyond_doubt_and_the_card_shows_what_is_not(stridula):
+    assert not any(doubts(st.load_scenario(case.name).system) for case in st.list_scenarios())
+    assert "doubtful" not in stridula("run", "squeal", *SHORT)[1]
+    out = stridula("run", "squeal", *SHORT, "--set", "density=7.8", "--set", "cutoff=5e3")[1]
+    assert "did you mean g/cm3?" in out
 
 
 def test_a_run_leaves_garbage_collection_on(stridula):
@@ -85,6 +133,8 @@ BAD = [
     (("run", "sqeal"), "did you mean 'squeal'?"),
     (("run", "none.toml"), "must be a file"),
     (("run", "."), "a directory"),
+    (("run", "squeal", "--out", "a.csv"), "--out must be a NetCDF file, .nc, got 'a.csv'"),
+    (("run", "squeal", "--out", "a.PNG"), "--out must be a NetCDF file, .nc, got 'a.PNG'"),
     (("run", "empty.toml"), "must not be empty"),
     (("run", "binary.toml"), "UTF-8"),
     (("run", "syntax.toml"), "line 2"),
@@ -119,7 +169,7 @@ BAD = [
 )
 def test_bad_input_is_one_line_and_writes_nothing(stridula, tmp_path, arguments, message):
     (tmp_path / "empty.toml").touch()
-    (tmp_path / "binary.toml").write_bytes(b"\xff\x00\x81")
+    (tmp_path / "binary.toml").write_bytes(b"\xff\x00\x80")
     (tmp_path / "syntax.toml").write_text("a = 1\nb = ]\n")
     (tmp_path / "nan.toml").write_text('base = "squeal"\n[contact]\ngap = nan\n')
     before = sorted(tmp_path.iterdir())
@@ -253,8 +303,13 @@ def interrupt(*arguments, **fields):
     raise KeyboardInterrupt
 
 
-def test_ctrl_c_keeps_what_was_recorded(stridula, monkeypatch):
-    monkeypatch.setattr(running.Progress, "update", interrupt)
+def terminate(*arguments, **fields):
+    signal.raise_signal(signal.SIGTERM)
+
+
+@pytest.mark.parametrize("stop", [interrupt, terminate])
+def test_ctrl_c_and_sigterm_keep_what_was_recorded(stridula, monkeypatch, stop):
+    monkeypatch.setattr(running.Progress, "update", stop)
     code, out, err = stridula("run", "squeal", "--duration", "0.25", "--out", "part.nc")
     assert code == 130
     assert err.startswith("stridula: interrupted at t = ")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 import soundfile
@@ -134,6 +136,43 @@ def test_what_a_coarse_record_misses_is_said(stridula):
     code, out, err = stridula("sound", "coarse.nc")
     assert (code, err) == (0, "")
     assert "modes above what the record's sample rate carries are left out" in out
+
+
+def with_another_track_on_the_way(records):
+    """Return a record whose track was changed halfway, the two tracks, and when."""
+    run = records["run.nc"].copy(deep=True)
+    half = float(run.time[run.sizes["time"] // 2])
+    scenarios = [st.load_scenario(records["run.nc"], {"track.damping": damping}) for damping in (0.01, 0.03)]
+    texts = [s.simulate(duration=1e-4).attrs["scenario"] for s in scenarios]
+    run.attrs["changes"] = json.dumps(
+        [{"time": time, "scenario": text} for time, text in zip((0.0, half), texts, strict=True)]
+    )
+    return run, [s.system.track for s in scenarios], half
+
+
+def test_a_record_whose_track_was_changed_is_sounded_in_parts_only(stridula, records, tmp_path):
+    run, tracks, half = with_another_track_on_the_way(records)
+    message = rf"run must have the same track all the time to be heard, got another one from {half:.6g} s on"
+    with pytest.raises(ValueError, match=f"^{message}"):
+        st.radiate(run, tracks[1])
+    st.save(run, tmp_path / "changed.nc")
+    code, out, err = stridula("sound", "changed.nc")
+    assert (code, out) == (2, "")
+    assert message in err
+    for track, other, span in zip(tracks, tracks[::-1], (slice(0, half), slice(half + 1e-9, None)), strict=True):
+        part = run.sel(time=span)
+        mine, wrong = st.radiate(part, track), st.radiate(part, other)
+        assert not np.array_equal(mine, wrong)
+        st.save(part, tmp_path / "part.nc")
+        stridula("sound", "part.nc", "--wav", "part.wav", "--full-scale", "200 Pa", "--subtype", "FLOAT")
+        st.write_wav(tmp_path / "mine.wav", mine, full_scale=200.0, subtype="FLOAT")
+        np.testing.assert_array_equal(*(soundfile.read(tmp_path / f"{name}.wav")[0] for name in ("part", "mine")))
+
+
+def test_damaged_changes_are_refused(records):
+    run = records["run.nc"].assign_attrs(changes="[{}]")
+    with pytest.raises(ValueError, match=r"^run must have the attribute changes as it was saved"):
+        st.radiate(run, st.load_scenario(run).system.track)
 
 
 IN = ("sound", "run.nc")

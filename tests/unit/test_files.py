@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import errno
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -106,3 +108,26 @@ def test_what_is_no_record_is_refused(record, tmp_path):
             st.load(tmp_path / name)
     with pytest.raises(FileNotFoundError, match=r"cannot read .*no such file"):
         st.load(tmp_path / "none.nc")
+
+
+NOWHERE = """
+import os, warnings
+from numba.core import caching
+for locator in (caching.InTreeCacheLocator, caching.UserWideCacheLocator):
+    locator.from_function = classmethod(lambda *given: None)
+import stridula.integration
+print(os.environ["NUMBA_CACHE_DIR"])
+print(os.path.isdir(os.environ["NUMBA_CACHE_DIR"]))
+"""
+
+
+def test_a_package_that_nobody_can_write_beside_is_imported_with_one_warning():
+    surroundings = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    found = subprocess.run(
+        [sys.executable, "-c", NOWHERE], env=surroundings, capture_output=True, text=True, check=True
+    )
+    folder, was_there = found.stdout.split()
+    assert was_there == "True"
+    assert not os.path.exists(folder)
+    assert found.stderr.count("compiled code cannot be kept") == 1
+    assert "set NUMBA_CACHE_DIR" in found.stderr

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tracemalloc
 import zipfile
 
 import numpy as np
@@ -258,6 +259,7 @@ def one_matrix(tmp_path, content):
 
 
 MARKET = "%%MatrixMarket matrix coordinate real general\n"
+ARRAY = "%%MatrixMarket matrix array real symmetric\n"
 TEXTS = {
     "empty": ("", "the file is empty"),
     "comments only": ("** nothing\n*MATRIX\n", "it holds no number"),
@@ -287,8 +289,19 @@ TEXTS = {
     "twice": ("1 1 5.0\n2 2 5.0\n1 1 5.0\n", r"each entry must stand once (assembled matrices), got two at 1, 1"),
     "twice labels": ("1,2,1,2,5.0\n1,2,1,2,6.0\n", r"each entry must stand once .*, got two at (1, 2), (1, 2)"),
     "market header": ("%%MatrixMarket tensor\n1 1 1\n", ""),
-    "market cut": (MARKET + "3 3 3\n1 1 1.0\n", ""),
-    "market text": (MARKET + "3 3 1\n1 one 1.0\n", ""),
+    "market cut": (MARKET + "3 3 3\n1 1 1.0\n", "it must hold 3 entries, as its header says, it holds 1"),
+    "market cut to its header": (MARKET + "3 3 3\n", "it must hold 3 entries, as its header says, it holds none"),
+    "market more": (MARKET + "3 3 1\n1 1 1.0\n2 2 1.0\n", "it must hold 1 entries, as its header says, it holds more"),
+    "market text": (MARKET + "3 3 1\n1 one 1.0\n", "line 3 must be 'row column value', got '1 one 1.0'"),
+    "market exponent": (MARKET + "%\n3 3 2\n1 1 1.0\n2 2 1.5E", "line 5 must be 'row column value', got '2 2 1.5E'"),
+    "market exponent within": (MARKET + "3 3 2\n1 1 1.0E\n2 2 1.5\n", "line 3 must be .*, got '1 1 1.0E'"),
+    "market sign": (MARKET + "3 3 2\n1 1 1.0\n2 2 1.5E+", "line 4 must be .*, got '2 2 1.5E.'"),
+    "market beyond": (MARKET + "3 3 1\n1 4 1.0\n", "rows and columns must be numbered from 1 to 3, got 4"),
+    "market row zero": (MARKET + "3 3 1\n0 1 1.0\n", "rows and columns must be numbered from 1 to 3, got 0"),
+    "market skew": (MARKET.replace("general", "skew-symmetric") + "3 3 1\n2 1 1.0\n", ".* it says skew-symmetric"),
+    "market array cut": (ARRAY + "3 3\n1\n0\n0\n1\n", "it must hold 6 entries, as its header says, it holds 4"),
+    "market array exponent": (ARRAY + "3 3\n1\n0\n0\n1\n0\n1.5E", "line 8 must be one number, got '1.5E'"),
+    "market array on a line": (ARRAY + "3 3\n1 0 0 1 0 1E", "line 3 must be one number, got '1 0 0 1 0 1E'"),
     "market complex": (MARKET.replace("real", "complex") + "3 3 1\n1 1 1.0 0.0\n", ".* it says 1 complex"),
     "market pattern": (MARKET.replace("real", "pattern") + "3 3 1\n1 1\n", ".* it says 1 pattern"),
     "market entries": (MARKET + "3 3 999999999999\n1 1 1.0\n", ".* at most 9 real entries, it says 999999999999 real"),
@@ -304,6 +317,27 @@ def test_bad_text_files_are_named_in_one_line(content, message, tmp_path):
         one_matrix(tmp_path, content)
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 400
+
+
+def test_market_files_are_refused_wherever_they_are_cut_within_a_word(tmp_path):
+    path = matrix_market(tmp_path / "whole.mtx", np.diag([1.5e-3, 2.5e10, 3.0]))
+    text = path.read_bytes().rstrip()
+    for end in range(1, len(text)):
+        if text[end - 1 : end] in b"eE+-" or text.count(b"\n", 0, end) < text.count(b"\n"):
+            with pytest.raises(ValueError, match=r"^(cannot read|mass must|points)"):
+                one_matrix(tmp_path, text[:end])
+
+
+def test_rows_that_nobody_names_are_refused_before_there_is_room_for_them(tmp_path):
+    path = tmp_path / "m.txt"
+    path.write_text("1 1 1.0\n1000000000 1000000000 1.0\n")
+    tracemalloc.start()
+    with pytest.raises(
+        ValueError, match=r"^stiffness must have at most 4000 degrees of freedom, got 1000000000: reduce"
+    ):
+        ReducedBody.read(mass=path, stiffness=path, points=TIP)
+    assert tracemalloc.get_traced_memory()[1] < 1e8
+    tracemalloc.stop()
 
 
 def test_too_many_degrees_of_freedom_are_refused_before_anything_dense_is_made(tmp_path):

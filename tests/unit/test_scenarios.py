@@ -445,8 +445,17 @@ def test_a_bad_file_says_what_is_wrong(text, message, tmp_path):
     assert any(message in problem for problem in problems(text, tmp_path))
 
 
+@pytest.mark.parametrize(
+    "text", ["[" + ".".join("a" * 20_000) + "]\n", "a = " + "[" * 20_000, "a" + ".a" * 60 + " = 1\n"]
+)
+def test_tables_nested_thousands_deep_are_refused_in_one_line(text, tmp_path):
+    (problem,) = problems(text, tmp_path)
+    assert problem.startswith("scenario must ")
+    assert len(problem) < 300
+
+
 def test_what_is_no_scenario_file_is_refused(tmp_path):
-    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00\x81")
+    (tmp_path / "binary.toml").write_bytes(b"\xff\x00\x80")
     (tmp_path / "cut.nc").write_bytes(b"\x89HDF\r\n\x1a\nrest")
     for name, message in [
         ("binary.toml", "text file in UTF-8"),

@@ -11,6 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import scipy.signal
+import xarray as xr
 from physics.cases import (
     CASES,
     SCHEME_NAMES,
@@ -429,14 +430,56 @@ def test_a_start_of_another_run_is_refused(change):
         ("state_carried", lambda state: state[:, :-3], r"state_carried of shape \(1, 12\), .*, got \(1, 9\)"),
         ("state_energies", lambda state: state[:-1], "state_energies of shape"),
         ("state_modal", lambda state: state * np.nan, "a finite state_modal"),
+        ("state_modal", lambda state: state[0, 0], "the same number of modes"),
+        ("state_raw", lambda state: state[:-1], "state_raw of shape"),
+        ("state_raw", lambda state: state[:, 0], "the same number of probes"),
+        ("state_motion", lambda state: state[:2], "state_motion of shape"),
+        ("state_carried", lambda state: state.astype(str), "a finite state_carried"),
     ],
 )
 def test_a_state_of_another_shape_is_refused(name, change, words):
     """Compiled code would read beyond its end."""
     record = st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3)
-    damaged = record.drop_vars(name).assign({name: (record[name].dims, change(record[name].values))})
-    with pytest.raises(ValueError, match=f"^start must have {'' if words.startswith('a ') else 'a '}{words}"):
+    values = change(record[name].values)
+    damaged = record.drop_vars(name).assign({name: ([f"axis{k}" for k in range(values.ndim)], values)})
+    with pytest.raises(ValueError, match=f"^start must have {'a ' if words.startswith('state') else ''}{words}"):
         st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3, start=damaged)
+
+
+@pytest.mark.parametrize(
+    "name", ["ended", "scenario", "scheme", "step", "steps_per_sample", "last_step", "initial_energy", "state_layout"]
+)
+def test_a_start_without_an_attribute_is_refused_by_its_name(name):
+    record = st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3)
+    del record.attrs[name]
+    with pytest.raises(ValueError, match=rf"^start must have .*{name}"):
+        st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3, start=record)
+
+
+def test_a_start_whose_state_is_laid_out_otherwise_is_refused():
+    record = st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3)
+    record.attrs["state_layout"] += 1
+    with pytest.raises(
+        ValueError, match=r"^start must have the state_layout of this version, \d+, got \d+: a record of "
+    ):
+        st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3, start=record)
+
+
+@pytest.mark.parametrize("kept", [slice(0, 20), slice(0, -1), slice(0, 0)])
+def test_a_start_that_is_cut_is_refused(kept):
+    """It holds the state at its former end."""
+    record = st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3)
+    message = r"^start must be a record up to its final state, at 0\.001 s, got a last time of (none|0\.000\d+ s): "
+    with pytest.raises(ValueError, match=message) as caught:
+        st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3, start=record.isel(time=kept))
+    assert "\n" not in str(caught.value)
+
+
+def test_a_start_may_lack_its_first_samples():
+    record = st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3)
+    late = record.isel(time=slice(-5, None))
+    onwards = [st.simulate(SYSTEM, 1e-3, step=STEP, sample_rate=50e3, start=start) for start in (record, late)]
+    xr.testing.assert_equal(*onwards)
 
 
 def test_no_probes_and_no_drives_are_allowed():

@@ -12,6 +12,7 @@ import xarray as xr
 from ..bodies import ModalBeam, ModalPlate, Rectangle
 from ..bodies.modes import Array
 from ..checks import instance
+from ..records.changes import check_one_track
 from .air import Air
 from .convolution import Convolution
 from .delays import Response
@@ -72,7 +73,8 @@ def radiate(
     Raises
     ------
     ValueError
-        If the record diverged, holds NaN or fewer than 2 samples, or presses beyond the track; if a listener is in the
+        If the record diverged, holds NaN or fewer than 2 samples, or presses beyond the track; if its track was changed
+        while it was played; if a listener is in the
         surface, behind the baffle or on the beam; if the sample rate is more than the record supports, or too low.
     """
     air = Air() if air is None else air
@@ -83,6 +85,7 @@ def radiate(
     listeners = listeners_of(ears(track) if listener is None else listener)
     check_listeners(listeners, track, baffled)
     pressed = pressing(run, panel)
+    check_one_track(run)
     recorded = 1.0 / pressed.interval
     ratio = ratio_of(sample_rate, recorded, pressed.samples)
     bandwidth = bandwidth_of(ratio, recorded)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import io
+import itertools
 import os
 import zipfile
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
 import scipy.io
@@ -116,6 +117,9 @@ def read_matrices(paths: Mapping[str, str | os.PathLike[str]]) -> AlignedMatrice
     else:
         labels = None
         size = max(int(every.max(initial=-1)) + 1, *(file.size or 0 for file in files.values()))
+        if size > every.size:
+            # Rows that no file names; those that Abaqus constrains, and are left out, stand in one.
+            check_size("stiffness", size)
         matrices = {name: file.on(None, file.size or size) for name, file in files.items()}
     for name, matrix in matrices.items():
         if matrix.shape != matrices["stiffness"].shape:
@@ -226,15 +230,74 @@ def _one_matrix(name: str, path: str | os.PathLike[str]) -> _Entries:
 
 
 def _matrix_market(name: str, path: str | os.PathLike[str]) -> _Entries:
-    rows, columns, entries, _, field, _ = scipy.io.mminfo(os.fspath(path))
+    """Read a Matrix Market file; SciPy sees only its header: on one that is cut it may bring the process down."""
+    rows, columns, entries, layout, field, symmetry = scipy.io.mminfo(os.fspath(path))
     if rows != columns:
         raise ValueError(f"{name} must be square, got {rows} x {columns}")
     check_size(name, rows)
     if field not in ("real", "integer", "unsigned-integer") or entries > rows * columns:
         raise ValueError(f"the header must announce at most {rows * columns} real entries, it says {entries} {field}")
-    matrix = scipy.sparse.coo_array(scipy.io.mmread(os.fspath(path)))
-    at = np.asarray(matrix.row, dtype=np.int64), np.asarray(matrix.col, dtype=np.int64)
-    return _Entries(*at, matrix.data.astype(float), rows, False)
+    if symmetry not in ("general", "symmetric"):
+        raise ValueError(f"the header must announce a general or symmetric matrix, it says {symmetry}")
+    symmetric = symmetry == "symmetric"
+    if layout == "array":
+        count = rows * (rows + 1) // 2 if symmetric else entries
+        values = _market_numbers(path, 1, count)[:, 0]
+        # Column by column, of a symmetric matrix the lower triangle.
+        j, i = np.triu_indices(rows) if symmetric else np.divmod(np.arange(count), max(rows, 1))
+    else:
+        table = _market_numbers(path, 3, entries)
+        i, j = table[:, :2].T.astype(np.int64) - 1
+        values = table[:, 2]
+        if not ((i >= 0) & (i < rows) & (j >= 0) & (j < rows)).all():
+            raise ValueError(f"rows and columns must be numbered from 1 to {rows}, got {_beyond(i + 1, j + 1, rows)}")
+    kept = values != 0.0
+    i, j, values = i[kept], j[kept], values[kept]
+    if symmetric:
+        beside = i != j
+        i, j = np.append(i, j[beside]), np.append(j, i[beside])
+        values = np.append(values, values[beside])
+    return _Entries(i, j, values, rows, False)
+
+
+def _beyond(rows: Array, columns: Array, size: int) -> int:
+    numbers = np.append(rows, columns)
+    return int(numbers[(numbers < 1) | (numbers > size)][0])
+
+
+def _market_numbers(path: str | os.PathLike[str], width: int, count: int) -> Array:
+    """Return the numbers below the header of a Matrix Market file, which must be as many as it announces."""
+    if not count:
+        return np.empty((0, width))
+    try:
+        with _below_market_header(path) as (file, _):
+            # A line more than announced is enough to see that there are more.
+            lines = itertools.islice((line for line in file if line.partition("%")[0].strip()), count + 1)
+            first = next(lines, None)
+            if first is None:
+                raise ValueError(f"it must hold {count} entries, as its header says, it holds none")
+            table = np.loadtxt(itertools.chain([first], lines), comments="%", ndmin=2)
+    except ValueError as error:
+        raise ValueError(_bad_market_line(path, width) or str(error)) from error
+    if table.shape[1] != width or not _are_numbers(table[:, :-1]):
+        raise ValueError(_bad_market_line(path, width) or "it is no matrix")
+    if len(table) != count:
+        held = "more" if len(table) > count else len(table)
+        raise ValueError(f"it must hold {count} entries, as its header says, it holds {held}")
+    return table
+
+
+@contextmanager
+def _below_market_header(path: str | os.PathLike[str]) -> Iterator[tuple[TextIO, int]]:
+    """Open a Matrix Market file at its first entry; give it with the number of lines above."""
+    with open(path, encoding="latin-1") as file:
+        lines = enumerate(iter(file.readline, ""), 1)
+        yield file, next(number for number, line in lines if line.partition("%")[0].strip())
+
+
+def _bad_market_line(path: str | os.PathLike[str], width: int) -> str:
+    with _below_market_header(path) as (file, above):
+        return _first_bad(file, above, "%", None, width, "one number" if width == 1 else "'row column value'")
 
 
 def _abaqus(path: str | os.PathLike[str]) -> _Entries:
@@ -266,7 +329,7 @@ def _numbers(path: str | os.PathLike[str]) -> Array:
     except ValueError as error:
         raise ValueError(_bad_line(path) or str(error)) from error
     numbers = table[:, :-1]
-    if table.shape[1] != width or not ((numbers == np.round(numbers)) & (np.abs(numbers) < LARGEST_NUMBER)).all():
+    if table.shape[1] != width or not _are_numbers(numbers):
         raise ValueError(_bad_line(path) or "it is no matrix")
     return table
 
@@ -274,13 +337,22 @@ def _numbers(path: str | os.PathLike[str]) -> Array:
 def _bad_line(path: str | os.PathLike[str]) -> str:
     """Return what is wrong with the first line that is no entry of a matrix, nothing if all are."""
     comma, width = _layout(path)
+    wanted = "'node, dof, node, dof, value'" if width == 5 else "'row column value'"
     with open(path, encoding="latin-1") as file:
-        for number, line in enumerate(file, 1):
-            text = line.partition("*")[0].strip()
-            if text and not _is_entry(text.split(comma), width):
-                wanted = "'node, dof, node, dof, value'" if width == 5 else "'row column value'"
-                return f"line {number} must be {wanted}, got {text[:60]!r}"
+        return _first_bad(file, 0, "*", comma, width, wanted)
+
+
+def _first_bad(lines: Iterable[str], above: int, remark: str, comma: str | None, width: int, wanted: str) -> str:
+    for number, line in enumerate(lines, above + 1):
+        text = line.partition(remark)[0].strip()
+        if text and not _is_entry(text.split(comma), width):
+            return f"line {number} must be {wanted}, got {text[:60]!r}"
     return ""
+
+
+def _are_numbers(table: Array) -> bool:
+    """Return whether what numbers rows and columns is whole and not too large."""
+    return bool(((table == np.round(table)) & (np.abs(table) < LARGEST_NUMBER)).all())
 
 
 def _layout(path: str | os.PathLike[str]) -> tuple[str | None, int]:

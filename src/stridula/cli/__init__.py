@@ -7,14 +7,17 @@ import gc
 import sys
 
 from .commands import app
-from .exits import GOOD, INTERRUPTED, failed, say
+from .consoles import print_anything
+from .exits import GOOD, INTERRUPTED, failed, say, terminated_as_interrupted
 
 
 def main() -> None:
     """Run `stridula` and exit: 0 good, 1 a failed run or a full disk, 2 bad input, 130 interrupted."""
     # At its end Python would look for garbage in all that was imported, for longer than a short run takes.
     atexit.register(gc.freeze)
-    code = _run()
+    print_anything()
+    with terminated_as_interrupted():
+        code = _run()
     try:
         if sys.stdout is not None:
             sys.stdout.flush()

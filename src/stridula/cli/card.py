@@ -26,11 +26,13 @@ ENDINGS = {
 STEADY = 1e-9
 
 
-def print_card(record: xr.Dataset, title: str, files: list[str]) -> None:
-    """Print what came of a run."""
+def print_card(record: xr.Dataset, title: str, files: list[str], doubtful: list[str]) -> None:
+    """Print what came of a run, and which of its values are doubtful."""
     table = Table(title=escape(title), show_header=False, title_justify="left")
     for name, words in card(record).items():
         table.add_row(name, escape(words))
+    if doubtful:
+        table.add_row("doubtful", escape("\n".join(doubtful)))
     if files:
         table.add_row("written", escape("\n".join(files)))
     Console().print(table)

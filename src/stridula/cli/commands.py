@@ -21,6 +21,10 @@ app = typer.Typer(
 
 NameOrFile = Annotated[str, typer.Argument(metavar="NAME-OR-FILE", help="A shipped scenario, a TOML file or a record.")]
 
+TextFile = Annotated[
+    str | None, typer.Option("--out", metavar="FILE", help="Write it to a file, in UTF-8, instead of printing it.")
+]
+
 
 @app.callback(invoke_without_command=True)
 def start(
@@ -47,21 +51,23 @@ def list_() -> None:
 
 
 @app.command()
-def show(name: NameOrFile) -> None:
+def show(name: NameOrFile, out: TextFile = None) -> None:
     """Print a scenario as TOML, to copy and edit."""
     from ..scenarios.show import scenario_text
+    from .consoles import put
 
-    sys.stdout.write(scenario_text(name))
+    put(scenario_text(name), out)
 
 
 @app.command()
-def schema() -> None:
+def schema(out: TextFile = None) -> None:
     """Print the JSON schema of scenario files, for editors."""
     import json
 
     from ..scenarios.show import scenario_schema
+    from .consoles import put
 
-    print(json.dumps(scenario_schema(), indent=2, ensure_ascii=False))
+    put(json.dumps(scenario_schema(), indent=2, ensure_ascii=False) + "\n", out)
 
 
 @app.command()

@@ -1,8 +1,13 @@
-"""Where tables are printed."""
+"""Where tables and texts are printed."""
 
 from __future__ import annotations
 
+import io
+import sys
+
 from rich.console import Console
+
+from ..disk import write
 
 # Of a file or a pipe; a terminal has its own.
 WIDTH = 150
@@ -12,3 +17,20 @@ def wide_console() -> Console:
     """Return standard output, wide enough for tables where it is no terminal."""
     console = Console()
     return console if console.is_terminal else Console(width=WIDTH)
+
+
+def put(text: str, out: str | None) -> None:
+    """Write a text to a file, or to standard output, as UTF-8 whatever the encoding of the console."""
+    if out is not None:
+        write(out, text.encode())
+        return
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(encoding="utf-8")
+    sys.stdout.write(text)
+
+
+def print_anything() -> None:
+    """Let what a console cannot show be shown as a question mark instead of failing."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import errno
 import os
+import signal
 import sys
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from types import FrameType
 
 GOOD, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 # What befalls a file on the way; any other OSError is a path that was wrong from the start.
@@ -37,6 +40,28 @@ def failed(error: Exception) -> int:
     if isinstance(error, ValueError):
         return say(str(error), BAD_INPUT)
     raise error
+
+
+@contextmanager
+def terminated_as_interrupted() -> Iterator[None]:
+    """Take SIGTERM, by which clusters stop a job, for Ctrl-C, so that what is recorded is kept."""
+    process, before = os.getpid(), signal.getsignal(signal.SIGTERM)
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        if os.getpid() == process:
+            signal.raise_signal(signal.SIGINT)
+        else:
+            # A child is to end.
+            signal.signal(number, signal.SIG_DFL)
+            signal.raise_signal(number)
+
+    if before is signal.SIG_DFL:
+        signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        if before is signal.SIG_DFL:
+            signal.signal(signal.SIGTERM, before)
 
 
 def say(message: str, code: int) -> int:

@@ -16,10 +16,14 @@ from ..integration import Diverged, Interrupted
 from ..integration.watchers import Progress as Report
 from ..integration.watchers import Watcher
 from ..records.files import save
-from ..scenarios.load import load_scenario
+from ..scenarios.load import Scenario, load_scenario
 from .card import print_card
+from .doubts import doubts
 from .exits import FAILED, INTERRUPTED, Stopped
 from .outputs import check_outputs
+
+# What a record is not written as, whatever its name says.
+OTHER_FORMATS = (".csv", ".mat", ".png", ".pdf", ".svg", ".wav", ".toml")
 
 
 def run_scenario(
@@ -37,6 +41,10 @@ def run_scenario(
         On Ctrl-C, or if the run failed, once what was recorded is written.
     """
     check_outputs(out, plot)
+    if out is not None and Path(out).suffix.lower() in OTHER_FORMATS:
+        raise ValueError(
+            f"--out must be a NetCDF file, .nc, got {out!r}; `stridula export` writes tables, --plot figures"
+        )
     scenario = load_scenario(name, overrides)
     if wav is not None:
         _check_wav(wav, name, out, plot, scenario.system)
@@ -45,7 +53,7 @@ def run_scenario(
             record = scenario.simulate(watchers=[watcher])
     except (Interrupted, Diverged) as stop:
         interrupted = isinstance(stop, Interrupted)
-        kept = _finish(stop.record, scenario.title or name, out, None if interrupted else plot)
+        kept = _finish(stop.record, scenario, name, out, None if interrupted else plot)
         words = [str(stop).replace("; see .record", "")]
         words.append("nothing was asked to be kept (no --out)" if out is None else f"the record so far is in {out}")
         if plot is not None:
@@ -53,7 +61,7 @@ def run_scenario(
         if wav is not None:
             words.append("no sound was written")
         raise Stopped("; ".join(words), INTERRUPTED if interrupted else FAILED) from None
-    _finish(record, scenario.title or name, out, plot)
+    _finish(record, scenario, name, out, plot)
     if wav is not None:
         from .sounding import write_sound
 
@@ -73,7 +81,7 @@ def _check_wav(wav: str, name: str, out: str | None, plot: str | None, system: A
     check_baffled(system)
 
 
-def _finish(record: xr.Dataset, title: str, out: str | None, plot: str | None) -> list[str]:
+def _finish(record: xr.Dataset, scenario: Scenario, name: str, out: str | None, plot: str | None) -> list[str]:
     """Write the outputs and print the card, which also comes when one of them fails; return the files written."""
     written: list[str] = []
     try:
@@ -84,7 +92,7 @@ def _finish(record: xr.Dataset, title: str, out: str | None, plot: str | None) -
             _draw(record, plot)
             written.append(plot)
     finally:
-        print_card(record, title, written)
+        print_card(record, scenario.title or name, written, doubts(scenario.system))
     return written
 
 

@@ -14,9 +14,11 @@ from ..acoustics.radiate import radiate
 from ..acoustics.wav import NORMALISED, RATES, SUBTYPES, write_wav
 from ..bodies import ModalBeam, ModalPlate
 from ..checks import at_most, suggestion
+from ..records.changes import played
 from ..records.files import load
-from ..scenarios.load import load_scenario
+from ..scenarios.load import Scenario, load_scenario, scenario_of_tables
 from ..scenarios.quantities import quantity
+from ..scenarios.read import tables_of_text
 from .hearing import print_levels
 from .outputs import check_outputs
 
@@ -52,7 +54,7 @@ def sound_of_record(
     options = wav_options(sample_rate, full_scale, subtype)
     places: Any = [place_of(text) for text in listeners] or None
     record = load(name)
-    scenario = load_scenario(name)
+    scenario = _played(record)
     pressure = _heard(record, scenario.system, places, baffled)
     figure = None if plot is None else _figure(pressure, record, scenario.title or Path(name).stem)
     if wav is not None:
@@ -64,6 +66,12 @@ def sound_of_record(
     if pressure.attrs["notes"]:
         print(pressure.attrs["notes"])
     print_levels(pressure)
+
+
+def _played(record: xr.Dataset) -> Scenario:
+    """Return the scenario of a record, of one that was changed while it was played the last within its times."""
+    changes = played(record)
+    return scenario_of_tables(tables_of_text(changes[-1][1], "changes")) if changes else load_scenario(record)
 
 
 def write_sound(record: xr.Dataset, system: Any, wav: str) -> str:

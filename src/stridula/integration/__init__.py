@@ -1,5 +1,10 @@
 """How time goes on: schemes, the time loop, watchers."""
 
+# ruff: noqa: E402
+from .compiled_code import find_a_place
+
+find_a_place()
+
 from .contact_solve import GaussSeidel
 from .many import simulate_many
 from .schemes import SCHEMES, CentralDifference, ExactModal

@@ -18,15 +18,18 @@ from ..checks import brief, instance, listed
 from ..contact import LAWS
 from ..records import Probe
 from ..records.provenance import scenario_toml
-from ..records.state import State
+from ..records.state import LAYOUT, State
 from ..system import System
 from .blocks import Recurrence
+from .decimation import Decimator
 from .schemes import Scheme
 from .timing import Timing
 
 # Laws whose internal state is carried on: another law has no use for it.
 STATEFUL = tuple(law.law for law in LAWS if law.state_units)
 STATE = ("modal", "remainder", "carried", "energies")
+ATTRIBUTES = ("ended", "scenario", "scheme", "step", "steps_per_sample", "last_step", "initial_energy")
+OTHER_VERSION = "a record of another version runs again, but cannot be gone on from"
 
 
 def state_of(
@@ -41,43 +44,79 @@ def state_of(
         and duration.
     """
     instance("start", start, xr.Dataset)
-    needed = (*(f"state_{name}" for name in STATE), "state_raw")
-    if any(name not in start for name in needed):
+    needed = ("time", *(f"state_{name}" for name in STATE), "state_raw")
+    if any(name not in start.variables for name in needed):
         raise ValueError(
             f"start must be a record of simulate with its final state, got variables {listed(map(str, start))}"
         )
     attributes = start.attrs
+    missing = [name for name in ATTRIBUTES if name not in attributes]
+    if missing:
+        raise ValueError(f"start must have the attributes of a record, got one without {listed(missing)}")
     if attributes["ended"] not in ("finished", "interrupted"):
         raise ValueError(f"start must be a run that can go on, got one that ended {attributes['ended']!r}")
+    if attributes.get("state_layout") != LAYOUT:
+        got = attributes.get("state_layout", "none")
+        raise ValueError(
+            f"start must have the state_layout of this version, {LAYOUT}, got {brief(got)}: {OTHER_VERSION}"
+        )
     for name, value in (("scheme", scheme.name), ("step", timing.step), ("steps_per_sample", timing.ratio)):
         if attributes[name] != value:
             raise ValueError(f"start must have the same {name} as this run, {value!r}, got {attributes[name]!r}")
-    if start["state_modal"].shape[1] != arrays.mode_count:
+    modes, columns = (start[name].shape[-1:] for name in ("state_modal", "state_raw"))
+    if modes != (arrays.mode_count,):
         raise ValueError(
-            f"start must have the same number of modes as this system, {arrays.mode_count}, "
-            f"got {start['state_modal'].shape[1]}"
+            f"start must have the same number of modes as this system, {arrays.mode_count}, got {_count(modes)}"
         )
-    if start["state_raw"].shape[1] != len(probes):
-        raise ValueError(f"start must have the same number of probes, {len(probes)}, got {start['state_raw'].shape[1]}")
+    if columns != (len(probes),):
+        raise ValueError(f"start must have the same number of probes, {len(probes)}, got {_count(columns)}")
     before, now = (tomllib.loads(text) for text in (attributes["scenario"], scenario_toml(system, probes, {})))
     knows_motion = "state_motion" in start
     _check_frozen(_frozen(before, knows_motion), _frozen(now, knows_motion))
-    state = State(*(np.array(start[f"state_{name}"].values, dtype=float, order="C") for name in STATE))
-    _check_shapes(state, arrays)
-    return state
+    _check_whole(start)
+    _check_state(start, arrays, timing, len(probes))
+    return State(*(np.array(start[f"state_{name}"].values, dtype=float, order="C") for name in STATE))
 
 
-def _check_shapes(state: State, arrays: Assembly) -> None:
+def _count(shape: tuple[int, ...]) -> int:
+    return shape[0] if shape else 0
+
+
+def _check_whole(start: xr.Dataset) -> None:
+    """Raise a ValueError where the last sample of a record is not the one its state is of."""
+    attributes, times = start.attrs, start["time"].values
+    step, last = float(attributes["step"]), int(attributes["last_step"])
+    if last and not (times.size and abs(times[-1] - last * step) < 0.5 * step):
+        got = f"{times[-1]:.6g} s" if times.size else "none"
+        raise ValueError(
+            f"start must be a record up to its final state, at {last * step:.6g} s, got a last time of {got}: "
+            "a record that is cut cannot be gone on from, run as far as that first"
+        )
+
+
+def _check_state(start: xr.Dataset, arrays: Assembly, timing: Timing, probes: int) -> None:
     """Raise a ValueError where a state is not as the march keeps it."""
-    modal = (2, arrays.mode_count)
-    for name, shape in zip(STATE, (modal, modal, (len(arrays.contacts), at.CARRIED), (at.ENERGIES,)), strict=True):
-        values = getattr(state, name)
+    modal, contacts = (2, arrays.mode_count), len(arrays.contacts)
+    # Nothing was recorded of a run that was interrupted at once.
+    memory = Decimator(timing.ratio).memory if start.sizes["time"] else 0
+    shapes = {
+        "modal": modal,
+        "remainder": modal,
+        "carried": (contacts, at.CARRIED),
+        "energies": (at.ENERGIES,),
+        "raw": (memory, probes),
+        "motion": (3, contacts, at.MOTIONS),
+    }
+    for name, shape in shapes.items():
+        if f"state_{name}" not in start:
+            continue
+        values = start[f"state_{name}"].values
         if values.shape != shape:
             raise ValueError(
                 f"start must have a state_{name} of shape {shape}, as this version keeps it, got {values.shape}: "
-                "a record of another version runs again, but cannot be gone on from"
+                f"{OTHER_VERSION}"
             )
-        if not np.isfinite(values).all():
+        if values.dtype.kind not in "fiu" or not np.isfinite(values).all():
             raise ValueError(f"start must have a finite state_{name}, got one that is not")
 
 
@@ -127,7 +166,7 @@ def motion_about(motion: Signal, last_step: int, step: float) -> Array:
 def _root_moved_on(
     start: xr.Dataset, system: System, arrays: Assembly, modes: Recurrence, state: State, step: float
 ) -> Assembly:
-    if "root_travel" not in start.attrs or system.imposed_velocity is None:
+    if not {"root_travel", "root_velocity"} <= set(start.attrs) or system.imposed_velocity is None:
         return arrays
     now = imposed_at(arrays, int(start.attrs["last_step"]), step)
     travel, faster = (now[name] - float(start.attrs[name]) for name in ("root_travel", "root_velocity"))

@@ -15,7 +15,7 @@ from ..bodies.modes import Array
 from ..records import Probe
 from ..records.dataset import to_dataset
 from ..records.provenance import scenario_toml
-from ..records.state import State
+from ..records.state import LAYOUT, State
 from ..system import System
 from ..version import __version__
 from .belief import Belief
@@ -174,6 +174,7 @@ class Run:
             "contact_tolerance": self.solve.tolerance,
             "initial_energy": self.initial_energy,
             "largest_energy": self.belief.largest_energy,
+            "state_layout": LAYOUT,
             "last_step": last_step,
             **(imposed_at(self.arrays, last_step, timing.step) if self.system.imposed_velocity else {}),
             "compile_time": self.compile_time,

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 from ..bodies.modes import Array
 
+# Raised whenever what a State, or the record of one, holds means something else.
+LAYOUT = 1
+
 
 @dataclass
 class State:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,9 @@ from .quantities import is_quantity
 from .shipped import shipped
 
 FILES = ("file", "mass", "stiffness", "damping")
+
+# Scenarios take 5; what recurses over tables takes far more.
+DEEPEST = 50
 
 
 def read_tables(name_or_path: str | Path | xr.Dataset) -> dict[str, Any]:
@@ -95,9 +99,12 @@ def _file_tables(path: Path) -> dict[str, Any]:
         title, text = scenario_of(path)
         return {"title": title} | _parsed(text, str(path))
     try:
-        text = content.decode("utf-8-sig")
+        # PowerShell writes UTF-16 and says so in the first two bytes.
+        text = content.decode("utf-16" if content.startswith((BOM_UTF16_LE, BOM_UTF16_BE)) else "utf-8-sig")
     except UnicodeDecodeError:
-        raise ScenarioError([f"scenario must be a text file in UTF-8, got {str(path)!r}"]) from None
+        raise ScenarioError(
+            [f"scenario must be a text file in UTF-8 or, with a mark, UTF-16, got {str(path)!r}"]
+        ) from None
     tables = _parsed(text, str(path))
     if not tables:
         raise ScenarioError(
@@ -133,10 +140,22 @@ def _files_of(body: Any) -> dict[str, str]:
 
 def _parsed(text: str, name: str) -> dict[str, Any]:
     try:
-        return spelled_out(tomllib.loads(text))
+        tables = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         where = str(error).replace("at end of document", f"at its end, line {text.count(chr(10))}")
         raise ScenarioError([f"scenario must be TOML, got {name!r}: {where}"]) from None
+    if _is_deeper(tables, DEEPEST):
+        raise ScenarioError([f"scenario must nest its tables at most {DEEPEST} deep, got {name!r} with more"])
+    return spelled_out(tables)
+
+
+def _is_deeper(tables: dict[str, Any], depth: int) -> bool:
+    """Return whether tables and lists lie in each other deeper than that."""
+    level: list[Any] = [tables]
+    for _ in range(depth):
+        inside = [value.values() if isinstance(value, dict) else value for value in level]
+        level = [value for values in inside for value in values if isinstance(value, (dict, list))]
+    return bool(level)
 
 
 def _with_base(tables: dict[str, Any], folder: Path, above: tuple[Path, ...]) -> dict[str, Any]:

@@ -1,0 +1,34 @@
+"""Values of a system that are allowed and hardly meant, as when a prefix of a unit is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from ..bodies import FiniteElementBeam, Material, ModalBeam
+from ..system import System
+
+# From soft rubber to diamond [Pa], from foam to osmium [kg/m3].
+YOUNG = (1e5, 2e12)
+DENSITY = (10.0, 3e4)
+MOST_MODES = 5000
+
+
+def doubts(system: System) -> list[str]:
+    """Return a line about each value that is probably a mistake."""
+    return [line for body in system.bodies for line in _of(system.body_name(body), body)]
+
+
+def _of(name: str, body: Any) -> Iterator[str]:
+    material = getattr(body, "material", None)
+    if isinstance(material, Material):
+        if not YOUNG[0] <= material.young <= YOUNG[1]:
+            yield f"{name}: Young's modulus of {material.young:.4g} Pa; did you mean GPa?"
+        if not DENSITY[0] <= material.density <= DENSITY[1]:
+            yield f"{name}: density of {material.density:.4g} kg/m3; did you mean g/cm3?"
+    if isinstance(body, (FiniteElementBeam, ModalBeam)):
+        across = getattr(body.section, "height", getattr(body.section, "diameter", 0.0))
+        if across > 0.5 * body.length:
+            yield f"{name}: {across:.4g} m thick and {body.length:.4g} m long; beams are slender here"
+    if isinstance(body, ModalBeam) and sum(body.harmonics) > MOST_MODES:
+        yield f"{name}: {sum(body.harmonics)} modes below its cutoff; a lower one is faster"

@@ -1,0 +1,48 @@
+"""Scenarios that were changed while they were played, as a record keeps them."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+
+import xarray as xr
+
+
+def played(run: xr.Dataset) -> list[tuple[float, str]]:
+    """Return the scenarios of a record that was changed on the way, each with the time [s] from which it was played.
+
+    Only those that were played within the times of the record are returned, none for a record that was never changed.
+
+    Raises
+    ------
+    ValueError
+        If the attribute ``changes`` is damaged.
+    """
+    text = run.attrs.get("changes")
+    if text is None:
+        return []
+    try:
+        every = [(float(change["time"]), str(change["scenario"])) for change in json.loads(text)]
+    except (ValueError, TypeError, KeyError):
+        raise ValueError("run must have the attribute changes as it was saved, got a damaged one") from None
+    times = run["time"].values
+    if not times.size:
+        return []
+    # Times are at the ends of sample intervals: what is changed at a sample is heard from the next one on.
+    begins = [*(time for time, _ in every[1:]), float("inf")]
+    return [change for change, end in zip(every, begins, strict=True) if end >= times[0] and change[0] < times[-1]]
+
+
+def check_one_track(run: xr.Dataset) -> None:
+    """Raise ValueError if the track was changed within the times of a record."""
+    changes = played(run)
+    if not changes:
+        return
+    # What is played on the way is a beam on a beam: its track is a table of its own.
+    first, *others = (tomllib.loads(text).get("track") for _, text in changes)
+    for (time, _), track in zip(changes[1:], others, strict=True):
+        if track != first:
+            raise ValueError(
+                f"run must have the same track all the time to be heard, got another one from {time:.6g} s on: "
+                "choose the times of one with run.sel(time=slice(START, STOP)), and give its track"
+            )
