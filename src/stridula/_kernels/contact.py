@@ -190,7 +190,8 @@ def velocity_under(ratio, gap, slip, w, before, step):
 def slide_on(gap, slip, w, law, laws, i, before, step):
     """Return the ratio of forces of a contact that slides on in its sense, 0 where that is not settled at once."""
     w_nn, w_nt, w_tn, w_tt = w
-    at_rest = math.copysign(sliding_ratio(law, laws, i, 0.0), before[1])
+    # The first parameter of every such law is its ratio at rest.
+    at_rest = math.copysign(laws[i, 0], before[1])
     free = w_nn - at_rest * w_nt
     if before[1] == 0.0 or free <= 0.0 or (slip - gap / free * (w_tn - at_rest * w_tt)) * before[1] <= 0.0:
         return 0.0
