@@ -21,6 +21,8 @@ _HOME = {
         "Rayleigh",
         "Rectangle",
         "ReducedBody",
+        "RisingDamping",
+        "SampledDamping",
         "Section",
     ),
     "contact": (

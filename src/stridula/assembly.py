@@ -69,8 +69,8 @@ class Assembly:
 
     Attributes
     ----------
-    angular_frequency, damping : ndarray, shape (modes,)
-        Undamped angular frequencies [rad/s] and damping ratios; zero for coupled modes.
+    angular_frequency, damping_rate : ndarray, shape (modes,)
+        Undamped angular frequencies w [rad/s] and ``2 zeta w`` [1/s]; zero for coupled modes.
     stiffness, dissipation : ndarray, shape (coupled, coupled)
         Stiffness [1/s²] and damping matrix [1/s] of the coupled modes, which come first.
     contacts : list of ContactRows
@@ -96,7 +96,7 @@ class Assembly:
     """
 
     angular_frequency: Array
-    damping: Array
+    damping_rate: Array
     stiffness: Array
     dissipation: Array
     contacts: list[ContactRows]
@@ -127,19 +127,19 @@ def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
     stiffness, dissipation = _matrices(layout)
     modes = [layout.modes(body) for body in layout.order]
     angular = np.concatenate([one.angular_frequency for one in modes])
-    damping = np.concatenate([one.damping for one in modes])
+    rate = np.concatenate([one.damping_rate for one in modes])
     size = len(stiffness)
     if size and _uncoupled(stiffness, dissipation):
         angular[:size] = np.sqrt(np.diag(stiffness))
-        damping[:size] = np.diag(dissipation) / (2.0 * np.where(angular[:size] > 0.0, angular[:size], 1.0))
+        rate[:size] = np.diag(dissipation)
         size = 0
     # Coupled modes march by matrices; alone they would not.
-    angular[:size] = damping[:size] = 0.0
+    angular[:size] = rate[:size] = 0.0
     loads, signals, histories = _loads(system, layout)
     position, velocity = _start(system, layout)
     return Assembly(
         angular_frequency=angular,
-        damping=damping,
+        damping_rate=rate,
         stiffness=stiffness[:size, :size],
         dissipation=dissipation[:size, :size],
         contacts=[_contact(contact, layout) for contact in system.contacts],
@@ -295,7 +295,7 @@ def _matrices(layout: _Layout) -> tuple[Array, Array]:
     for body in layout.joined:
         modes, span = layout.modes(body), slice(*layout.spans[body])
         stiffness[span, span] = np.diag(modes.angular_frequency**2)
-        own = np.diag(2.0 * modes.damping * modes.angular_frequency)
+        own = np.diag(modes.damping_rate)
         dissipation[span, span] = own if modes.damping_matrix is None else modes.damping_matrix
     for connection in layout.system.connections:
         row = unit(connection) @ layout.trace(connection.first)[:, :size]
@@ -309,10 +309,8 @@ def _matrices(layout: _Layout) -> tuple[Array, Array]:
 
 
 def _uncoupled(stiffness: Array, dissipation: Array) -> bool:
-    """Return whether the modes are oscillators on their own after all, none damped critically."""
-    diagonal = np.diag(dissipation)
-    oscillators = (diagonal < 2.0 * np.sqrt(np.diag(stiffness))) | (diagonal == 0.0)
-    return bool(oscillators.all()) and _is_diagonal(stiffness) and _is_diagonal(dissipation)
+    """Return whether the modes are oscillators on their own after all."""
+    return _is_diagonal(stiffness) and _is_diagonal(dissipation)
 
 
 def _is_diagonal(matrix: Array) -> bool:

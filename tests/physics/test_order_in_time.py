@@ -84,17 +84,17 @@ def test_order_is_two(scheme, case):
 class LazyStart(st.CentralDifference):
     """Central differences that forget the force in the first increment: a velocity off by f h / 2, of first order."""
 
-    def first_increment(self, angular, damping, step, position, velocity, force):
-        return super().first_increment(angular, damping, step, position, velocity, 0 * force)
+    def first_increment(self, angular, rate, step, position, velocity, force):
+        return super().first_increment(angular, rate, step, position, velocity, 0 * force)
 
 
 class OneSided(st.CentralDifference):
     """Damping by a backward difference, of first order."""
 
-    def coefficients(self, angular, damping, step):
-        k = super().coefficients(angular, damping, step)
+    def coefficients(self, angular, rate, step):
+        k = super().coefficients(angular, rate, step)
         return type(k)(
-            b=1 - 2 * damping * angular * step,
+            b=1 - rate * step,
             r=(angular * step) ** 2,
             load=step**2 + 0 * angular,
         )
@@ -118,7 +118,7 @@ def test_exact_scheme_is_exact_for_free_damped_motion(fraction):
     rod = slider(25.0, root_support="pinned", damping=0.01)
     system = pair(lambda _: [st.InitialVelocity(rod, x=0.1, y=0.4)], 0.5, rod=rod, bar=track(cutoff=500.0), gap=1.0)
     modes = rod.modes()
-    limit = st.ExactModal().limit(modes.angular_frequency, modes.damping)
+    limit = st.ExactModal().limit(modes.angular_frequency, modes.damping_rate)
     step = DURATION / np.ceil(DURATION / (fraction * limit))
     run = st.simulate(system, DURATION, scheme=st.ExactModal(), step=step, sample_rate=1 / step)
     v = modes.translation.T @ [0.1, 0.4]
@@ -126,7 +126,7 @@ def test_exact_scheme_is_exact_for_free_damped_motion(fraction):
     got = run.state_modal.values[0, : modes.count]
     assert np.linalg.norm(got - expected) <= 1e4 * 2.3e-16 * np.linalg.norm(expected)
     central = st.CentralDifference()
-    if step < 0.9 * central.limit(modes.angular_frequency, modes.damping):
+    if step < 0.9 * central.limit(modes.angular_frequency, modes.damping_rate):
         other = st.simulate(system, DURATION, scheme=central, step=step, sample_rate=1 / step)
         off = other.state_modal.values[0, : modes.count] - expected
         assert np.linalg.norm(off) > 1e-6 * np.linalg.norm(expected), "control: central differences are not exact"

@@ -57,9 +57,9 @@ def blow(frequency: np.ndarray) -> np.ndarray:
 def mobility(panel, frequency: np.ndarray, at: float) -> np.ndarray:
     """Accelerations of the modes for a unit force on the track, which presses it down, shape (modes, frequencies)."""
     angular = 2.0 * pi * frequency
-    own, damping = panel.angular_frequency[:, None], panel.damping[:, None]
+    own, rate = panel.angular_frequency[:, None], panel.damping_rate[:, None]
     shapes = panel.shapes(*(np.atleast_1d(part) for part in panel.place(np.array([at]))))[0]
-    return shapes[:, None] * angular**2 / (own**2 - angular**2 + 2j * damping * own * angular)
+    return shapes[:, None] * angular**2 / (own**2 - angular**2 + 1j * rate * angular)
 
 
 def baffled_spectrum(panel, listener: np.ndarray, frequency: np.ndarray) -> np.ndarray:

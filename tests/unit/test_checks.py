@@ -70,7 +70,7 @@ def test_the_step_that_is_printed_may_be_taken(angular, beyond, scheme):
     mass = st.PointMass(1.0)
     contact = st.PointContact(mass.centre, st.RigidTrack())
     flat = assemble(st.System(contact, (), [st.Spring(mass.centre, stiffness=angular**2)]))
-    known = scheme.limit(flat.angular_frequency, flat.damping)
+    known = scheme.limit(flat.angular_frequency, flat.damping_rate)
 
     def timing(step=None, duration=10.0, rate=1e3):
         return choose_timing(flat, scheme, duration, step, rate)

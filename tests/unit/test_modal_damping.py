@@ -24,10 +24,10 @@ def beam(damping=0.0):
 def test_each_mode_has_its_own_ratio(body):
     ratios = [0.01 * k for k in range(6)]
     damped = body(ratios)
-    np.testing.assert_array_equal(damped.modes().damping, ratios)
+    np.testing.assert_allclose(damped.modes().damping, ratios, rtol=1e-15)
     assert damped == body(np.array(ratios))
     assert damped != body(0.01)
-    np.testing.assert_array_equal(body(0.02).modes().damping, np.full(6, 0.02))
+    np.testing.assert_allclose(body(0.02).modes().damping, np.full(6, 0.02), rtol=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -36,7 +36,7 @@ def test_each_mode_has_its_own_ratio(body):
         ([0.1] * 5, "damping must have one ratio or 6, one for each mode kept, got 5"),
         ([0.1] * 5 + [1.0], r"damping\[5\] must be below 1"),
         ([0.1] * 5 + [-0.1], r"damping\[5\] must be 0 or above"),
-        ([[0.1] * 6], "damping must be one ratio or a list"),
+        ([[0.1] * 6], "damping must be one ratio, a list"),
         ("much", "damping must be a number"),
     ],
 )
@@ -63,7 +63,7 @@ def test_a_plate_that_moves_in_its_plane_has_those_modes_last():
     sheet = replace(plate(), in_plane=True, in_plane_modes=(1, 1))
     ratios = [0.01 * k for k in range(10)]
     damped = replace(sheet, damping=ratios)
-    np.testing.assert_array_equal(damped.modes().damping, ratios)
+    np.testing.assert_allclose(damped.modes().damping, ratios, rtol=1e-15)
     assert damped.harmonics == (6, 4)
     rising = np.diff(damped.modes().frequency) > 0.0
     np.testing.assert_array_equal(rising, [True] * 9)
@@ -76,7 +76,7 @@ def test_sound_brakes_a_beam_when_its_damping_is_added():
     still = beam()
     taken = st.radiation_damping(still)
     damped = replace(still, damping=taken)
-    np.testing.assert_array_equal(damped.modes().damping, taken)
+    np.testing.assert_allclose(damped.modes().damping, taken, rtol=1e-15)
     bending = still.harmonics[0]
     assert (taken[:bending] > 0.0).all()
     assert not taken[bending:].any()
@@ -86,5 +86,5 @@ def test_sound_brakes_a_plate_when_its_damping_is_added():
     still = plate()
     taken = st.radiation_damping(still)
     damped = replace(still, damping=taken)
-    np.testing.assert_array_equal(damped.modes().damping, taken)
+    np.testing.assert_allclose(damped.modes().damping, taken, rtol=1e-15)
     assert (taken > 0.0).all()

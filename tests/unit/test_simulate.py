@@ -328,7 +328,7 @@ def test_watchers_see_the_time_go_on():
 def test_step_at_or_above_the_limit_is_refused_with_the_limit(scheme):
     system = CASES["squeal"]()
     arrays = assemble(system)
-    limit = scheme.limit(arrays.angular_frequency, arrays.damping)
+    limit = scheme.limit(arrays.angular_frequency, arrays.damping_rate)
     highest = arrays.angular_frequency.max()
     expected = 2 / highest if scheme.name == "central difference" else np.pi / (highest * np.sqrt(1 - 0.02**2))
     assert limit == pytest.approx(expected, rel=1e-12)
@@ -347,7 +347,7 @@ def test_default_step_divides_the_sample_and_stays_below_its_share_of_the_limit(
     system = CASES["squeal"]()
     run = st.simulate(system, 1e-3, scheme=scheme, sample_rate=sample_rate)
     arrays = assemble(system)
-    limit = scheme.limit(arrays.angular_frequency, arrays.damping)
+    limit = scheme.limit(arrays.angular_frequency, arrays.damping_rate)
     assert run.attrs["step"] <= scheme.default_fraction * limit * (1 + 1e-9)
     assert run.attrs["sample_interval"] == pytest.approx(1 / sample_rate, rel=1e-12)
     assert run.attrs["step"] * run.attrs["steps_per_sample"] == pytest.approx(1 / sample_rate, rel=1e-12)

@@ -22,8 +22,13 @@ import math
 import sys
 import warnings
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from itertools import groupby
 from typing import Any
+
+import numpy as np
+from scipy.stats import qmc
 
 import stridula as st
 from stridula.papers.laulagnet_2011 import CLAIMS, Claim, Runs
@@ -31,28 +36,24 @@ from stridula.papers.laulagnet_2011 import CLAIMS, Claim, Runs
 RANGES = {
     "slider.length": st.Range(0.4, 0.7),
     "track.length": st.Range(1.0, 1.8),
-    "section.height": st.Range(0.006, 0.014),
-    "section.width": st.Range(0.010, 0.100, logarithmic=True),
-    "damping": st.Range(0.003, 0.02, logarithmic=True),
+    "section.height": st.Range(0.006, 0.018),
+    "section.width": st.Range(0.003, 0.100, logarithmic=True),
+    "damping.ratio": st.Range(5e-4, 0.02, logarithmic=True),
+    "damping.slope": st.Range(5e-7, 2e-5, logarithmic=True),
     "start": st.Range(0.15, 0.45),
-    "force": st.Range(1.0, 20.0, logarithmic=True),
+    # Sections 3.1 to 3.3 know force and width only by their ratio.
+    "force per width": st.Range(30.0, 1000.0, logarithmic=True),
     "contact.gap": st.Range(1e-6, 1e-4, logarithmic=True),
 }
-POPULATION = 40
+SCREENED, POPULATION = 3000, 64
+# Starts of the cases that are chaotic: each of them is to meet the aims.
+STARTS = 4
 # Sums of squared misses of a case from which a candidate is not run on the next ones, all over the ranges and with
-# narrower aims, of which the shipped set misses one in its first case by far.
+# narrower aims.
 GIVE_UP_WIDE, GIVE_UP_NARROW = 3.0, 30.0
-# Where the narrower stage aims for the measures that differ from one perturbed start to another.
-AIMS = {
-    "50 N: frequency of relaxations": st.Target(2260.0, 2740.0, 560.0),
-    "2 N: peaks over those of 3.2": st.Target(low=2.3, scale=0.1),
-    "2 N: separated": st.Target(low=0.575, scale=0.025),
-    "2 N: acceleration follows the force": st.Target(low=0.83, scale=0.04),
-    "peaks over those of 3.2": st.Target(low=2.3, scale=0.1),
-    "separated": st.Target(low=0.54, scale=0.025),
-}
 # The squeal is the hardest to meet, so it comes first.
 ORDER = {"3.2": 0, "3.1": 1, "3.3": 2, "3.4": 3}
+CHAOTIC = {claim.chaotic for claim in CLAIMS}
 FITTED = sorted((claim for claim in CLAIMS if claim.fitted), key=lambda claim: ORDER[claim.section])
 CASES = {
     "3.2": ("squeal",),
@@ -66,8 +67,11 @@ class CandidateRuns(Runs):
     """Runs under a candidate, whose force and start point enter each case in its own way."""
 
     def __init__(self, values: Mapping[str, float]) -> None:
-        self.force, self.start = values["force"], values["start"] * values["track.length"]
-        super().__init__({name: value for name, value in values.items() if name not in ("force", "start")})
+        self.force = values["force per width"] * values["section.width"]
+        self.start = values["start"] * values["track.length"]
+        own = {key: values[key] for key in RANGES if "." in key and not key.startswith("damping.")}
+        law = {"law": "rising", "ratio": values["damping.ratio"], "slope": values["damping.slope"]}
+        super().__init__(own | {"damping": law})
 
     def scenario(self, case: str, **overrides: Any) -> Any:
         """Return a case under the candidate; the axial cases start mirrored and are pushed along the axis."""
@@ -87,14 +91,16 @@ class CandidateRuns(Runs):
 def shipped() -> dict[str, float]:
     """Return the parameters of the shipped scenarios."""
     system = Runs().scenario("squeal").system
+    section, damping = system.track.section, system.track.damping
     return {
         "slider.length": system.slider.length,
         "track.length": system.track.length,
-        "section.height": system.track.section.height,
-        "section.width": system.track.section.width,
-        "damping": system.track.damping,
+        "section.height": section.height,
+        "section.width": section.width,
+        "damping.ratio": damping.ratio,
+        "damping.slope": damping.slope,
         "start": system.contact.at / system.track.length,
-        "force": system.drives[0].transverse,
+        "force per width": system.drives[0].transverse / section.width,
         "contact.gap": system.contact.gap,
     }
 
@@ -110,18 +116,13 @@ def wide_target(claim: Claim) -> st.Target:
 
 
 def narrow_target(claim: Claim) -> st.Target:
-    """Return the aim of a claim, or the middle 95 % of its tolerance.
-
-    The frequency of the relaxations, which no set met together with regular bursts, weighs little.
-    """
-    if claim.claim in AIMS:
-        return AIMS[claim.claim]
+    """Return the middle 90 % of a tolerance."""
     if math.isinf(claim.high):
         return st.Target(low=1.03 * claim.low, scale=0.1 * claim.low)
     if math.isinf(claim.low):
-        return st.Target(high=0.92 * claim.high, scale=0.1 * claim.high)
+        return st.Target(high=0.97 * claim.high, scale=0.1 * claim.high)
     middle, half = (claim.low + claim.high) / 2.0, (claim.high - claim.low) / 2.0
-    return st.Target(middle - 0.95 * half, middle + 0.95 * half, 0.1 * half)
+    return st.Target(middle - 0.9 * half, middle + 0.9 * half, 0.1 * half)
 
 
 class Measured:
@@ -139,11 +140,14 @@ class Measured:
             if not left:
                 break
             for case in CASES[section]:
-                self.run(case, [runs[k] for k in left])
+                if case not in CHAOTIC:
+                    self.run(case, [runs[k] for k in left])
             asked, kept = list(claims), []
-            for k in left:
-                values[k] |= {claim.claim: measured(claim, runs[k]) for claim in asked}
-                miss = sum(self.targets[claim.claim].miss(values[k][claim.claim]) ** 2 for claim in asked)
+            with ThreadPoolExecutor() as pool:
+                found = list(pool.map(partial(self.measured, asked), [runs[k] for k in left]))
+            for k, measured in zip(left, found, strict=True):
+                values[k] |= measured
+                miss = sum(self.targets[name].miss(value) ** 2 for name, value in measured.items())
                 kept += [k] if miss <= self.give_up else []
             left = kept
         return values
@@ -155,6 +159,22 @@ class Measured:
         for one, record in zip(runs, records, strict=True):
             one.keep(case, record)
 
+    def measured(self, claims: Sequence[Claim], runs: CandidateRuns) -> dict[str, float]:
+        """Return the value of each claim, of several starts the one that misses its aim most."""
+        values = {}
+        for claim in claims:
+            target = self.targets[claim.claim]
+            values[claim.claim] = max(from_starts(claim, runs), key=target.miss)
+        return values
+
+
+def from_starts(claim: Claim, runs: CandidateRuns) -> list[float]:
+    """Return the value of a claim from each start, NaN where it cannot be measured."""
+    if not claim.chaotic:
+        return [measured(claim, runs)]
+    measures = {one.claim: partial(measured, one) for one in FITTED if one.chaotic == claim.chaotic}
+    return [float(value) for value in runs.over_starts(claim.chaotic, measures, STARTS)[claim.claim]]
+
 
 def measured(claim: Claim, runs: Runs) -> float:
     """Return the value of a claim, NaN where it cannot be measured."""
@@ -164,8 +184,24 @@ def measured(claim: Claim, runs: Runs) -> float:
         return math.nan
 
 
+def screened(targets: Mapping[str, st.Target], seed: int) -> list[dict[str, float]]:
+    """Return the best of a sample all over the ranges, the first generation of a search."""
+    shares = qmc.LatinHypercube(len(RANGES), rng=np.random.default_rng(seed)).random(SCREENED)
+    points = [{key: one.value(float(s)) for (key, one), s in zip(RANGES.items(), row, strict=True)} for row in shares]
+    evaluate, misses = Measured(targets, GIVE_UP_WIDE), []
+    for first in range(0, SCREENED, POPULATION):
+        found = evaluate(points[first : first + POPULATION])
+        misses += [sum(targets[name].miss(value) ** 2 for name, value in one.items()) for one in found]
+        print(f"screened {len(misses)}: {math.sqrt(min(misses)):.4f}", flush=True)
+    return [points[k] for k in np.argsort(misses, kind="stable")[:POPULATION]]
+
+
 def search(
-    targets: Mapping[str, st.Target], give_up: float, seed: int, generations: int, start: Mapping[str, float] | None
+    targets: Mapping[str, st.Target],
+    give_up: float,
+    seed: int,
+    generations: int,
+    start: Mapping[str, float] | Sequence[Mapping[str, float]],
 ) -> Any:
     """Search from a seed and print each improvement."""
     best = math.inf
@@ -193,10 +229,11 @@ def main(stage: str = "wide", seed: str = "1", generations: str = "300") -> None
     warnings.simplefilter("ignore")
     if stage not in ("wide", "refine"):
         raise SystemExit(f"stage must be wide or refine, got {stage!r}")
-    start = shipped()
-    if stage == "wide":
+    if stage == "refine":
+        start = shipped()
+    else:
         targets = {claim.claim: wide_target(claim) for claim in FITTED}
-        found = search(targets, GIVE_UP_WIDE, int(seed), int(generations), None)
+        found = search(targets, GIVE_UP_WIDE, int(seed), int(generations), screened(targets, int(seed)))
         start = {key: float(found[key]) for key in RANGES}
         print("narrower aims, from there", flush=True)
     targets = {claim.claim: narrow_target(claim) for claim in FITTED}

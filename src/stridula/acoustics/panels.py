@@ -27,8 +27,8 @@ class Panel:
         Largest value of a mass-normalised mode shape [kg^(-1/2)].
     wavenumbers : ndarray, shape (modes, 2)
         Wavenumbers of the sines along x and y [rad/m]; zero where a mode is uniform across.
-    angular_frequency, damping : ndarray, shape (modes,)
-        Angular frequencies [rad/s] and damping ratios [1].
+    angular_frequency, damping_rate : ndarray, shape (modes,)
+        Angular frequencies w [rad/s] and ``2 zeta w`` [1/s].
     ends : tuple of float
         Least and largest abscissa of a contact point [m].
     place : callable
@@ -41,7 +41,7 @@ class Panel:
     amplitude: float
     wavenumbers: Array
     angular_frequency: Array
-    damping: Array
+    damping_rate: Array
     ends: tuple[float, float]
     place: Callable[[Array], tuple[Any, Any]]
 
@@ -59,7 +59,7 @@ class Panel:
             self,
             wavenumbers=self.wavenumbers[modes],
             angular_frequency=self.angular_frequency[modes],
-            damping=self.damping[modes],
+            damping_rate=self.damping_rate[modes],
         )
 
 
@@ -114,7 +114,7 @@ def _bent(beam: ModalBeam, width: float) -> Panel:
         amplitude=beam.amplitude,
         wavenumbers=np.stack([along, np.zeros(count)], axis=1),
         angular_frequency=modes.angular_frequency[:count],
-        damping=modes.damping[:count],
+        damping_rate=modes.damping_rate[:count],
         ends=(0.0, beam.length),
         place=lambda position: (position, np.zeros_like(position)),
     )
@@ -129,7 +129,7 @@ def _plate(plate: ModalPlate) -> Panel:
         amplitude=plate.amplitude,
         wavenumbers=plate.wavenumbers,
         angular_frequency=modes.angular_frequency[:count],
-        damping=modes.damping[:count],
+        damping_rate=modes.damping_rate[:count],
         ends=plate.ends,
         place=plate.track_line.point,
     )

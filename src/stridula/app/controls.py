@@ -101,6 +101,16 @@ CONTROLS = (
         "slider.damping",
     ),
     Control(
+        "damping.ratio", "Beams", "Damping at low frequency", "%", 1e-2, 0.0, 10.0, 0.01,
+        "Share of critical damping of slow modes: how fast swings die away.",
+        "slider.damping.ratio",
+    ),
+    Control(
+        "damping.slope", "Beams", "Rise of damping", "%/kHz", 1e-5, 0.0, 10.0, 0.01,
+        "How much more damping a mode has for each kilohertz of its frequency.",
+        "slider.damping.slope",
+    ),
+    Control(
         "track.length", "Track", "Track length", "mm", 1e-3, 200.0, 2500.0, 1.0,
         "Length of the simply supported beam on which the tip slides.",
     ),
@@ -190,7 +200,7 @@ def values(tables: dict[str, Any]) -> dict[str, Any]:
     places = {control.key: control.place or control.key for control in CONTROLS}
     places |= {choice.key: choice.key for choice in CHOICES}
     found = {key: look_up(tables, _path(place)) for key, place in places.items()}
-    return {key: value for key, value in found.items() if value is not None}
+    return {key: value for key, value in found.items() if value is not None and not isinstance(value, dict)}
 
 
 def _path(place: str) -> Sequence[Any]:

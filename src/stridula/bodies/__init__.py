@@ -1,11 +1,12 @@
 """What vibrates: bodies that end as mass-normalised modes and their traces."""
 
+from .damping import Rayleigh, RisingDamping, SampledDamping
 from .finite_element_beam import FiniteElementBeam
 from .modal_beam import ModalBeam
 from .modal_plate import Line, ModalPlate
 from .modes import Body, BodyPoint, Modes
 from .point_mass import PointMass
-from .reduced_body import Rayleigh, ReducedBody
+from .reduced_body import ReducedBody
 from .sections import Circle, Material, Rectangle, Section
 
 # Bodies along which a contact point moves.
@@ -25,6 +26,8 @@ __all__ = [
     "Rayleigh",
     "Rectangle",
     "ReducedBody",
+    "RisingDamping",
+    "SampledDamping",
     "Section",
     "Track",
 ]

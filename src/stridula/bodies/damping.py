@@ -1,45 +1,187 @@
-"""Modal damping ratios as they are given: one for every mode, or one for each."""
+"""Damping of a body by its modes: one ratio, one for each mode, or a law of their frequency."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
-from ..checks import non_negative
+from ..checks import brief, non_negative
 from .modes import Array
 
-Damping = float | Sequence[float] | Array
+
+@runtime_checkable
+class DampingLaw(Protocol):
+    """How the damping of a mode follows from its frequency; ratios may reach 1 and more, modes are overdamped then."""
+
+    law: ClassVar[str]
+
+    def rates(self, angular_frequency: Array) -> Array:
+        """Return ``2 zeta w`` [1/s] for modes of angular frequency w [rad/s], zero for rigid ones."""
 
 
-def checked_damping(given: Any) -> float | tuple[float, ...]:
-    """Return one ratio, or one for each mode.
+@dataclass(frozen=True)
+class Rayleigh:
+    """Damping ``C = alpha M + beta K``: the ratio of a mode is ``alpha / (2 w) + beta w / 2``.
+
+    Finite-element programs have it. ``Rayleigh(0, beta)`` is the Kelvin-Voigt material, whose stress is
+    ``E (strain + beta strain rate)``. A share of mass brakes rigid modes, too.
+
+    Parameters
+    ----------
+    mass : float
+        Share alpha of the mass matrix [1/s].
+    stiffness : float
+        Share beta of the stiffness matrix [s].
+
+    Raises
+    ------
+    ValueError
+        If a share is negative or not finite.
+    """
+
+    mass: float
+    stiffness: float
+    law: ClassVar[str] = "rayleigh"
+
+    def __post_init__(self) -> None:
+        non_negative("mass", self.mass)
+        non_negative("stiffness", self.stiffness)
+
+    def rates(self, angular_frequency: Array) -> Array:
+        """Return ``2 zeta w = alpha + beta w²`` [1/s]."""
+        return np.asarray(self.mass + self.stiffness * angular_frequency**2)
+
+
+@dataclass(frozen=True)
+class RisingDamping:
+    """Damping whose ratio rises with the frequency f of a mode: ``ratio + slope f``.
+
+    A material with a loss factor that does not depend on frequency, ``2 ratio``, and a viscous part, slope
+    ``pi beta`` of a Kelvin-Voigt material.
+
+    Parameters
+    ----------
+    ratio : float
+        Damping ratio at low frequencies [1].
+    slope : float
+        Rise of the ratio with frequency [1/Hz].
+
+    Raises
+    ------
+    ValueError
+        If an argument is negative or not finite, or if the ratio is not below 1.
+    """
+
+    ratio: float
+    slope: float
+    law: ClassVar[str] = "rising"
+
+    def __post_init__(self) -> None:
+        ratio("ratio", self.ratio)
+        non_negative("slope", self.slope)
+
+    def rates(self, angular_frequency: Array) -> Array:
+        """Return ``2 zeta w`` [1/s]."""
+        frequency = angular_frequency / (2.0 * np.pi)
+        return np.asarray(2.0 * angular_frequency * (self.ratio + self.slope * frequency))
+
+
+@dataclass(frozen=True)
+class SampledDamping:
+    """Damping ratios that are known at some frequencies, such as measured ones.
+
+    Linear between them, constant beyond the first and the last.
+
+    Parameters
+    ----------
+    frequency : sequence of float
+        Frequencies [Hz], rising.
+    ratio : sequence of float
+        Damping ratio at each [1], from 0 to 1 (1 excluded).
+
+    Raises
+    ------
+    ValueError
+        If frequencies do not rise, an argument is out of its range, or there are not as many of both.
+    """
+
+    frequency: Sequence[float]
+    ratio: Sequence[float]
+    law: ClassVar[str] = "sampled"
+
+    def __post_init__(self) -> None:
+        frequencies = _each("frequency", self.frequency, non_negative)
+        ratios = _each("ratio", self.ratio, ratio)
+        if not frequencies or len(frequencies) != len(ratios):
+            raise ValueError(
+                f"ratio must have as many values as frequency, at least one, got {len(ratios)} and {len(frequencies)}"
+            )
+        for number, (before, after) in enumerate(pairwise(frequencies), start=1):
+            if after <= before:
+                raise ValueError(f"frequency[{number}] must be above {before!r}, the one before it, got {after!r}")
+        object.__setattr__(self, "frequency", frequencies)
+        object.__setattr__(self, "ratio", ratios)
+
+    def rates(self, angular_frequency: Array) -> Array:
+        """Return ``2 zeta w`` [1/s]."""
+        ratios = np.interp(angular_frequency / (2.0 * np.pi), self.frequency, self.ratio)
+        return np.asarray(2.0 * angular_frequency * ratios)
+
+
+Damping = float | Sequence[float] | Array | DampingLaw
+
+
+def ratio(name: str, value: Any) -> float:
+    """Return a damping ratio as a float.
+
+    Raises
+    ------
+    ValueError
+        If it is not from 0 to 1, 1 excluded.
+    """
+    if non_negative(name, value) >= 1.0:
+        raise ValueError(f"{name} must be below 1 (critical), got {value!r}")
+    return float(value)
+
+
+def checked_damping(given: Any) -> float | tuple[float, ...] | DampingLaw:
+    """Return one ratio, one for each mode, or a law.
 
     Raises
     ------
     ValueError
         If a ratio is not from 0 to 1, 1 excluded.
     """
+    if isinstance(given, DampingLaw) and not isinstance(given, type):
+        return given
     if isinstance(given, (Sequence, np.ndarray)) and not isinstance(given, str):
         if np.ndim(given) != 1:
-            raise ValueError(f"damping must be one ratio or a list of one for each mode, got {given!r}")
-        return tuple(_ratio(f"damping[{number}]", ratio) for number, ratio in enumerate(np.asarray(given).tolist()))
-    return _ratio("damping", given)
+            raise ValueError(
+                f"damping must be one ratio, a list of one for each mode or a law such as Rayleigh, got {brief(given)}"
+            )
+        return _each("damping", given, ratio)
+    return ratio("damping", given)
 
 
-def _ratio(name: str, value: Any) -> float:
-    if non_negative(name, value) >= 1.0:
-        raise ValueError(f"{name} must be below 1 (critical), got {value!r}")
-    return float(value)
-
-
-def check_damping_count(damping: float | tuple[float, ...], modes: int) -> None:
-    """Raise ValueError unless there is a ratio for each mode, or one for all."""
-    if isinstance(damping, tuple) and len(damping) != modes:
+def check_damping_count(damping: Any, modes: int) -> None:
+    """Raise ValueError if damping is a list with not as many ratios as there are modes."""
+    if isinstance(damping, (tuple, np.ndarray)) and len(damping) != modes:
         raise ValueError(f"damping must have one ratio or {modes}, one for each mode kept, got {len(damping)}")
 
 
-def damping_of_modes(damping: Damping, modes: int) -> Array:
-    """Return the ratio of every mode, shape (modes,)."""
-    return np.array(np.broadcast_to(np.asarray(damping, dtype=float), (modes,)))
+def damping_rates(damping: Any, angular_frequency: Array) -> Array:
+    """Return ``2 zeta w`` [1/s] of every mode under checked damping, shape (modes,)."""
+    if isinstance(damping, DampingLaw):
+        return damping.rates(angular_frequency)
+    check_damping_count(damping, angular_frequency.size)
+    return np.asarray(2.0 * np.asarray(damping) * angular_frequency)
+
+
+def _each(name: str, given: Any, check: Any) -> tuple[float, ...]:
+    if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)):
+        raise ValueError(f"{name} must be a list of numbers, got {brief(given)}")
+    return tuple(float(check(f"{name}[{k}]", value)) for k, value in enumerate(np.asarray(given).tolist()))

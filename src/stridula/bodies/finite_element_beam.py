@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 import scipy.linalg
 
-from ..checks import choice, count, finite, instance, non_negative, positive, within
+from ..checks import choice, count, finite, instance, positive, within
+from .damping import DampingLaw, checked_damping, damping_rates
 from .finite_elements import (
     FIXED_BY_SUPPORT,
     X,
@@ -46,8 +48,9 @@ class FiniteElementBeam:
         ahead of the tip in x.
     elements : int, optional
         Number of equal elements, at most 500.
-    damping : float, optional
-        Modal damping ratio of every mode [1], from 0 to 1 (1 excluded).
+    damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
+        Damping ratio of every mode [1], from 0 to 1 (1 excluded), one for each mode kept in the order of rising
+        frequency (of no effect on rigid modes), or a law of their frequency.
     root_support, tip_support : {"free", "guided", "pinned", "clamped"}, optional
         Support of the root and of the tip. Guided: the section does not rotate, both translations are free.
     mass : {"consistent", "lumped"}, optional
@@ -69,7 +72,7 @@ class FiniteElementBeam:
     length: float
     angle: float = 0.0
     elements: int = 20
-    damping: float = 0.0
+    damping: float | Sequence[float] | DampingLaw = 0.0
     root_support: str = "guided"
     tip_support: str = "free"
     mass: str = "consistent"
@@ -84,8 +87,7 @@ class FiniteElementBeam:
             raise ValueError(f"angle must be strictly between -pi/2 and pi/2 rad (90 deg), got {self.angle!r}")
         if count("elements", self.elements) > LARGEST_ELEMENTS:
             raise ValueError(f"elements must be at most {LARGEST_ELEMENTS}, got {self.elements!r}")
-        if non_negative("damping", self.damping) >= 1.0:
-            raise ValueError(f"damping must be below 1 (critical), got {self.damping!r}")
+        object.__setattr__(self, "damping", checked_damping(self.damping))
         choice("root_support", self.root_support, tuple(FIXED_BY_SUPPORT))
         choice("tip_support", self.tip_support, tuple(FIXED_BY_SUPPORT))
         choice("mass", self.mass, ("consistent", "lumped"))
@@ -223,7 +225,7 @@ def _reduce(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
         raise ValueError(f"cutoff must leave at least one mode, got {beam.cutoff!r} Hz")
     directions = np.zeros((2, mass.shape[0]))
     directions[0, 0::3] = directions[1, 1::3] = 1.0
-    modes = Modes(angular, np.full(angular.size, float(beam.damping)), directions @ mass @ shapes)
+    modes = Modes(angular, damping_rates(beam.damping, angular), directions @ mass @ shapes)
     return _Reduced(modes, shapes, mass, fixed)
 
 

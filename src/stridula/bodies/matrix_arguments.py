@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
+from .damping import Rayleigh
 from .matrix_files import AlignedMatrices, check_size
-from .matrix_input import Rayleigh, check_mass, is_pair, point_rows, rows_of, square, symmetric
+from .matrix_input import check_mass, is_pair, point_rows, rows_of, square, symmetric
 from .modes import Array
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Any
 
@@ -11,7 +10,8 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse
 
-from ..checks import instance, non_negative, within
+from ..checks import instance
+from .damping import DampingLaw, checked_damping, ratio
 from .matrix_files import check_size
 from .modes import Array
 
@@ -19,31 +19,6 @@ SYMMETRY = 1e-8
 
 # Rounding errors of the eigenvalues stay below 10 eps of the largest: see tests/unit/test_reduced_body.py.
 ROUND_OFF = 64.0 * float(np.finfo(float).eps)
-
-
-@dataclass(frozen=True)
-class Rayleigh:
-    """Damping ``C = alpha M + beta K``: the ratio of a mode is ``alpha / (2 w) + beta w / 2``.
-
-    Parameters
-    ----------
-    mass : float
-        Share alpha of the mass matrix [1/s].
-    stiffness : float
-        Share beta of the stiffness matrix [s].
-
-    Raises
-    ------
-    ValueError
-        If a share is negative or not finite.
-    """
-
-    mass: float
-    stiffness: float
-
-    def __post_init__(self) -> None:
-        non_negative("mass", self.mass)
-        non_negative("stiffness", self.stiffness)
 
 
 def smallest_eigenvalue(matrix: Array) -> float:
@@ -172,29 +147,17 @@ def is_pair(value: Any, kind: type | tuple[type, ...]) -> bool:
     return pair and len(value) == 2 and all(entry is None or isinstance(entry, kind) for entry in value)
 
 
-def damping_of(value: Any, size: int) -> float | Array | Rayleigh:
-    """Return a damping as a ratio, ratios per mode, shares of mass and stiffness, or a symmetric matrix."""
-    if isinstance(value, Rayleigh):
+def damping_of(value: Any, size: int) -> float | Array | DampingLaw:
+    """Return a damping as a ratio, ratios per mode, a law of frequency, or a symmetric matrix."""
+    if isinstance(value, DampingLaw):
         return value
     if isinstance(value, (Real, str)) or value is None:
-        return _ratio(value)
+        return ratio("damping", value)
     damping = value if hasattr(value, "shape") else numbers("damping", value)
     if len(damping.shape) == 0:
-        return _ratio(damping.item())
+        return ratio("damping", damping.item())
     if len(damping.shape) == 1:
-        ratios = numbers("damping", damping)
-        for mode, ratio in enumerate(ratios):
-            within(f"damping[{mode}]", float(ratio), 0.0, 1.0)
-            if ratio == 1.0:
-                raise ValueError(f"damping[{mode}] must be below 1 (critical), got 1.0")
-        return ratios
+        return np.array(checked_damping(numbers("damping", damping)))
     matrix = symmetric("damping", square("damping", damping, size))
     check_damping(matrix)
     return matrix
-
-
-def _ratio(value: Any) -> float:
-    ratio = non_negative("damping", value)
-    if ratio >= 1.0:
-        raise ValueError(f"damping must be below 1 (critical), got {value!r}")
-    return ratio

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..checks import at_least, count, instance, positive, within
-from .damping import check_damping_count, checked_damping, damping_of_modes
+from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .modes import Array, BodyPoint, Modes
 from .sections import Circle, Material, Rectangle, Section
 
@@ -32,8 +32,9 @@ class ModalBeam:
         Length [m], from x = 0 to its right end.
     bending_modes, axial_modes : int, optional
         Number of modes kept of each kind.
-    damping : float or sequence of float, optional
-        Modal damping ratio of every mode [1], from 0 to 1 (1 excluded), or one for each mode in their order.
+    damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
+        Damping ratio of every mode [1], from 0 to 1 (1 excluded), one for each mode in their order, or a law of their
+        frequency.
     cutoff : float, optional
         Keep the modes up to this frequency [Hz] instead of the counts above.
     name : str, optional
@@ -50,7 +51,7 @@ class ModalBeam:
     length: float
     bending_modes: int = 40
     axial_modes: int = 20
-    damping: float | Sequence[float] = 0.0
+    damping: float | Sequence[float] | DampingLaw = 0.0
     cutoff: float | None = None
     name: str = ""
 
@@ -69,7 +70,7 @@ class ModalBeam:
                 raise ValueError(
                     f"cutoff must leave at least one bending mode (first at {first} Hz), got {self.cutoff!r} Hz"
                 )
-        check_damping_count(self.damping, sum(self.harmonics))  # type: ignore[arg-type]
+        check_damping_count(self.damping, sum(self.harmonics))
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -156,4 +157,4 @@ def _modes(beam: ModalBeam) -> Modes:
     translation = np.zeros((2, angular.size))
     translation[1, : bending.size] = line * mean_bending
     translation[0, bending.size :] = line * mean_axial
-    return Modes(angular, damping_of_modes(beam.damping, angular.size), translation)
+    return Modes(angular, damping_rates(beam.damping, angular), translation)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..checks import at_least, at_most, count, finite, instance, positive, within
-from .damping import check_damping_count, checked_damping, damping_of_modes
+from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .modes import Array, BodyPoint, Modes
 from .plane_stress import PlaneStress, lowest, plane_stress, rigid
 from .sections import Material
@@ -79,9 +79,9 @@ class ModalPlate:
         Thickness and sides [m].
     bending_modes : tuple of int, optional
         Numbers of half-waves kept along the length and along the width; each pair of them is a mode that bends.
-    damping : float or sequence of float, optional
-        Modal damping ratio of every mode [1], from 0 to 1 (1 excluded), or one for each mode in their order: those of
-        bending as in `numbers`, then those in the plane as in `in_plane_numbers`.
+    damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
+        Damping ratio of every mode [1], from 0 to 1 (1 excluded), one for each mode in their order: those of bending as
+        in `numbers`, then those in the plane as in `in_plane_numbers`, or a law of their frequency.
     cutoff : float, optional
         Keep all the modes up to this frequency [Hz] instead of `bending_modes` and `in_plane_modes`.
     line : Line, optional
@@ -106,7 +106,7 @@ class ModalPlate:
     length: float
     width: float
     bending_modes: tuple[int, int] = (12, 12)
-    damping: float | Sequence[float] = 0.0
+    damping: float | Sequence[float] | DampingLaw = 0.0
     cutoff: float | None = None
     line: Line | None = None
     name: str = ""
@@ -127,7 +127,7 @@ class ModalPlate:
         instance("name", self.name, str)
         if self.cutoff is not None:
             self._check_cutoff(positive("cutoff", self.cutoff) * (1.0 + 1e-12))
-        check_damping_count(self.damping, sum(self.harmonics))  # type: ignore[arg-type]
+        check_damping_count(self.damping, sum(self.harmonics))
         if self.line is not None:
             instance("line", self.line, Line)
             self._check_line(self.line)
@@ -402,7 +402,7 @@ def _modes(plate: ModalPlate) -> Modes:
     moved = sheet.amplitudes * [_mean_of_sine(along) * (across == 0), _mean_of_sine(across) * (along == 0)]
     translation[0, len(m) :] = math.sqrt(plate.total_mass) * (np.array(plate.track_line.tangent) @ moved)
     angular = 2.0 * np.pi * np.concatenate([plate._frequency(m, n), sheet.frequency])
-    return Modes(angular, damping_of_modes(plate.damping, angular.size), translation)
+    return Modes(angular, damping_rates(plate.damping, angular), translation)
 
 
 def _mean_of_sine(half_waves: Array) -> Array:

@@ -15,25 +15,24 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True)
 class Modes:
-    """Mass-normalised modes of a body in the plane: ``q'' + 2 zeta w q' + w² q = Phi^T f``.
+    """Mass-normalised modes of a body in the plane: ``q'' + d q' + w² q = Phi^T f``.
 
-    With a damping matrix D, ``D q'`` stands in place of ``2 zeta w q'``.
+    With a damping matrix D, ``D q'`` stands in place of ``d q'``.
 
     Attributes
     ----------
     angular_frequency : ndarray, shape (modes,)
         Undamped angular frequencies w [rad/s], rising; exactly zero for rigid modes.
-    damping : ndarray, shape (modes,)
-        Damping ratios zeta [1], of no effect on rigid modes.
+    damping_rate : ndarray, shape (modes,)
+        ``d = 2 zeta w`` [1/s] for a damping ratio zeta; from ``2 w`` on a mode is overdamped.
     translation : ndarray, shape (2, modes)
         ``Phi^T M 1``: how a uniform acceleration along world x and y drives each mode [kg^(1/2)].
     damping_matrix : ndarray, shape (modes, modes), optional
-        Modal damping matrix ``Phi^T C Phi`` [1/s] where ratios cannot say it: it is not diagonal, it brakes a rigid
-        mode or a mode is overdamped. `damping` then only describes its diagonal.
+        Modal damping matrix ``Phi^T C Phi`` [1/s] where it is not diagonal; `damping_rate` is its diagonal then.
     """
 
     angular_frequency: Array
-    damping: Array
+    damping_rate: Array
     translation: Array
     damping_matrix: Array | None = None
 
@@ -41,6 +40,12 @@ class Modes:
     def count(self) -> int:
         """Number of modes."""
         return int(self.angular_frequency.size)
+
+    @property
+    def damping(self) -> Array:
+        """Damping ratios zeta [1], shape (modes,); zero for rigid modes."""
+        elastic = self.angular_frequency > 0.0
+        return np.where(elastic, self.damping_rate / np.where(elastic, 2.0 * self.angular_frequency, 1.0), 0.0)
 
     @property
     def frequency(self) -> Array:

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from ..checks import choice, instance, positive
+from .damping import DampingLaw, Rayleigh
 from .matrix_arguments import from_container, from_matrices
 from .matrix_files import POINT, read_container, read_matrices, write_npz
 from .matrix_input import (
-    Rayleigh,
     check_finite,
     check_mass,
     damping_of,
@@ -51,11 +51,11 @@ class ReducedBody:
         What each point's displacement along world (x, y) is made of, by its name: rows on the degrees of freedom,
         shape (2, n), or the numbers of two of them from 0, such as ``(0, 1)``; None for a direction in which the point
         does not move.
-    damping : float, sequence of float, Rayleigh or array_like, optional
+    damping : float, sequence of float, Rayleigh, RisingDamping, SampledDamping or array_like, optional
         One damping ratio [1] for every elastic mode, one for each mode kept in the order of rising frequency (of no
-        effect on rigid modes), shares of mass and stiffness, or a symmetric positive semidefinite matrix C [N s/m],
-        shape (n, n). If a cutoff leaves modes out, ``Phi^T C Phi`` of the modes kept is taken: what C couples to the
-        others is lost.
+        effect on rigid modes), a law of their frequency, or a symmetric positive semidefinite matrix C [N s/m], shape
+        (n, n). If a cutoff leaves modes out, ``Phi^T C Phi`` of the modes kept is taken: what C couples to the others
+        is lost.
     translation : array_like, shape (2, n), optional
         Displacement of every degree of freedom when the body moves by 1 m along x (first row) and along y. Gravity
         and uniform initial velocities need it.
@@ -73,7 +73,7 @@ class ReducedBody:
     mass: Array
     stiffness: Array
     points: Mapping[str, Any]
-    damping: float | Sequence[float] | Array | Rayleigh = 0.0
+    damping: float | Sequence[float] | Array | DampingLaw = 0.0
     translation: Array | None = None
     cutoff: float | None = None
     name: str = ""
@@ -235,9 +235,8 @@ class ReducedBody:
     def modes(self, held_x: bool = False) -> Modes:
         """Return the modes, without translation zeros for it; `held_x` is for bodies with a driven end, must be false.
 
-        The damping is a matrix if it does not come down to one ratio below 1 for every elastic mode: if C couples
-        modes by more than 1e-10 of their own damping and by more than rounding does, brakes a rigid mode or overdamps
-        one.
+        The damping is a matrix if C couples modes by more than 1e-10 of their own damping and by more than rounding
+        does.
         """
         if held_x:
             raise ValueError("held_x must be False for a ReducedBody: it has no driven end, got True")

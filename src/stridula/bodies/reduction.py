@@ -9,7 +9,8 @@ import numpy as np
 import scipy.linalg
 
 from ..checks import at_least, at_most
-from .matrix_input import ROUND_OFF, Rayleigh, smallest_eigenvalue
+from .damping import damping_rates
+from .matrix_input import ROUND_OFF, smallest_eigenvalue
 from .modes import Array, Modes
 
 COUPLING = 1e-10
@@ -34,20 +35,17 @@ class Reduction:
 def reduce_body(body: Any) -> Reduction:
     """Return the modes of a `ReducedBody` and their shapes."""
     angular, shapes = _all_modes(body)
-    damping, rounding = _modal_damping(body.damping, angular, shapes)
     kept = np.full(angular.size, True) if body.cutoff is None else angular <= 2.0 * np.pi * body.cutoff
     if not kept.any():
         first = angular[0] / (2.0 * np.pi)
         raise ValueError(f"cutoff must leave at least one mode (first at {at_least(first)} Hz), got {body.cutoff!r} Hz")
+    rates, matrix = _damping(body.damping, angular, shapes, kept)
     angular, shapes = angular[kept], shapes[:, kept]
     shapes.flags.writeable = False
     translation = np.zeros((2, angular.size))
     if body.translation is not None:
         translation = body.translation @ body.mass @ shapes
-    if damping is None:
-        return Reduction(Modes(angular, _given_ratios(body.damping, angular), translation), shapes)
-    ratios, matrix = _ratios(damping[np.ix_(kept, kept)], rounding, angular)
-    return Reduction(Modes(angular, ratios, translation, matrix), shapes)
+    return Reduction(Modes(angular, rates, translation, matrix), shapes)
 
 
 def _all_modes(body: Any) -> tuple[Array, Array]:
@@ -74,30 +72,15 @@ def _all_modes(body: Any) -> tuple[Array, Array]:
     return np.sqrt(np.where(squared <= threshold, 0.0, squared)), scale[:, None] * shapes
 
 
-def _modal_damping(damping: Any, angular: Array, shapes: Array) -> tuple[Array | None, float]:
-    """Return ``Phi^T C Phi`` and how large its rounding errors may be; None if the damping is given by ratios."""
-    if isinstance(damping, Rayleigh):
-        return np.diag(damping.mass + damping.stiffness * angular**2), 0.0
+def _damping(damping: Any, angular: Array, shapes: Array, kept: Array) -> tuple[Array, Array | None]:
+    """Return the damping of the modes kept, and its matrix where that is not diagonal."""
     if not isinstance(damping, np.ndarray) or damping.ndim == 1:
-        return None, 0.0
+        return damping_rates(damping, angular[kept]), None
     matrix = shapes.T @ damping @ shapes
-    return 0.5 * (matrix + matrix.T), ROUND_OFF * float(np.diag(matrix).max())
-
-
-def _ratios(matrix: Array, rounding: float, angular: Array) -> tuple[Array, Array | None]:
-    """Return the damping ratios on the diagonal of a modal damping matrix, and the matrix if they do not say it all."""
+    # Of all the modes: what rounding makes of the highest is seen among the lowest.
+    rounding = ROUND_OFF * float(np.diag(matrix).max())
+    matrix = 0.5 * (matrix + matrix.T)[np.ix_(kept, kept)]
     diagonal = np.where(np.diag(matrix) > rounding, np.diag(matrix), 0.0)
-    elastic = angular > 0.0
-    ratios = np.where(elastic, diagonal / np.where(elastic, 2.0 * angular, 1.0), 0.0)
     coupled = np.abs(matrix) > COUPLING * np.sqrt(np.outer(diagonal, diagonal)) + rounding
     np.fill_diagonal(coupled, False)
-    if coupled.any():
-        return ratios, matrix
-    said = not diagonal[~elastic].any() and bool((ratios < 1.0).all())
-    return ratios, None if said else np.diag(diagonal)
-
-
-def _given_ratios(damping: Any, angular: Array) -> Array:
-    if isinstance(damping, np.ndarray) and damping.size != angular.size:
-        raise ValueError(f"damping must have one ratio for each of the {angular.size} modes kept, got {damping.size}")
-    return np.where(angular > 0.0, damping, 0.0)
+    return diagonal, matrix if coupled.any() else None

@@ -72,7 +72,7 @@ def recurrence(arrays: Assembly, scheme: Scheme, step: float) -> Recurrence:
     ValueError
         If the step is too long for coupled modes to answer an impulse in its own sense.
     """
-    k = scheme.coefficients(arrays.angular_frequency, arrays.damping, step)
+    k = scheme.coefficients(arrays.angular_frequency, arrays.damping_rate, step)
     block = np.zeros((at.COEFFICIENT_ROWS, arrays.mode_count))
     block[at.B], block[at.R], block[at.LOAD] = k.b, k.r, k.load
     block[at.HALF_OVER_LOAD] = 0.5 / block[at.LOAD]

@@ -15,10 +15,11 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 import scipy.linalg
+from scipy.special import exprel, hyp1f1
 
 from ..bodies.modes import Array
 
-# Damping times step, up to which the start of coupled modes is followed back in time.
+# Damping times step, up to which a start is followed back in time.
 FOLLOWED_BACK = 2.0
 
 
@@ -52,16 +53,16 @@ class Scheme(Protocol):
         """Share of the limit that the step defaults to."""
         ...
 
-    def coefficients(self, angular: Array, damping: Array, step: float) -> Coefficients:
-        """Return the coefficients for modes of angular frequency [rad/s] and damping ratio [1] at `step` [s]."""
+    def coefficients(self, angular: Array, rate: Array, step: float) -> Coefficients:
+        """Return the coefficients of ``q'' + d q' + w² q = f`` for w [rad/s] and a rate d [1/s] at `step` [s]."""
         ...
 
-    def limit(self, angular: Array, damping: Array) -> float:
+    def limit(self, angular: Array, rate: Array) -> float:
         """Return the step [s] that must not be reached."""
         ...
 
     def first_increment(
-        self, angular: Array, damping: Array, step: float, position: Array, velocity: Array, force: Array
+        self, angular: Array, rate: Array, step: float, position: Array, velocity: Array, force: Array
     ) -> Array:
         """Return ``q[0] - q[-1]`` of motion that passes `position` with `velocity` under a constant `force`."""
         ...
@@ -91,26 +92,25 @@ class CentralDifference:
     name: ClassVar[str] = "central difference"
     default_fraction: ClassVar[float] = 0.5
 
-    def coefficients(self, angular: Array, damping: Array, step: float) -> Coefficients:
-        """Return the coefficients of ``q'' + 2 zeta w q' + w² q = f`` with all derivatives centred."""
-        divisor = 1.0 + damping * angular * step
+    def coefficients(self, angular: Array, rate: Array, step: float) -> Coefficients:
+        """Return the coefficients of ``q'' + d q' + w² q = f`` with all derivatives centred."""
+        divisor = 1.0 + 0.5 * rate * step
         return Coefficients(
-            b=(1.0 - damping * angular * step) / divisor,
+            b=(1.0 - 0.5 * rate * step) / divisor,
             r=(angular * step) ** 2 / divisor,
             load=step**2 / divisor,
         )
 
-    def limit(self, angular: Array, damping: Array) -> float:
+    def limit(self, angular: Array, rate: Array) -> float:
         """Return ``2 / w_max`` [s]."""
         highest = float(np.max(angular, initial=0.0))
         return 2.0 / highest if highest else np.inf
 
     def first_increment(
-        self, angular: Array, damping: Array, step: float, position: Array, velocity: Array, force: Array
+        self, angular: Array, rate: Array, step: float, position: Array, velocity: Array, force: Array
     ) -> Array:
         """Return the increment whose centred velocity at the start is `velocity`."""
-        k = self.coefficients(angular, damping, step)
-        return (2.0 * step * velocity + k.r * position - k.load * force) / (1.0 + k.b)
+        return _centred(self.coefficients(angular, rate, step), step, position, velocity, force)
 
     def coupled_coefficients(self, stiffness: Array, damping: Array, step: float) -> Coefficients:
         """Return the matrices of the same differences: ``(1 + h D / 2)`` divides."""
@@ -120,7 +120,8 @@ class CentralDifference:
 
     def coupled_limit(self, stiffness: Array, damping: Array) -> float:
         """Return ``2 / w_max`` [s] of the undamped coupled modes."""
-        return self.limit(_angular(stiffness), damping)
+        angular = _angular(stiffness)
+        return self.limit(angular, np.zeros_like(angular))
 
     def coupled_first_increment(
         self, stiffness: Array, damping: Array, step: float, position: Array, velocity: Array, force: Array
@@ -140,35 +141,43 @@ class ExactModal:
     name: ClassVar[str] = "exact modal"
     default_fraction: ClassVar[float] = 0.2
 
-    def coefficients(self, angular: Array, damping: Array, step: float) -> Coefficients:
-        """Return ``b = e^(-2zwh)``, ``r = 1 - 2 e^(-zwh) cos(wd h) + b`` without cancellation, ``l = r / w²``."""
-        decay = damping * angular * step
-        damped = angular * np.sqrt(1.0 - damping**2) * step
-        r = np.expm1(-decay) ** 2 + 4.0 * np.exp(-decay) * np.sin(damped / 2.0) ** 2
-        rigid = angular == 0.0
-        load = np.where(rigid, step**2, r / np.where(rigid, 1.0, angular) ** 2)
-        return Coefficients(b=np.exp(-2.0 * decay), r=r, load=load)
+    def coefficients(self, angular: Array, rate: Array, step: float) -> Coefficients:
+        """Return the coefficients of exact free motion without cancellation.
 
-    def limit(self, angular: Array, damping: Array) -> float:
-        """Return half the shortest damped period [s]."""
-        highest = float(np.max(angular * np.sqrt(1.0 - damping**2), initial=0.0))
+        ``b = e^(-d h)``, ``r = (1 - e^(-m1 h)) (1 - e^(-m2 h))`` and ``l = r / w²``, with the roots ``-m1`` and ``-m2``
+        of ``x² + d x + w²``. Below critical damping ``r = 1 - 2 e^(-d h / 2) cos(wd h) + b``.
+        """
+        damped, decay = _damped(angular, rate), 0.5 * rate * step
+        oscillating = damped.imag == 0.0
+        safe = np.where(oscillating & (angular > 0.0), angular, 1.0)
+        r = np.expm1(-decay) ** 2 + 4.0 * np.exp(-decay) * np.sin(damped.real * step / 2.0) ** 2
+        fast = 0.5 * rate + damped.imag
+        slow = angular**2 / np.where(fast > 0.0, fast, 1.0)
+        creeping = step**2 * exprel(-slow * step) * exprel(-fast * step)
+        load = np.where(oscillating & (angular > 0.0), r / safe**2, creeping)
+        return Coefficients(b=np.exp(-2.0 * decay), r=load * angular**2, load=load)
+
+    def limit(self, angular: Array, rate: Array) -> float:
+        """Return half the shortest damped period [s]; overdamped modes have none."""
+        highest = float(np.max(_damped(angular, rate).real, initial=0.0))
         return np.pi / highest if highest else np.inf
 
     def first_increment(
-        self, angular: Array, damping: Array, step: float, position: Array, velocity: Array, force: Array
+        self, angular: Array, rate: Array, step: float, position: Array, velocity: Array, force: Array
     ) -> Array:
-        """Return ``q(0) - q(-h)`` of the exact motion about the rest point."""
+        """Return ``q(0) - q(-h)`` of the exact motion, followed back, or of a centred velocity.
+
+        Strongly damped motion grows without bound when it is followed back: see `coupled_first_increment`.
+        """
         rigid = angular == 0.0
-        safe = np.where(rigid, 1.0, angular)
-        rest = np.where(rigid, 0.0, force / safe**2)
-        decay = damping * angular
-        damped = safe * np.sqrt(1.0 - damping**2)
-        offset = position - rest
-        back = np.exp(decay * step) * (
-            offset * np.cos(damped * step) - (velocity + decay * offset) / damped * np.sin(damped * step)
-        )
-        free = velocity * step - force * step**2 / 2.0
-        return np.where(rigid, free, offset - back)
+        decay = np.minimum(rate * step, FOLLOWED_BACK)
+        phase = _damped(angular, decay / step) * step
+        offset = position - np.where(rigid, 0.0, force / np.where(rigid, 1.0, angular) ** 2)
+        swing = step * velocity + 0.5 * decay * offset
+        back = np.exp(0.5 * decay) * (offset * np.cos(phase).real - swing * np.sinc(phase / np.pi).real)
+        free = step * velocity * exprel(decay) - 0.5 * force * step**2 * hyp1f1(1.0, 3.0, decay)
+        centred = _centred(self.coefficients(angular, rate, step), step, position, velocity, force)
+        return np.where(rate * step > FOLLOWED_BACK, centred, np.where(rigid, free, offset - back))
 
     def coupled_coefficients(self, stiffness: Array, damping: Array, step: float) -> Coefficients:
         """Return the matrices of exact free motion.
@@ -205,6 +214,17 @@ class ExactModal:
         size = len(stiffness)
         back = _transition(stiffness, damping, -step)[:size]
         return position - back @ np.concatenate([position, velocity, force])
+
+
+def _damped(angular: Array, rate: Array) -> Array:
+    """Return the damped angular frequencies [rad/s], imaginary where a mode is overdamped or rigid."""
+    half = 0.5 * rate
+    return np.asarray(np.sqrt((angular - half) * (angular + half) + 0j))
+
+
+def _centred(k: Coefficients, step: float, position: Array, velocity: Array, force: Array) -> Array:
+    """Return the increment before the start whose centred velocity there is `velocity`."""
+    return np.asarray((2.0 * step * velocity + k.r * position - k.load * force) / (1.0 + k.b))
 
 
 def _centred_start(k: Coefficients, step: float, position: Array, velocity: Array, force: Array) -> Array:

@@ -177,7 +177,7 @@ def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float
     positive("duration", duration)
     wanted = 1.0 / positive("sample_rate", sample_rate)
     limit = min(
-        scheme.limit(arrays.angular_frequency, arrays.damping),
+        scheme.limit(arrays.angular_frequency, arrays.damping_rate),
         scheme.coupled_limit(arrays.stiffness, arrays.dissipation),
     )
     if step is None:

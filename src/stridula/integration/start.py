@@ -79,7 +79,7 @@ class _Start:
     def _increment(self, position: Array, velocity: Array, force: Array) -> Array:
         arrays, size = self.arrays, self.arrays.coupled
         first = self.scheme.first_increment(
-            arrays.angular_frequency, arrays.damping, self.step, position, velocity, force
+            arrays.angular_frequency, arrays.damping_rate, self.step, position, velocity, force
         )
         if size:
             first[:size] = self.scheme.coupled_first_increment(

@@ -91,7 +91,7 @@ class Structure:
         arrays, size = self.arrays, self.arrays.coupled
         self.lines = [_line(one, system, arrays.spans) for one in arrays.contacts]
         self.stiffness = np.diag(arrays.angular_frequency**2)
-        self.damping = np.diag(2.0 * arrays.damping * arrays.angular_frequency)
+        self.damping = np.diag(arrays.damping_rate)
         self.stiffness[:size, :size], self.damping[:size, :size] = arrays.stiffness, arrays.dissipation
         self.rigid = _rigid_motions(self)
         factors = np.array([signal(now, 1e-6)[0] for signal in arrays.signals[: len(arrays.loads)]])

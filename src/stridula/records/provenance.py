@@ -12,6 +12,7 @@ import numpy as np
 import tomli_w
 
 from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, Track
+from ..bodies.damping import DampingLaw
 from ..bodies.modes import Array
 from ..contact import PointContact, RigidTrack
 from ..drives import Drive, Force, ImposedVelocity, InitialState, InitialVelocity
@@ -146,7 +147,7 @@ def _value(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {name: _value(entry) for name, entry in value.items()}
     if is_dataclass(value) and not isinstance(value, type):
-        return _plain(value)
+        return ({"law": value.law} if isinstance(value, DampingLaw) else {}) | _plain(value)
     if isinstance(value, bool):
         return value
     if isinstance(value, Integral):

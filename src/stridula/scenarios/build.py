@@ -22,6 +22,8 @@ from ..bodies import (
     Rayleigh,
     Rectangle,
     ReducedBody,
+    RisingDamping,
+    SampledDamping,
     Section,
 )
 from ..checks import listed, suggestion
@@ -35,6 +37,7 @@ from .errors import ScenarioError
 from .quantities import quantity
 
 SECTIONS: dict[str, Callable[..., Any]] = {"rectangle": Rectangle, "circle": Circle, "general": Section}
+DAMPINGS: dict[str, Callable[..., Any]] = {law.law: law for law in (Rayleigh, RisingDamping, SampledDamping)}
 HISTORIES: dict[str, Callable[..., Any]] = {
     "constant": histories.Constant,
     "ramp": histories.Ramp,
@@ -167,6 +170,7 @@ class Builder:
     def _body(self, name: str, table: Tables, used: list[str]) -> Any:
         path = ("bodies", name)
         kind = table.pop("kind")
+        table |= _damping(table)
         table["name"] = table.get("name") or ("" if name == self._default_name(name, used) else name)
         if kind == "point mass":
             with self._within(*path):
@@ -191,8 +195,6 @@ class Builder:
             if Path(file).exists() and not Path(file).is_file():
                 self.problems.append(f"{self.words((*path, key))} must be a file, got {file!r}")
                 return None
-        if isinstance(table.get("damping"), dict):
-            table["damping"] = Rayleigh(**table["damping"])
         with self._within(*path):
             if "file" in table or {"mass", "stiffness"} & set(files):
                 container = table.pop("file", None)
@@ -203,7 +205,7 @@ class Builder:
             return ReducedBody(**table)
 
     def _beam(self, path: Place, kind: Callable[..., Any], given: Tables) -> Any:
-        table = dict(given)
+        table = given | _damping(given)
         section = dict(table.pop("section"))
         with self._within(*path, "section"):
             shape = SECTIONS[section.pop("shape")](**section)
@@ -380,6 +382,14 @@ class Builder:
 def out_of_range(key: str) -> str:
     """Return the problem of a table whose modes cannot be held in floating-point numbers."""
     return f"{key or 'scenario'} must hold numbers of ordinary size: its modes overflow"
+
+
+def _damping(table: Tables) -> Tables:
+    """Return the damping of a body's table, its law of frequency built; nothing if that is not given by a law."""
+    given = table.get("damping")
+    if not isinstance(given, dict):
+        return {}
+    return {"damping": DAMPINGS[given["law"]](**{key: value for key, value in given.items() if key != "law"})}
 
 
 def _unknown(key: str, name: Any, known: Any) -> str:

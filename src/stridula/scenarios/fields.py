@@ -10,13 +10,14 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 from numbers import Integral
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError
 from pydantic_core.core_schema import no_info_plain_validator_function
 
+from ..bodies import Rayleigh, RisingDamping, SampledDamping
 from ..bodies.modes import Array
 from ..checks import STATUS_WORDS, at_least, at_most
 from ..drives import MOST_UNSTABLE
@@ -145,6 +146,80 @@ class OneOrEach(_Kind):
 
 
 @dataclass(frozen=True)
+class DampingTable(_Kind):
+    """A law of damping: its name and its parameters."""
+
+    laws: ClassVar[dict[str, Any]] = {
+        Rayleigh.law: (
+            Rayleigh,
+            {
+                "mass": (Quantity("1/s", least=0.0), "share of the mass matrix [1/s]"),
+                "stiffness": (Quantity("s", least=0.0), "share of the stiffness matrix [s]"),
+            },
+        ),
+        RisingDamping.law: (
+            RisingDamping,
+            {
+                "ratio": (Quantity("1", least=0.0, below=1.0), "damping ratio at low frequencies"),
+                "slope": (Quantity("1/Hz", least=0.0), "rise of the damping ratio with the frequency of a mode [1/Hz]"),
+            },
+        ),
+        SampledDamping.law: (
+            SampledDamping,
+            {
+                "frequency": (OneOrEach(Quantity("Hz", least=0.0)), "frequencies at which the ratio is given [Hz]"),
+                "ratio": (OneOrEach(Quantity("1", least=0.0, below=1.0)), "damping ratio at each, linear between them"),
+            },
+        ),
+    }
+
+    def read(self, value: Any) -> Any:
+        law = value.get("law", Rayleigh.law)
+        if law not in self.laws:
+            raise ValueError(f"must be of a law that is one of {', '.join(self.laws)}")
+        build, parameters = self.laws[law]
+        if value.keys() - {"law"} != parameters.keys():
+            raise ValueError(f"must have, under the law {law}, {' and '.join(parameters)}")
+        given = {}
+        for key, (kind, _) in parameters.items():
+            try:
+                given[key] = kind.read(value[key])
+            except ValueError as error:
+                raise ValueError(f"must have a {key} that {error}") from None
+        build(**given)
+        return {"law": law, **given}
+
+    def json_schema(self) -> dict[str, Any]:
+        laws = []
+        for law, (_, parameters) in self.laws.items():
+            keys = {key: kind.json_schema() | {"description": words} for key, (kind, words) in parameters.items()}
+            name = {"const": law, "description": f"law of damping: {', '.join(self.laws)}"}
+            laws.append({"type": "object", "properties": {"law": name, **keys}, "additionalProperties": False})
+        return {"anyOf": laws}
+
+
+LAW_OF_DAMPING = DampingTable()
+
+
+@dataclass(frozen=True)
+class RatioOrLaw(_Kind):
+    """One damping ratio, a list of one for each mode if `each`, or a law of damping."""
+
+    each: bool
+
+    def read(self, value: Any) -> Any:
+        return LAW_OF_DAMPING.read(value) if isinstance(value, dict) else self._ratios.read(value)
+
+    def json_schema(self) -> dict[str, Any]:
+        return {"anyOf": [*self._ratios.json_schema()["anyOf"], *LAW_OF_DAMPING.json_schema()["anyOf"]]}
+
+    @property
+    def _ratios(self) -> Quantity | OneOrEach:
+        one = Quantity("1", least=0.0, below=1.0)
+        return OneOrEach(one) if self.each else one
+
+
+@dataclass(frozen=True)
 class Words(_Kind):
     """A word of a choice, or where allowed a list of them.
 
@@ -268,7 +343,7 @@ class Place(_Kind):
 
 @dataclass(frozen=True)
 class Numbers(_Kind):
-    """A list of numbers or a matrix, written out or packed; where allowed also one ratio, shares, or a file.
+    """A list of numbers or a matrix, written out or packed; where allowed also one number, a law of damping, or a file.
 
     Attributes
     ----------
@@ -276,13 +351,13 @@ class Numbers(_Kind):
         Dimensions it may have: 0 for one number, 1 for a list, 2 for a matrix.
     file : bool
         Whether a text may be the name of a file.
-    rayleigh : bool
-        Whether a table with shares of mass and stiffness will do.
+    damping : bool
+        Whether a law of damping will do.
     """
 
     dimensions: tuple[int, ...]
     file: bool = False
-    rayleigh: bool = False
+    damping: bool = False
 
     def read(self, value: Any) -> Any:
         array: Array | None
@@ -290,8 +365,8 @@ class Numbers(_Kind):
             array = unpacked(value)
         elif self.file and isinstance(value, str) and not (0 in self.dimensions and is_quantity(value, "1")):
             return value
-        elif self.rayleigh and isinstance(value, dict):
-            return _shares(value)
+        elif self.damping and isinstance(value, dict):
+            return LAW_OF_DAMPING.read(value)
         elif 0 in self.dimensions and not isinstance(value, list):
             return quantity(value, "1")
         else:
@@ -305,14 +380,13 @@ class Numbers(_Kind):
     def json_schema(self) -> dict[str, Any]:
         row = {"type": "array", "items": {"type": "number"}}
         kinds = {0: {"type": "number"}, 1: row, 2: {"type": "array", "items": row}}
-        shares = {"type": "object", "properties": {name: Quantity("1").json_schema() for name in SHARES}}
-        own = [*([shares] if self.rayleigh else []), {"type": "string"}]
-        return {"anyOf": [*(kinds[dimension] for dimension in self.dimensions), *own]}
+        laws = LAW_OF_DAMPING.json_schema()["anyOf"] if self.damping else []
+        return {"anyOf": [*(kinds[dimension] for dimension in self.dimensions), *laws, {"type": "string"}]}
 
     def _words(self) -> str:
         kinds = {0: "a number", 1: "a list of numbers", 2: "a matrix, a list of rows of numbers"}
         words = [kinds[dimension] for dimension in self.dimensions]
-        words += ["shares of mass and stiffness"] if self.rayleigh else []
+        words += ["a law of damping"] if self.damping else []
         words += ["a file"] if self.file else []
         return f"must be {' or '.join(words)}"
 
@@ -360,15 +434,6 @@ class Motion(_Kind):
         return {"anyOf": [{"type": "array", "items": {"type": "integer"}}, *Numbers((2,)).json_schema()["anyOf"]]}
 
 
-SHARES = ("mass", "stiffness")
-
-
-def _shares(value: dict[str, Any]) -> dict[str, float]:
-    if set(value) != set(SHARES):
-        raise ValueError("must hold the shares mass [1/s] and stiffness [s]")
-    return {"mass": quantity(value["mass"], "1/s"), "stiffness": quantity(value["stiffness"], "s")}
-
-
 def _array(value: Any) -> Array | None:
     """Return lists of real numbers as an array of floats, None if they are no such thing."""
     if not isinstance(value, (list, tuple, np.ndarray)):
@@ -398,7 +463,7 @@ def _is_label_or_none(value: Any) -> bool:
 Ratio = Annotated[float, Quantity("1")]
 Poisson = Annotated[float, Quantity("1", above=-1.0, below=0.5)]
 Friction = Annotated[float, Quantity("1", least=0.0)]
-Damping = Annotated[float, Quantity("1", least=0.0, below=1.0)]
+Damping = Annotated[Any, RatioOrLaw(each=False)]
 Length = Annotated[float, Quantity("m", above=0.0)]
 Distance = Annotated[float, Quantity("m", least=0.0)]
 Area = Annotated[float, Quantity("m2", above=0.0)]
@@ -431,8 +496,8 @@ PositiveRatio = Annotated[float, Quantity("1", above=0.0)]
 Bristles = Annotated[float, Quantity("1/m", above=0.0)]
 Slope = Annotated[float, Quantity("s/m", least=0.0)]
 Matrix = Annotated[Any, Numbers((2,), file=True)]
-ModalDamping = Annotated[Any, OneOrEach(Quantity("1", least=0.0, below=1.0))]
-ReducedDamping = Annotated[Any, Numbers((0, 1, 2), file=True, rayleigh=True)]
+ModalDamping = Annotated[Any, RatioOrLaw(each=True)]
+ReducedDamping = Annotated[Any, Numbers((0, 1, 2), file=True, damping=True)]
 Vector = Annotated[Any, Numbers((1,))]
 PointTable = Annotated[Any, Points()]
 Translation = Annotated[Any, Motion()]

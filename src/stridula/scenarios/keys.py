@@ -68,7 +68,7 @@ def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
     ending = [path for path in known if _text(path)[-len(asked) :] == asked]
     present = [path for path in ending if outline.look_up(tables, path) is not None]
     # Of keys left out, those of tables that are there come first.
-    beside = [path for path in ending if outline.look_up(tables, path[:-1]) is not None]
+    beside = [path for path in ending if isinstance(outline.look_up(tables, path[:-1]), (dict, list))]
     candidates = full or present or beside or ending
     if not candidates:
         raise ScenarioError([f"key must be one of the scenario's, got {key!r}{_nearest(asked, list(known), tables)}"])
@@ -80,8 +80,9 @@ def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
 
 
 def _only_number(key: str, path: Path, tables: dict[str, Any]) -> Path:
-    below = outline.properties(outline.node_at(path, tables), outline.look_up(tables, path))
-    if not below:
+    node = outline.node_at(path, tables)
+    below = outline.properties(node, outline.look_up(tables, path))
+    if not below or (node is not None and outline.is_number(node)):
         return path
     numbers = [name for name, node in below.items() if outline.is_number(node)]
     given = [name for name in numbers if outline.look_up(tables, (*path, name)) is not None]

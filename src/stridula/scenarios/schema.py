@@ -77,7 +77,7 @@ class ScenarioTable(Table):
     section: Section | None = None
     """cross-section of all beams, unless a body has its own"""
     damping: is_.Damping | None = None
-    """damping ratio of all beams and plates, unless a body has its own"""
+    """damping of all beams and plates, a ratio or a law of frequency, unless a body has its own"""
     cutoff: is_.Frequency | None = None
     """highest frequency of the modes of all beams and plates, unless a body has its own [Hz]"""
     slider: Slider | None = None

@@ -63,8 +63,8 @@ class Slider(Table):
     """angle from the track's normal; above zero the root is ahead of the tip in x [rad]"""
     elements: is_.Count = FiniteElementBeam.elements
     """number of finite elements"""
-    damping: is_.Damping = FiniteElementBeam.damping
-    """damping ratio of every mode"""
+    damping: is_.ModalDamping = FiniteElementBeam.damping
+    """damping ratio of every mode, one for each, or a law of frequency"""
     root_support: Support = "guided"
     """support of the root: free, guided (no rotation), pinned or clamped"""
     tip_support: Support = "free"
@@ -89,7 +89,7 @@ class Track(Table):
     axial_modes: is_.CountOrNone = ModalBeam.axial_modes
     """number of axial modes, unless there is a cutoff"""
     damping: is_.ModalDamping = ModalBeam.damping
-    """damping ratio of every mode, or one for each"""
+    """damping ratio of every mode, one for each, or a law of frequency"""
     cutoff: is_.Frequency | None = None
     """keep the modes up to this frequency [Hz]"""
     name: str = ""
@@ -131,7 +131,7 @@ class Plate(Table):
     in_plane_modes: is_.CountsOrNone = ModalPlate.in_plane_modes
     """most half-waves along length and width of modes in its plane, counted from 0, unless there is a cutoff"""
     damping: is_.ModalDamping = ModalPlate.damping
-    """damping ratio of every mode, or one for each"""
+    """damping ratio of every mode, one for each, or a law of frequency"""
     cutoff: is_.Frequency | None = None
     """keep the modes up to this frequency [Hz]"""
     line: Line | None = None
@@ -161,7 +161,7 @@ class Reduced(Table):
     points: is_.PointTable | None = None
     """points by name: rows, or the degrees of freedom along x and y"""
     damping: is_.ReducedDamping | None = None
-    """damping: a ratio, one for each mode, shares of mass and stiffness, a matrix, or its file"""
+    """damping: a ratio, one for each mode, a law of frequency, a matrix, or its file"""
     translation: is_.Translation | None = None
     """rows that say how a translation along x and y moves it; gravity and initial velocities need it"""
     cutoff: is_.Frequency | None = None

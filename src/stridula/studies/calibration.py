@@ -115,7 +115,7 @@ def calibrate(
     population: int = 32,
     generations: int = 50,
     seed: int = 0,
-    start: Mapping[str, Any] | None = None,
+    start: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
     spread: float = 0.02,
     watchers: Sequence[Callable[[CalibrationProgress], None]] = (),
     **options: Any,
@@ -144,8 +144,9 @@ def calibrate(
         Generations after the first.
     seed : int, optional
         Seed of the search.
-    start : mapping, optional
-        Parameters to start from: the first set, about which the others are spread.
+    start : mapping or sequence of mapping, optional
+        Parameters to start from: the first set, about which the others are spread, or the first sets of all, such as
+        the best of a sweep, about which the rest are spread in turn.
     spread : float, optional
         Standard deviation of the others about `start`, as a share of the ranges.
     watchers : sequence of callable, optional
@@ -284,21 +285,32 @@ def _first_population(
     ranges: Mapping[str, Range],
     population: int,
     random: np.random.Generator,
-    start: Mapping[str, Any] | None,
+    start: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None,
     spread: float,
 ) -> Array:
     """Return the first generation as shares of the ranges, shape (population, parameters)."""
     if start is None:
         return np.asarray(scipy.stats.qmc.LatinHypercube(len(ranges), rng=random).random(population))
+    given = [start] if isinstance(start, Mapping) else start
+    if not isinstance(given, Sequence) or not 0 < len(given) <= population:
+        raise ValueError(f"start must be a set of parameters or a list of 1 to {population}, got {brief(start)}")
+    centres = np.array([_shares_of(one, ranges) for one in given])
+    around = centres[np.arange(population) % len(centres)]
+    around += random.normal(size=around.shape) * spread
+    around[: len(centres)] = centres
+    return np.clip(around, 0.0, 1.0)
+
+
+def _shares_of(start: Any, ranges: Mapping[str, Range]) -> list[float]:
+    """Return a set of parameters as shares of the ranges."""
+    instance("start", start, Mapping)
     if set(start) != set(ranges):
         raise ValueError(f"start must have the keys of ranges, {listed(ranges)}, got {listed(map(str, start))}")
-    centre = np.array([one.share(start[key]) for key, one in ranges.items()])
-    outside = [key for key, share in zip(ranges, centre, strict=True) if not -1e-9 <= share <= 1.0 + 1e-9]
+    shares = [one.share(start[key]) for key, one in ranges.items()]
+    outside = [key for key, share in zip(ranges, shares, strict=True) if not -1e-9 <= share <= 1.0 + 1e-9]
     if outside:
         raise ValueError(f"start must lie in the ranges, got {outside[0]} = {start[outside[0]]!r}")
-    around = centre + random.normal(size=(population, len(ranges))) * spread
-    around[0] = centre
-    return np.clip(around, 0.0, 1.0)
+    return shares
 
 
 class _Search:

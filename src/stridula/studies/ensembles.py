@@ -91,11 +91,15 @@ def ensemble(
     for word in ("start", "watchers", "reduce"):
         if word in options:
             raise ValueError(f"{word} must be left out of an ensemble, which sets its own, got {options[word]!r}")
-    shares = np.random.default_rng(seed).uniform(-perturbation, perturbation, runs)
-    shares[0] = 0.0
+    shares = _shares(runs, perturbation, seed)
     systems = [_perturbed(system, float(share)) for share in shares]
     results = _run_all(systems, duration, named, options, workers or os.cpu_count() or 1)
     return _dataset(named, shares, results, confidence)
+
+
+def perturbed_starts(system: System, runs: int, perturbation: float = 1e-6, seed: int = 0) -> list[System]:
+    """Return a system with the starts of an ensemble, the first as it is."""
+    return [_perturbed(system, float(share)) for share in _shares(runs, perturbation, seed)]
 
 
 def share_of(status: str, contact: str | None = None) -> Measure:
@@ -145,6 +149,12 @@ def _checked(measures: Any) -> dict[str, Measure]:
     if clash is not None:
         raise ValueError(f"measures must have names other than {', '.join(OWN)} and results of others, got {clash!r}")
     return dict(measures)
+
+
+def _shares(runs: int, perturbation: float, seed: int) -> Array:
+    shares = np.random.default_rng(seed).uniform(-perturbation, perturbation, runs)
+    shares[0] = 0.0
+    return shares
 
 
 def _perturbed(system: System, share: float) -> System:
