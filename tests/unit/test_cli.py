@@ -17,7 +17,7 @@ import pytest
 import scipy.io
 
 import stridula as st
-from stridula.cli import running, sweeping
+from stridula.cli import bars, running
 from stridula.cli.card import card
 from stridula.cli.doubts import doubts
 from stridula.plot.colours import REGIME_COLOURS
@@ -309,7 +309,7 @@ def terminate(*arguments, **fields):
 
 @pytest.mark.parametrize("stop", [interrupt, terminate])
 def test_ctrl_c_and_sigterm_keep_what_was_recorded(stridula, monkeypatch, stop):
-    monkeypatch.setattr(running.Progress, "update", stop)
+    monkeypatch.setattr(bars.Progress, "update", stop)
     code, out, err = stridula("run", "squeal", "--duration", "0.25", "--out", "part.nc")
     assert code == 130
     assert err.startswith("stridula: interrupted at t = ")
@@ -366,7 +366,7 @@ def test_a_failed_run_is_drawn_as_far_as_it_went(stridula, monkeypatch, tmp_path
 
 
 def test_an_interrupted_run_says_that_nothing_was_drawn(stridula, monkeypatch, tmp_path):
-    monkeypatch.setattr(running.Progress, "update", interrupt)
+    monkeypatch.setattr(bars.Progress, "update", interrupt)
     code, _, err = stridula("run", "squeal", "--duration", "0.25", "--plot", "part.png")
     assert (code, err.endswith("; no figure was drawn\n")) == (130, True)
     assert list(tmp_path.iterdir()) == []
@@ -542,7 +542,7 @@ def test_a_sweep_needs_a_file_and_a_measure(stridula, option):
 def test_ctrl_c_in_a_sweep_says_what_is_safe_and_the_same_command_goes_on(stridula, monkeypatch, tmp_path):
     many = (*SWEEP, "--vary", "friction=0.2:2:100")
     with monkeypatch.context() as patch:
-        patch.setattr(sweeping.Progress, "update", interrupt)
+        patch.setattr(bars.Progress, "update", interrupt)
         code, out, err = stridula(*many)
     assert (code, out) == (130, "")
     found = re.fullmatch(

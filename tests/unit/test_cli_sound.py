@@ -9,7 +9,7 @@ import pytest
 import soundfile
 
 import stridula as st
-from stridula.cli import running
+from stridula.cli import bars
 
 
 @pytest.fixture(scope="module")
@@ -229,7 +229,7 @@ def test_an_interrupted_run_says_that_no_sound_was_written(stridula, monkeypatch
     def interrupt(*arguments, **fields):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(running.Progress, "update", interrupt)
+    monkeypatch.setattr(bars.Progress, "update", interrupt)
     code, _, err = stridula("run", "squeal", "--duration", "0.25", "--wav", "part.wav")
     assert (code, err.endswith("; no sound was written\n")) == (130, True)
     assert not list(tmp_path.iterdir())

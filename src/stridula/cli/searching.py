@@ -23,6 +23,7 @@ from ..studies.points import Range
 from ..studies.sobol import FEWEST, sensitivity
 from .consoles import wide_console
 from .exits import INTERRUPTED, Stopped
+from .sweeping import points_done
 
 
 def calibrate_scenario(
@@ -124,7 +125,9 @@ def sensitivity_of_scenario(
     """Print Sobol indices and probabilities of the regimes, write them, and return the closing lines."""
     if out is not None:
         check_writable(out)
-    found = sensitivity(name, ranges, measures or ["regime"], overrides=overrides, **options)
+    title = str(read_tables(name).get("title", name))
+    with points_done(title) as watch:
+        found = sensitivity(name, ranges, measures or ["regime"], overrides=overrides, watchers=[watch], **options)
     console = wide_console()
     if "probability" in found and np.isfinite(found["probability"].values).all():
         console.print("How likely each regime is")
