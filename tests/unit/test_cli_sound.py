@@ -42,6 +42,7 @@ def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
     code, out, err = stridula("run", "squeal", "--duration", "60 ms", "--wav", "run.wav", "--out", "run.nc")
     assert (code, err) == (0, "")
     assert "\nrun.wav: 2 channels, 48 kHz, 0.06 s, peak " in out
+    assert "\nat the louder ear: Leq " in out
     track = st.load_scenario("squeal").system.track
     pressure = st.radiate(st.load("run.nc"), track)
     st.write_wav("same.wav", pressure)

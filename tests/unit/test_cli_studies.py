@@ -20,7 +20,7 @@ def test_stability_says_equilibrium_and_modes(stridula):
     assert (code, err) == (0, "")
     modes = st.sliding_stability(st.load_scenario("weak-pressure", {"friction": 1.0}).system)
     grows = int(modes["unstable"].sum())
-    assert f"slides steadily; {grows} modes grow, {modes.sizes['mode']} modes in all." in out
+    assert f"slides steadily; {grows} modes grow (of {modes.sizes['mode']})." in out
     assert f"{float(modes['growth_rate'].max()):.5g}" in out
     code, out, _ = stridula("stability", "squeal")
     assert "Equilibrium: held by friction; no mode grows" in out
@@ -50,6 +50,22 @@ acceleration = 10
 [simulation]
 duration = 0.1
 """
+
+
+def test_one_mode_is_not_in_the_plural(stridula, tmp_path):
+    assert "Equilibrium: slides steadily; no mode grows (of 1)." in stridula("stability", "belt")[1]
+    (tmp_path / "floor.toml").write_text(ON_A_FLOOR, encoding="utf-8")
+    assert "; 1 mode grows (of 1)." in stridula("stability", "floor.toml", "--velocity", "0.5")[1]
+
+
+def test_a_sweep_compares_regimes_with_linear_theory_in_a_table(stridula):
+    grid = ("--vary", "friction=0.5,1.5", "--measure", "regime", "--duration", "0.2", "--out", "map.nc")
+    code, out, _ = stridula("sweep", "weak-pressure", *grid)
+    assert code == 0
+    counts = st.agreement(st.load("map.nc"))
+    assert "runs compared   both agree   vibration, no growth   growth, no vibration" in out
+    row = [int(counts[word]) for word in ("compared", "agree", "missed", "false_alarms")]
+    assert re.search(r"^ *" + r" +".join(map(str, row)) + r" *$", out, re.MULTILINE)
 
 
 def test_stability_takes_slip_velocities(stridula, tmp_path):

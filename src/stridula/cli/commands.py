@@ -52,11 +52,18 @@ def list_() -> None:
 
 @app.command()
 def show(name: NameOrFile, out: TextFile = None) -> None:
-    """Print a scenario as TOML, to copy and edit."""
+    """Print a scenario as TOML, to copy and edit; doubtful values go to standard error."""
+    from pathlib import Path
+
     from ..scenarios.show import scenario_text
     from .consoles import put
 
     put(scenario_text(name), out)
+    # Shipped scenarios have no doubtful values, and need no compiler to be shown.
+    if Path(name).is_file():
+        from .doubts import say_doubts
+
+        say_doubts(name)
 
 
 @app.command()
