@@ -35,6 +35,8 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.mathjax",
+    # Formulas without a network: MathJax is copied into the pages.
+    "sphinx-mathjax-offline",
     "numpydoc",
 ]
 templates_path = ["_templates"]
