@@ -607,7 +607,7 @@ def test_ctrl_c_in_a_sweep_says_what_is_safe_and_the_same_command_goes_on(stridu
         code, out, err = stridula(*many)
     assert (code, out) == (130, "")
     found = re.fullmatch(
-        r"stridula: interrupted; (\d+) of 100 points are safe in map.nc.parts; the same command goes on from there\n",
+        r"stridula: interrupted; (\d+) of 100 points are saved in map.nc.parts; the same command resumes from there\n",
         err,
     )
     assert found

@@ -1,4 +1,4 @@
-"""`stridula sweep`: check what was asked for, compute under a progress bar, and say what came of the points."""
+"""`stridula sweep`: check the arguments, compute under a progress bar, and print a summary of the points."""
 
 from __future__ import annotations
 
@@ -70,9 +70,11 @@ def sweep_scenario(
             )
     except KeyboardInterrupt:
         if not reached.done:
-            raise Stopped("interrupted before any point was safe; the same command starts again", INTERRUPTED) from None
-        words = f"interrupted; {reached.done} of {reached.points} points are safe in {out}.parts"
-        raise Stopped(f"{words}; the same command goes on from there", INTERRUPTED) from None
+            raise Stopped(
+                "interrupted before any point was saved; the same command starts again", INTERRUPTED
+            ) from None
+        words = f"interrupted; {reached.done} of {reached.points} points are saved in {out}.parts"
+        raise Stopped(f"{words}; the same command resumes from there", INTERRUPTED) from None
     except RuntimeError as error:
         # What other machines raise; points that fail are no errors.
         raise Stopped(f"{error} in {out}.parts", FAILED) from None
