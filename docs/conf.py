@@ -35,6 +35,8 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.mathjax",
+    # Formulas without a network: MathJax is copied into the pages.
+    "sphinx-mathjax-offline",
     "numpydoc",
 ]
 templates_path = ["_templates"]
@@ -99,30 +101,32 @@ FIGURES = (
 )
 # The public names that do not live in the package root: module, title, names unless they are its ``__all__``.
 MODULES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
-    ("stridula.analysis", "What a record means", ()),
+    ("stridula.analysis", "Analysis of records", ()),
     ("stridula.plot", "Figures", FIGURES),
     ("stridula.scenarios", "More on scenarios", ()),
     ("stridula.studies", "More on ensembles and sweeps", ()),
     ("stridula.papers.laulagnet_2011", "Laulagnet 2011", ()),
 )
 HOMES = {
-    "bodies": "What vibrates",
-    "contact": "Where bodies touch",
-    "connections": "What joins bodies",
-    "acoustics.levels": "Levels of sound",
-    "acoustics.sensation": "What sound feels like",
+    "bodies": "Bodies",
+    "contact": "Contacts and friction",
+    "connections": "Connections",
+    "acoustics.levels": "Sound levels",
+    "acoustics.sensation": "Psychoacoustics",
     "acoustics.wav": "Sound files",
-    "drives": "What pushes",
-    "histories": "How a drive goes in time",
-    "system": "The system",
-    "records": "Probes: what else to record",
-    "records.files": "Records in files",
-    "records.export": "Records for other programs",
-    "records.compare": "Two records side by side",
-    "integration": "How time goes on",
-    "acoustics": "What is heard",
-    "scenarios": "Ready cases",
-    "studies": "Many runs",
+    "drives": "Drives",
+    "histories": "Histories of drives",
+    "system": "System",
+    "records": "Probes",
+    "records.files": "Files of records",
+    "records.export": "Export",
+    "records.compare": "Comparison of records",
+    "integration": "Integration in time",
+    "analysis": "Regimes",
+    "analysis.stability": "Linear stability",
+    "acoustics": "Radiated sound",
+    "scenarios": "Scenarios",
+    "studies": "Studies of many runs",
 }
 
 

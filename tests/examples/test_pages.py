@@ -84,6 +84,14 @@ def test_commands(page, stridula, monkeypatch):
             Path(file).write_text(out, encoding="utf-8")
 
 
+def test_the_run_that_the_readme_shows_squeals(stridula):
+    shown = [words for words in commands(ROOT / "README.md") if words[1] in ("show", "run") and "mine.toml" in words]
+    assert [words[1] for words in shown] == ["show", "run"]
+    for _, *arguments in shown:
+        assert stridula(*arguments)[0] == 0
+    assert st.regime(st.load("mine.nc")).regime == "squeal"
+
+
 def test_whole_scenarios_of_a_page_are_good_and_parts_are_toml(tmp_path):
     texts = [text for _, text in blocks(SCENARIOS, "toml")]
     assert all(tomllib.loads(text) for text in texts)

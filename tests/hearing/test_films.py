@@ -122,7 +122,9 @@ def test_an_mp4_can_be_played(pair, tmp_path):
 
 def test_without_an_encoder_it_says_what_to_do(pair, monkeypatch, tmp_path):
     monkeypatch.setattr(films, "_encoder", lambda: None)
-    with pytest.raises(ValueError, match=r"out must end in \.gif without an encoder \(pip install stridula\[video\]\)"):
+    with pytest.raises(
+        ValueError, match=r"out must end in \.gif without an encoder \(pip install \.\[video\] in the sources\)"
+    ):
         plot.animate(pair.system, tmp_path / "a.mp4")
 
 
@@ -237,7 +239,9 @@ def test_a_record_that_goes_on_from_another_is_refused(stridula, pair):
     st.save(pair.simulate(duration=1e-3, start=first), "on.nc")
     code, _, err = stridula("animate", "on.nc", "--out", "a.gif")
     assert code == 2
-    assert err == "stridula: name must be a record from its start, got 'on.nc', which goes on from 0.001 s\n"
+    assert (
+        err == "stridula: name must be a record from its start, got 'on.nc', which continues another one from 0.001 s\n"
+    )
 
 
 def test_several_contacts_are_not_filmed(pair, tmp_path):

@@ -101,5 +101,5 @@ def test_fields_are_named():
 
 def test_a_missing_package_is_said_with_its_extra(monkeypatch):
     monkeypatch.setattr(sensation, "is_available", lambda: False)
-    with pytest.raises(ValueError, match=r"got none: pip install stridula\[psycho\]"):
+    with pytest.raises(ValueError, match=r"got none: pip install \.\[psycho\] in the sources"):
         st.loudness(tone())

@@ -7,7 +7,7 @@ import pytest
 
 from stridula.acoustics import sensation
 from stridula.cli import hearing
-from stridula.cli.hearing import print_levels
+from stridula.cli.hearing import loudest, print_levels
 
 from .sounds import heard, tone
 
@@ -82,7 +82,14 @@ def test_what_the_table_says_a_measure_takes_is_what_it_takes(column):
             column.measure(tone(duration=1.1 * column.shortest, rate=0.95 * rate))
 
 
+def test_the_louder_ear_is_named_as_far_as_the_sound_is_enough():
+    one = tone(level=60.0, duration=0.6)
+    both = heard(np.stack([0.1 * one.values, one.values], axis=1))
+    assert loudest(both) == "at the louder ear: Leq 60.0 dB, LAeq 60.0 dB, LAFmax 60.0 dB"
+    assert loudest(tone(duration=1e-3)) == loudest(0.0 * one) == ""
+
+
 def test_what_takes_a_package_says_so(capsys, monkeypatch):
     monkeypatch.setattr(hearing, "is_available", lambda: False)
     print_levels(tone())
-    assert "they take mosqito (pip install stridula[psycho])" in capsys.readouterr().out
+    assert "they take mosqito (pip install .[psycho] in the sources)" in capsys.readouterr().out

@@ -17,7 +17,7 @@ import pytest
 import scipy.io
 
 import stridula as st
-from stridula.cli import running, sweeping
+from stridula.cli import bars, running
 from stridula.cli.card import card
 from stridula.cli.doubts import doubts
 from stridula.plot.colours import REGIME_COLOURS
@@ -98,6 +98,17 @@ def test_shipped_scenarios_are_beyond_doubt_and_the_card_shows_what_is_not(strid
     assert "did you mean g/cm3?" in out
 
 
+def test_show_says_what_is_doubtful_beside_the_text(stridula, tmp_path):
+    (tmp_path / "mine.toml").write_text('base = "squeal"\n[track.material]\ndensity = 7.8\n')
+    code, out, err = stridula("show", "mine.toml")
+    assert (code, tomllib.loads(out)["track"]["material"]["density"]) == (0, 7.8)
+    assert err == "stridula: doubtful: track: density of 7.8 kg/m3; did you mean g/cm3?\n"
+    assert stridula("show", "mine.toml", "--out", "whole.toml") == (0, "", err)
+    # What cannot run can be shown.
+    (tmp_path / "mine.toml").write_text('base = "squeal"\n[track]\nlength = -1\n')
+    assert stridula("show", "mine.toml")[::2] == (0, "")
+
+
 def test_a_run_leaves_garbage_collection_on(stridula):
     assert stridula("run", "squeal", *SHORT)[0] == 0
     assert gc.isenabled()
@@ -106,7 +117,17 @@ def test_a_run_leaves_garbage_collection_on(stridula):
 def test_run_writes_record_and_figure_and_says_what_came_of_it(stridula, tmp_path):
     code, out, err = stridula("run", "squeal", *SHORT, "--set", "friction=0.4", "--out", "run.nc", "--plot", "run.png")
     assert (code, err) == (0, "")
-    words = ("finished at t = 0.002 s", "separated", "dominant frequency", "peak", "residual", "run.nc", "run.png")
+    words = (
+        "simulated",
+        "0.002 s",
+        "computed in",
+        "separated",
+        "dominant frequency",
+        "normal force",
+        "residual",
+        "run.nc",
+        "run.png",
+    )
     for word in (*words, "regime", "(confidence 0.50)"):
         assert word in out
     assert st.load_scenario("run.nc").system.contact.friction == st.Coulomb(0.4)
@@ -296,7 +317,7 @@ def test_a_constant_force_has_no_frequency(stridula):
 def test_a_full_disk_is_one_line_and_fails(stridula):
     code, out, err = stridula("run", "squeal", *SHORT, "--out", "/dev/full")
     assert (code, err) == (1, "stridula: cannot write '/dev/full': no space left on device\n")
-    assert "finished" in out
+    assert "simulated" in out
 
 
 def interrupt(*arguments, **fields):
@@ -309,7 +330,7 @@ def terminate(*arguments, **fields):
 
 @pytest.mark.parametrize("stop", [interrupt, terminate])
 def test_ctrl_c_and_sigterm_keep_what_was_recorded(stridula, monkeypatch, stop):
-    monkeypatch.setattr(running.Progress, "update", stop)
+    monkeypatch.setattr(bars.Progress, "update", stop)
     code, out, err = stridula("run", "squeal", "--duration", "0.25", "--out", "part.nc")
     assert code == 130
     assert err.startswith("stridula: interrupted at t = ")
@@ -366,7 +387,7 @@ def test_a_failed_run_is_drawn_as_far_as_it_went(stridula, monkeypatch, tmp_path
 
 
 def test_an_interrupted_run_says_that_nothing_was_drawn(stridula, monkeypatch, tmp_path):
-    monkeypatch.setattr(running.Progress, "update", interrupt)
+    monkeypatch.setattr(bars.Progress, "update", interrupt)
     code, _, err = stridula("run", "squeal", "--duration", "0.25", "--plot", "part.png")
     assert (code, err.endswith("; no figure was drawn\n")) == (130, True)
     assert list(tmp_path.iterdir()) == []
@@ -422,11 +443,51 @@ def test_sweep_writes_a_map_and_says_how_many_points_are_done(stridula, tmp_path
 def test_the_card_tells_compiling_from_marching():
     record = st.load_scenario("squeal", {"duration": "2 ms"}).simulate()
     record.attrs |= {"wall_time": 0.5, "compile_time": 0.0}
-    assert card(record)["took"] == "0.5 s, 0.00 x real time"
+    assert card(record)["computed in"] == "0.5 s, 0.00 x real time"
     record.attrs["compile_time"] = 14.21
-    assert card(record)["took"] == "0.5 s, 0.00 x real time, after 14 s of compiling"
+    assert card(record)["computed in"] == "0.5 s, 0.00 x real time, after 14 s of compiling"
     del record.attrs["compile_time"]
-    assert card(record)["took"] == "0.5 s, 0.00 x real time"
+    assert card(record)["computed in"] == "0.5 s, 0.00 x real time"
+
+
+def test_the_card_begins_with_what_is_heard():
+    """The swing of the normal force at 23 Hz, which is not the squeal, comes later."""
+    record = st.load_scenario("squeal").simulate()
+    rows = card(record)
+    assert list(rows)[:3] == ["regime", "normal force", "dominant frequency"]
+    found = st.regime(record)
+    assert rows["regime"] == f"squeal at {float(found.frequency):.4g} Hz (confidence {float(found.confidence):.2f})"
+    assert rows["normal force"].startswith(f"mean {float(record.normal_force.mean()):.4g} N, fluctuation ")
+    assert (rows["simulated"], "ended" in rows) == ("1 s", False)
+
+
+@pytest.mark.parametrize(
+    ("regime", "frequency", "words"),
+    [
+        ("squeal", 896.04, "squeal at 896 Hz"),
+        ("squeal", 1e5, "squeal at 100000 Hz or more"),
+        ("stick-slip", 0.2733, "stick-slip at 0.2733 Hz"),
+        ("judder", 329.68, "judder, loudest at 329.7 Hz"),
+        ("stable sliding", np.nan, "stable sliding"),
+    ],
+)
+def test_the_card_says_at_which_frequency(monkeypatch, regime, frequency, words):
+    record = st.load_scenario("squeal", {"duration": "2 ms"}).simulate()
+    found = {"regime": regime, "frequency": frequency, "confidence": 1.0}
+    monkeypatch.setattr("stridula.cli.card.regime_of", lambda run: found)
+    assert card(record)["regime"] == f"{words} (confidence 1.00)"
+
+
+def test_the_card_names_an_early_end_first_and_a_later_start():
+    scenario = st.load_scenario("belt", {"duration": "50 ms"})
+    first = scenario.simulate()
+    rows = card(scenario.simulate(start=first))
+    assert rows["simulated"] == "0.05 s, from t = 0.05 s to 0.1 s"
+    first.attrs |= {"ended": "energy created", "modes": 1}
+    rows = card(first)
+    assert next(iter(rows.items())) == ("ended", "failed: energy came from nowhere at t = 0.05 s")
+    assert rows["step"].endswith(", 1 mode")
+    assert rows["normal force"] == "10 N, constant"
 
 
 def test_points_of_a_sweep_that_fail_are_counted(stridula):
@@ -542,11 +603,11 @@ def test_a_sweep_needs_a_file_and_a_measure(stridula, option):
 def test_ctrl_c_in_a_sweep_says_what_is_safe_and_the_same_command_goes_on(stridula, monkeypatch, tmp_path):
     many = (*SWEEP, "--vary", "friction=0.2:2:100")
     with monkeypatch.context() as patch:
-        patch.setattr(sweeping.Progress, "update", interrupt)
+        patch.setattr(bars.Progress, "update", interrupt)
         code, out, err = stridula(*many)
     assert (code, out) == (130, "")
     found = re.fullmatch(
-        r"stridula: interrupted; (\d+) of 100 points are safe in map.nc.parts; the same command goes on from there\n",
+        r"stridula: interrupted; (\d+) of 100 points are saved in map.nc.parts; the same command resumes from there\n",
         err,
     )
     assert found

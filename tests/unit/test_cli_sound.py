@@ -9,7 +9,7 @@ import pytest
 import soundfile
 
 import stridula as st
-from stridula.cli import running
+from stridula.cli import bars
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +42,7 @@ def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
     code, out, err = stridula("run", "squeal", "--duration", "60 ms", "--wav", "run.wav", "--out", "run.nc")
     assert (code, err) == (0, "")
     assert "\nrun.wav: 2 channels, 48 kHz, 0.06 s, peak " in out
+    assert "\nat the louder ear: Leq " in out
     track = st.load_scenario("squeal").system.track
     pressure = st.radiate(st.load("run.nc"), track)
     st.write_wav("same.wav", pressure)
@@ -229,7 +230,7 @@ def test_an_interrupted_run_says_that_no_sound_was_written(stridula, monkeypatch
     def interrupt(*arguments, **fields):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(running.Progress, "update", interrupt)
+    monkeypatch.setattr(bars.Progress, "update", interrupt)
     code, _, err = stridula("run", "squeal", "--duration", "0.25", "--wav", "part.wav")
     assert (code, err.endswith("; no sound was written\n")) == (130, True)
     assert not list(tmp_path.iterdir())

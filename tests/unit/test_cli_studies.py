@@ -20,7 +20,7 @@ def test_stability_says_equilibrium_and_modes(stridula):
     assert (code, err) == (0, "")
     modes = st.sliding_stability(st.load_scenario("weak-pressure", {"friction": 1.0}).system)
     grows = int(modes["unstable"].sum())
-    assert f"slides steadily; {grows} modes grow, {modes.sizes['mode']} modes in all." in out
+    assert f"slides steadily; {grows} modes grow (of {modes.sizes['mode']})." in out
     assert f"{float(modes['growth_rate'].max()):.5g}" in out
     code, out, _ = stridula("stability", "squeal")
     assert "Equilibrium: held by friction; no mode grows" in out
@@ -50,6 +50,22 @@ acceleration = 10
 [simulation]
 duration = 0.1
 """
+
+
+def test_one_mode_is_not_in_the_plural(stridula, tmp_path):
+    assert "Equilibrium: slides steadily; no mode grows (of 1)." in stridula("stability", "belt")[1]
+    (tmp_path / "floor.toml").write_text(ON_A_FLOOR, encoding="utf-8")
+    assert "; 1 mode grows (of 1)." in stridula("stability", "floor.toml", "--velocity", "0.5")[1]
+
+
+def test_a_sweep_compares_regimes_with_linear_theory_in_a_table(stridula):
+    grid = ("--vary", "friction=0.5,1.5", "--measure", "regime", "--duration", "0.2", "--out", "map.nc")
+    code, out, _ = stridula("sweep", "weak-pressure", *grid)
+    assert code == 0
+    counts = st.agreement(st.load("map.nc"))
+    assert "runs compared   both agree   vibration, no growth   growth, no vibration" in out
+    row = [int(counts[word]) for word in ("compared", "agree", "missed", "false_alarms")]
+    assert re.search(r"^ *" + r" +".join(map(str, row)) + r" *$", out, re.MULTILINE)
 
 
 def test_stability_takes_slip_velocities(stridula, tmp_path):
@@ -270,7 +286,7 @@ def test_sensitivity_prints_and_writes(stridula):
     code, out, err = stridula("sensitivity", "squeal", *arguments, "--duration", "20 ms", "--out", "shares.nc")
     assert (code, err) == (0, "")
     assert out.rstrip().endswith("32 runs: 32 done, 0 failed; written to shares.nc")
-    assert "How likely each regime is" in out
+    assert "Probability of each regime" in out
     assert re.search(r"^ *sliding +-?\d\.\d\d \[", out, re.MULTILINE)
     found = st.load("shares.nc")
     assert found.sizes["parameter"] == 2
@@ -285,4 +301,4 @@ def test_sensitivity_says_why_there_are_no_shares(stridula):
     assert counted == "24 runs: 0 done, 24 failed"
     assert said == "24 of 24 failures: slider.angle must be strictly between -pi/2 and pi/2 rad (90 deg)"
     _, out, _ = stridula("sensitivity", "squeal", "--vary", "friction=1.5:1.6", *SHORT, "--samples", "8")
-    assert "nothing varies" in out
+    assert "no quantity varies" in out

@@ -167,7 +167,7 @@ def _notes(pressed: Pressing, kept: int, modes: int, duration: float, arrival: A
     if kept < modes:
         notes.append(f"{modes - kept} modes above what the record's sample rate carries are left out")
     if pressed.start > 0.5 * pressed.interval:
-        notes.append("the record goes on from another: what it left moving is not heard")
+        notes.append("the record continues another one; vibration left from that one is not included")
     return notes
 
 

@@ -156,7 +156,7 @@ def roughness(pressure: xr.DataArray) -> xr.DataArray:
 
 def _metrics() -> Any:
     if not is_available():
-        raise ValueError("sensation must have the package mosqito, got none: pip install stridula[psycho]")
+        raise ValueError("sensation must have the package mosqito, got none: pip install .[psycho] in the sources")
     with _quiet():
         import mosqito.sq_metrics
     return mosqito.sq_metrics

@@ -12,16 +12,20 @@ from rich.table import Table
 
 from ..analysis import bursts, dominant_frequency, regime_of
 from ..analysis.phases import inside
+from ..bodies.modes import Array
 from ..records.variables import ENERGY, STATUS_WORDS
+from .counts import counted
 
+# Ends that are worth a line.
 ENDINGS = {
-    "finished": "finished",
     "off the track": "the tip ran off the end of its track",
     "not finite": "failed: the state is no longer finite",
     "contact unsolved": "failed: the contact forces were not found",
     "energy created": "failed: energy came from nowhere",
     "interrupted": "interrupted",
 }
+# Regimes that are cycles of one frequency.
+CYCLES = ("squeal", "stick-slip")
 # Relative changes of a force below are rounding, not vibration.
 STEADY = 1e-9
 
@@ -39,18 +43,42 @@ def print_card(record: xr.Dataset, title: str, files: list[str], doubtful: list[
 
 
 def card(record: xr.Dataset) -> dict[str, str]:
-    """Return what came of a run, in words."""
-    interval, samples = record.attrs["sample_interval"], record.sizes["time"]
-    end = float(record["time"][-1]) if samples else 0.0
-    lines = {"ended": f"{ENDINGS[record.attrs['ended']]} at t = {end:.6g} s"}
-    if samples:
+    """Return what came of a run, in words: how it ended if not as asked, then what is heard, then the numbers of it."""
+    lines = _ending(record)
+    if record.sizes["time"]:
         lines |= _contact(record) | _energy(record)
-    wall_time = record.attrs["wall_time"]
-    compile_time = record.attrs.get("compile_time", 0.0)
+    return lines | _computation(record)
+
+
+def _ending(record: xr.Dataset) -> dict[str, str]:
+    """Return how a run ended that did not finish, and when."""
+    ended = record.attrs["ended"]
+    if ended not in ENDINGS:
+        return {}
+    end = float(record["time"][-1]) if record.sizes["time"] else 0.0
+    return {"ended": f"{ENDINGS[ended]} at t = {end:.6g} s"}
+
+
+def _computation(record: xr.Dataset) -> dict[str, str]:
+    """Return how much was computed, and how."""
+    simulated = record.sizes["time"] * record.attrs["sample_interval"]
+    wall_time, compile_time = record.attrs["wall_time"], record.attrs.get("compile_time", 0.0)
     compiled = f", after {compile_time:.2g} s of compiling" if compile_time else ""
-    lines["took"] = f"{wall_time:.3g} s, {samples * interval / max(wall_time, 1e-9):.2f} x real time{compiled}"
-    lines["step"] = f"{record.attrs['step']:.4g} s, {record.attrs['scheme']}, {record.attrs['modes']} modes"
-    return lines
+    modes = counted(int(record.attrs["modes"]), "mode")
+    return {
+        "simulated": f"{simulated:.6g} s{_since(record)}",
+        "computed in": f"{wall_time:.3g} s, {simulated / max(wall_time, 1e-9):.2f} x real time{compiled}",
+        "step": f"{record.attrs['step']:.4g} s, {record.attrs['scheme']}, {modes}",
+    }
+
+
+def _since(record: xr.Dataset) -> str:
+    """Return from where to where a record reaches that continues another one."""
+    interval = record.attrs["sample_interval"]
+    if not record.sizes["time"] or record["time"][0] < 1.5 * interval:
+        return ""
+    first, last = float(record["time"][0]) - interval, float(record["time"][-1])
+    return f", from t = {first:.6g} s to {last:.6g} s"
 
 
 def _contact(record: xr.Dataset) -> dict[str, str]:
@@ -62,7 +90,8 @@ def _contact(record: xr.Dataset) -> dict[str, str]:
             for name in names
         }
         unsolved = int(record["unsolved_steps"].sum())
-        return lines | ({"unsolved": f"{unsolved} steps with contact forces out of tolerance"} if unsolved else {})
+        words = f"{counted(unsolved, 'step')} with contact forces out of tolerance"
+        return lines | ({"unsolved": words} if unsolved else {})
     return _one_contact(record)
 
 
@@ -71,13 +100,25 @@ def _one_contact(record: xr.Dataset) -> dict[str, str]:
     force, place = record["normal_force"].values, record["contact_position"].values
     jammed = int(record["jammed_steps"].sum())
     lines = {
+        "regime": _regime(record),
+        "normal force": _force(force),
+        "dominant frequency": _frequency(record),
         "status": ", ".join(f"{word} {100 * share:.1f} %" for word, share in zip(STATUS_WORDS, shares, strict=True)),
         "tip": f"from {place[0]:.4g} m to {place[-1]:.4g} m along the track",
-        "normal force": f"mean {force.mean():.4g} N, peak {force.max():.4g} N",
-        "dominant frequency": _frequency(record),
-        "regime": _regime(record),
     }
-    return lines | ({"jammed": f"{jammed} steps in which sliding would have jammed"} if jammed else {})
+    return lines | ({"jammed": f"{counted(jammed, 'step')} in which sliding would have jammed"} if jammed else {})
+
+
+def _force(force: Array) -> str:
+    """Return mean, fluctuation and peak of a force [N]."""
+    if _is_steady(force, force):
+        return f"{force.mean():.4g} N, constant"
+    return f"mean {force.mean():.4g} N, fluctuation {force.std():.4g} N rms, peak {force.max():.4g} N"
+
+
+def _is_steady(heard: Array, force: Array) -> bool:
+    """Return whether a part of a force varies by no more than rounding."""
+    return bool(np.ptp(heard) <= STEADY * np.abs(force).max())
 
 
 def _frequency(record: xr.Dataset) -> str:
@@ -88,7 +129,7 @@ def _frequency(record: xr.Dataset) -> str:
     between = bursts(record)
     # The first sample is where the load comes on.
     heard = force[inside(record, between)] if len(between) else force[1:]
-    if np.ptp(heard) <= STEADY * np.abs(force).max():
+    if _is_steady(heard, force):
         return "none, the normal force is constant"
     frequency = dominant_frequency(record["normal_force"], between if len(between) else None)
     where = " of the normal force" + (" between the stops" if len(between) else "")
@@ -96,11 +137,21 @@ def _frequency(record: xr.Dataset) -> str:
 
 
 def _regime(record: xr.Dataset) -> str:
-    """Return the regime, which takes at least 2 samples."""
+    """Return the regime with its tone; it takes at least 2 samples."""
     if record.sizes["time"] < 2:
         return "none"
     found = regime_of(record)
-    return f"{found['regime']} (confidence {found['confidence']:.2f})"
+    tone = _tone(str(found["regime"]), float(found["frequency"]), record.attrs["sample_interval"])
+    return f"{found['regime']}{tone} (confidence {found['confidence']:.2f})"
+
+
+def _tone(regime: str, frequency: float, interval: float) -> str:
+    """Return at which frequency [Hz] a regime is heard, in words; nothing where no tone is."""
+    if math.isnan(frequency):
+        return ""
+    # Samples hide a cycle that is faster than half their rate.
+    hertz = f"{frequency:{'.4g' if frequency < 1e4 else '.0f'}} Hz{' or more' if frequency * interval >= 0.5 else ''}"
+    return f" at {hertz}" if regime in CYCLES else f", loudest at {hertz}"
 
 
 def _energy(record: xr.Dataset) -> dict[str, str]:

@@ -52,11 +52,18 @@ def list_() -> None:
 
 @app.command()
 def show(name: NameOrFile, out: TextFile = None) -> None:
-    """Print a scenario as TOML, to copy and edit."""
+    """Print a scenario as TOML, to copy and edit; doubtful values go to standard error."""
+    from pathlib import Path
+
     from ..scenarios.show import scenario_text
     from .consoles import put
 
     put(scenario_text(name), out)
+    # Shipped scenarios have no doubtful values, and need no compiler to be shown.
+    if Path(name).is_file():
+        from .doubts import say_doubts
+
+        say_doubts(name)
 
 
 @app.command()
@@ -75,18 +82,22 @@ def run(
     name: NameOrFile,
     set_: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change a value: its full key or any unique ending of one."),
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Change a value, by its full key or any unique ending of it; may be repeated.",
+        ),
     ] = None,
     duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
     out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the record, as NetCDF.")] = None,
     plot: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Draw the record; the name's end is the format.")
+        str | None, typer.Option(metavar="FILE", help="Draw the record; the ending of the name is the format.")
     ] = None,
     wav: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write what two ears a metre above the track hear, as WAV.")
+        str | None, typer.Option(metavar="FILE", help="Write the sound at two ears a metre above the track, as WAV.")
     ] = None,
 ) -> None:
-    """Run a scenario and say what came of it."""
+    """Run a scenario and print regime, pitch, forces and energies of the run."""
     with _importing():
         from .running import run_scenario
 
@@ -101,18 +112,28 @@ def sound(
     record: Annotated[str, typer.Argument(metavar="RUN.nc", help="A record.")],
     listener: Annotated[
         list[str] | None,
-        typer.Option(metavar="X,Y,Z", help="Where one listens, in m; again for more; two ears 1 m above if left out."),
+        typer.Option(
+            metavar="X,Y,Z", help="Position of a listener, in m; may be repeated; default: two ears 1 m above."
+        ),
     ] = None,
-    wav: Annotated[str | None, typer.Option(metavar="FILE", help="Write the sound, a channel each.")] = None,
-    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the spectrogram of the first.")] = None,
-    sample_rate: Annotated[str, typer.Option(metavar="HZ", help="Of the sound file: 44.1, 48 or 96 kHz.")] = "48 kHz",
+    wav: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write the sound, one channel for each listener.")
+    ] = None,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw the spectrogram at the first listener.")
+    ] = None,
+    sample_rate: Annotated[
+        str, typer.Option(metavar="HZ", help="Sample rate of the sound file: 44.1, 48 or 96 kHz.")
+    ] = "48 kHz",
     full_scale: Annotated[
-        str, typer.Option(metavar="PA", help="Pressure of full scale, or normalised: 1 dB above the peak.")
+        str, typer.Option(metavar="PA", help="Pressure of full scale, or `normalised`: 1 dB above the peak.")
     ] = "normalised",
-    subtype: Annotated[str, typer.Option(metavar="WORD", help="PCM_24 or FLOAT.")] = "PCM_24",
-    unbaffled: Annotated[bool, typer.Option("--unbaffled", help="A slim beam in free air, without a baffle.")] = False,
+    subtype: Annotated[str, typer.Option(metavar="WORD", help="Format of the samples: PCM_24 or FLOAT.")] = "PCM_24",
+    unbaffled: Annotated[
+        bool, typer.Option("--unbaffled", help="Take the track as a slim beam in free air, without a baffle.")
+    ] = False,
 ) -> None:
-    """Say how loud a record is for a listener, and write the sound as WAV."""
+    """Print the sound levels of a record at listeners, and write the sound as WAV."""
     from .sounding import sound_of_record
 
     sound_of_record(record, listener or [], wav, plot, sample_rate, full_scale, subtype, not unbaffled)
@@ -121,35 +142,40 @@ def sound(
 @app.command()
 def sweep(
     name: NameOrFile,
-    measure: Annotated[list[str], typer.Option(metavar="NAME", help="What to measure; again and again for more.")],
-    out: Annotated[str, typer.Option(metavar="FILE", help="Write what came of the points, as NetCDF.")],
+    measure: Annotated[list[str], typer.Option(metavar="NAME", help="A measure of each run; may be repeated.")],
+    out: Annotated[str, typer.Option(metavar="FILE", help="Write the measures of all points, as NetCDF.")],
     vary: Annotated[
         list[str] | None,
-        typer.Option(metavar="KEY=START:STOP:COUNT", help="Vary a value, ends included; or KEY=A,B,C."),
+        typer.Option(
+            metavar="KEY=START:STOP:COUNT", help="Vary a value, ends included, or KEY=A,B,C; may be repeated."
+        ),
     ] = None,
     sample: Annotated[
         int | None, typer.Option(metavar="N", help="Spread N points over the ranges KEY=START:STOP, a Latin hypercube.")
     ] = None,
-    seed: Annotated[int | None, typer.Option(metavar="S", help="Seed of --sample, 0 if left out.")] = None,
+    seed: Annotated[int | None, typer.Option(metavar="S", help="Seed of --sample; default: 0.")] = None,
     points: Annotated[
         str | None,
-        typer.Option(metavar="FILE.csv", help="Take the points from a table: keys, then a point in each row."),
+        typer.Option(
+            metavar="FILE.csv", help="Read the points from a table: a row of keys, then one point in each row."
+        ),
     ] = None,
     set_: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point.")
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point; may be repeated."),
     ] = None,
     duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the map of the regimes over two keys.")] = None,
     workers: Annotated[
-        int | None, typer.Option(metavar="N", help="Parts at a time, one on each processor if left out.")
+        int | None, typer.Option(metavar="N", help="Parts computed at a time; default: one on each processor.")
     ] = None,
     scheduler: Annotated[
         str | None,
-        typer.Option(metavar="ADDRESS", help="Compute on other machines: a dask scheduler, tcp://host:port."),
+        typer.Option(metavar="ADDRESS", help="Compute on other machines, by a dask scheduler, tcp://host:port."),
     ] = None,
-    yes: Annotated[bool, typer.Option("--yes", help="Go ahead with more than 10 000 points.")] = False,
+    yes: Annotated[bool, typer.Option("--yes", help="Confirm more than 10 000 points.")] = False,
 ) -> None:
-    """Run a scenario at many points of its parameters and keep what is measured; goes on where it was stopped."""
+    """Run a scenario at many points of its parameters and keep measures of each run; resumes after an interruption."""
     with _importing():
         from .points import points_of
         from .sweeping import sweep_scenario
@@ -164,19 +190,29 @@ def stability(
     name: NameOrFile,
     set_: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change a value: its full key or any unique ending of one."),
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Change a value, by its full key or any unique ending of it; may be repeated.",
+        ),
     ] = None,
     status: Annotated[
         str | None,
-        typer.Option(metavar="WORD", help="Take the contacts as sliding, sticking or separated, in turn with commas."),
+        typer.Option(
+            metavar="WORD", help="Take the contacts as sliding, sticking or separated; one word for each, with commas."
+        ),
     ] = None,
     velocity: Annotated[
         str | None,
-        typer.Option(metavar="M/S", help="Slip velocity where nothing prescribes it, in turn with commas."),
+        typer.Option(
+            metavar="M/S", help="Slip velocity where nothing prescribes it; one for each contact, with commas."
+        ),
     ] = None,
     vary: Annotated[
         str | None,
-        typer.Option(metavar="KEY=START:STOP:COUNT", help="Follow the modes over a parameter, and where they grow."),
+        typer.Option(
+            metavar="KEY=START:STOP:COUNT", help="Follow the modes over a parameter and find where stability changes."
+        ),
     ] = None,
     highest: Annotated[
         float | None, typer.Option(metavar="HZ", help="Leave out modes above this frequency, with --vary.")
@@ -184,7 +220,7 @@ def stability(
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the modes over the parameter.")] = None,
     out: Annotated[str | None, typer.Option(metavar="FILE", help="Write them, as NetCDF.")] = None,
 ) -> None:
-    """Say what linear theory says of sliding: equilibrium, modes and which of them grow, also over a parameter."""
+    """Print equilibrium, modes and growing modes of sliding by linear theory, also over a parameter."""
     overrides = _pairs(set_ or [])
     if vary is None:
         for option, value in (("--plot", plot), ("--out", out), ("--highest", highest)):
@@ -207,11 +243,11 @@ def animate(
         str, typer.Argument(metavar="NAME-OR-RUN.nc", help="A shipped scenario, a TOML file or a record, run again.")
     ],
     out: Annotated[str, typer.Option(metavar="FILE", help="Film to write: .mp4 or .gif.")],
-    from_: Annotated[str, typer.Option("--from", metavar="S", help="Where it begins, in s or with a unit.")] = "0",
-    duration: Annotated[str, typer.Option(metavar="S", help="Time that it shows, in s or with a unit.")] = "10 ms",
-    slowdown: Annotated[float, typer.Option(metavar="X", help="How much slower than life it is.")] = 1000.0,
+    from_: Annotated[str, typer.Option("--from", metavar="S", help="Start of the film, in s or with a unit.")] = "0",
+    duration: Annotated[str, typer.Option(metavar="S", help="Time shown in the film, in s or with a unit.")] = "10 ms",
+    slowdown: Annotated[float, typer.Option(metavar="X", help="Factor of slow motion.")] = 1000.0,
     exaggeration: Annotated[
-        float | None, typer.Option(metavar="X", help="How many times larger than life the vibration is drawn.")
+        float | None, typer.Option(metavar="X", help="Factor by which the vibration is enlarged.")
     ] = None,
 ) -> None:
     """Film a slider, its track and their contact in slow motion."""
@@ -235,12 +271,12 @@ def export(
 @app.command()
 def compare(
     first: Annotated[str, typer.Argument(metavar="A.nc", help="A record.")],
-    second: Annotated[str, typer.Argument(metavar="B.nc", help="Another one with the same sampling.")],
+    second: Annotated[str, typer.Argument(metavar="B.nc", help="Another record with the same sampling.")],
     tolerance: Annotated[
-        float, typer.Option(metavar="X", help="Difference, relative to A's largest value, that still passes.")
+        float, typer.Option(metavar="X", help="Largest accepted difference, relative to the largest value in A.")
     ] = 1e-6,
 ) -> int:
-    """Say how far two records are apart; exit with 1 if by more than the tolerance."""
+    """Print the differences between two records; exit with 1 if one exceeds the tolerance."""
     from .comparing import print_comparison
 
     return GOOD if print_comparison(first, second, tolerance) else FAILED
@@ -250,23 +286,31 @@ def compare(
 def calibrate_(
     name: NameOrFile,
     vary: Annotated[
-        list[str], typer.Option(metavar="KEY=LOW:HIGH", help="Where to search; KEY=LOW:HIGH:log in ratios.")
+        list[str],
+        typer.Option(
+            metavar="KEY=LOW:HIGH",
+            help="Range of a parameter; KEY=LOW:HIGH:log on a logarithmic scale; may be repeated.",
+        ),
     ],
     target: Annotated[
         list[str],
-        typer.Option(metavar="NAME=LOW:HIGH", help="What a measure should be; an end may be left out; or NAME=WORD."),
+        typer.Option(
+            metavar="NAME=LOW:HIGH",
+            help="Bounds of a measure, of which one may be left out, or NAME=WORD; may be repeated.",
+        ),
     ],
     set_: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point.")
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point; may be repeated."),
     ] = None,
     duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
     population: Annotated[int, typer.Option(metavar="N", help="Sets of parameters in a generation.")] = 32,
-    generations: Annotated[int, typer.Option(metavar="N", help="Generations at most.")] = 50,
+    generations: Annotated[int, typer.Option(metavar="N", help="Largest number of generations.")] = 50,
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the search.")] = 0,
-    out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the best as a scenario, TOML.")] = None,
-    workers: Annotated[int | None, typer.Option(metavar="N", help="Parts at a time.")] = None,
+    out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the best set as a scenario, TOML.")] = None,
+    workers: Annotated[int | None, typer.Option(metavar="N", help="Parts computed at a time.")] = None,
 ) -> int:
-    """Search parameters whose run shows given measures; exit with 1 if a target is not met."""
+    """Search for parameters whose run has given measures; exit with 1 if a target is not met."""
     from .points import ranges_of
     from .searching import calibrate_scenario
 
@@ -288,21 +332,28 @@ def calibrate_(
 @app.command("sensitivity")
 def sensitivity_(
     name: NameOrFile,
-    vary: Annotated[list[str], typer.Option(metavar="KEY=LOW:HIGH", help="An uncertain value, even between its ends.")],
+    vary: Annotated[
+        list[str],
+        typer.Option(metavar="KEY=LOW:HIGH", help="An uncertain parameter, uniform between the ends; may be repeated."),
+    ],
     measure: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="What to measure, the regime if left out.")
+        list[str] | None,
+        typer.Option(metavar="NAME", help="A measure of each run; default: the regime; may be repeated."),
     ] = None,
     set_: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point.")
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point; may be repeated."),
     ] = None,
     duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
-    samples: Annotated[int, typer.Option(metavar="N", help="A power of 2; takes N (values + 2) runs.")] = 256,
+    samples: Annotated[
+        int, typer.Option(metavar="N", help="A power of 2; N (parameters + 2) runs are computed.")
+    ] = 256,
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the points.")] = 0,
     out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the indices, as NetCDF.")] = None,
-    workers: Annotated[int | None, typer.Option(metavar="N", help="Parts at a time.")] = None,
-    yes: Annotated[bool, typer.Option("--yes", help="Go ahead with more than 10 000 points.")] = False,
+    workers: Annotated[int | None, typer.Option(metavar="N", help="Parts computed at a time.")] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="Confirm more than 10 000 points.")] = False,
 ) -> None:
-    """Say which uncertain parameter moves the outcome most, and how likely each regime is."""
+    """Rank uncertain parameters by their effect, and print the probability of each regime."""
     from .points import check_count, ranges_of
     from .searching import sensitivity_of_scenario
 
@@ -326,7 +377,7 @@ def sensitivity_(
 def paper(
     out: Annotated[str, typer.Option(metavar="DIR", help="Folder to write to.")] = "results/paper",
 ) -> None:
-    """Reproduce Laulagnet 2011: every figure, every record, every sound, every claim."""
+    """Reproduce Laulagnet 2011: figures, records, sounds and claims."""
     from pathlib import Path
 
     from ..integration import Diverged
@@ -345,10 +396,10 @@ def paper(
 def verify(
     out: Annotated[str, typer.Option(metavar="DIR", help="Folder to write to.")] = "results/verify",
     only: Annotated[
-        str | None, typer.Option(metavar="WORD", help="Only the cases with this word in their name or title.")
+        str | None, typer.Option(metavar="WORD", help="Run only the cases with this word in their name or title.")
     ] = None,
 ) -> None:
-    """Run every case whose answer is known and hold each scheme against it."""
+    """Run every case with a known answer and compare each scheme with it."""
     from ..verification import closing_line
     from ..verification import verify as run_cases
     from .verifying import interrupted_at_once, print_rows
@@ -378,9 +429,11 @@ def _pair(text: str) -> tuple[str, str]:
 @app.command("app")
 def app_(
     host: Annotated[str, typer.Option(metavar="H", help="Address to listen on.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(metavar="N", help="Port; 0 for any that is free.")] = 8707,
+    port: Annotated[int, typer.Option(metavar="N", help="Port; 0 for any free one.")] = 8707,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address only.")] = False,
-    open_: Annotated[bool, typer.Option("--open", help="Let other machines in, where --host is not this one.")] = False,
+    open_: Annotated[
+        bool, typer.Option("--open", help="Let other machines connect; needed if --host is not this machine.")
+    ] = False,
 ) -> None:
     """Play the contact on a page: turn the friction and hear it squeal."""
     with _importing():

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
 from ..bodies import FiniteElementBeam, Material, ModalBeam
+from ..scenarios.errors import ScenarioError
+from ..scenarios.load import load_scenario
 from ..system import System
+from .exits import GOOD, say
 
 # From soft rubber to diamond [Pa], from foam to osmium [kg/m3].
 YOUNG = (1e5, 2e12)
@@ -17,6 +21,14 @@ MOST_MODES = 5000
 def doubts(system: System) -> list[str]:
     """Return a line about each value that is probably a mistake."""
     return [line for body in system.bodies for line in _of(system.body_name(body), body)]
+
+
+def say_doubts(name: str) -> None:
+    """Print a line on standard error about each doubtful value of a scenario that can be loaded."""
+    # What cannot be loaded can be shown; `stridula run` says why it cannot run.
+    with suppress(ScenarioError, OSError):
+        for line in doubts(load_scenario(name).system):
+            say(f"doubtful: {line}", GOOD)
 
 
 def _of(name: str, body: Any) -> Iterator[str]:

@@ -37,7 +37,7 @@ def film_scenario(name: str, out: str, start: str, duration: str, slowdown: floa
     Raises
     ------
     ValueError
-        If an argument is out of its range, or the record goes on from another one.
+        If an argument is out of its range, or the record continues another one.
     OSError
         If the file cannot be written.
     """
@@ -64,14 +64,15 @@ def film_scenario(name: str, out: str, start: str, duration: str, slowdown: floa
 
 
 def _check_beginning(name: str) -> None:
-    """Raise ValueError for a record that goes on from another one: from its start the film would be of another run."""
+    """Raise ValueError for a record that continues another one: from its start the film would be of another run."""
     if not Path(name).is_file() or not is_record(name):
         return
     run = load(name)
     interval, first = float(run.attrs["sample_interval"]), float(run["time"][0])
     if first > 1.5 * interval:
         raise ValueError(
-            f"name must be a record from its start, got {name!r}, which goes on from {first - interval:g} s"
+            f"name must be a record from its start, got {name!r}, which continues another one from "
+            f"{first - interval:g} s"
         )
 
 

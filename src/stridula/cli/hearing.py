@@ -66,6 +66,15 @@ SENSATIONS = (
 )
 
 
+def loudest(pressure: xr.DataArray) -> str:
+    """Return the levels of the listener who hears most, in words; nothing where the sound is too little for them."""
+    values, rate = channels(pressure)
+    known = [column for column in LEVELS if not column.lacks(len(values) / rate, rate)]
+    levels = [(column, float(column.measure(pressure).max())) for column in known]
+    words = [f"{column.name} {level:.{column.digits}f} dB" for column, level in levels if np.isfinite(level)]
+    return f"at the louder ear: {', '.join(words)}" if words else ""
+
+
 def print_levels(pressure: xr.DataArray) -> None:
     """Print a table of what each listener hears, and why where something cannot be said.
 
@@ -96,7 +105,7 @@ def print_levels(pressure: xr.DataArray) -> None:
     if left_out:
         console.print(_too_little(left_out, lasts, rate), markup=False, highlight=False, soft_wrap=True)
     if not is_available():
-        words = "no loudness, sharpness and roughness: they take mosqito (pip install stridula[psycho])"
+        words = "no loudness, sharpness and roughness: they take mosqito (pip install .[psycho] in the sources)"
         console.print(words, markup=False, highlight=False, soft_wrap=True)
 
 

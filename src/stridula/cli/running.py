@@ -8,15 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import xarray as xr
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn
 
 from ..disk import check_writable
 from ..integration import Diverged, Interrupted
-from ..integration.watchers import Progress as Report
-from ..integration.watchers import Watcher
+from ..integration.watchers import Progress, Watcher
 from ..records.files import save
 from ..scenarios.load import Scenario, load_scenario
+from .bars import bar
 from .card import print_card
 from .doubts import doubts
 from .exits import FAILED, INTERRUPTED, Stopped
@@ -110,22 +108,12 @@ def _draw(record: xr.Dataset, path: str) -> None:
 
 @contextmanager
 def _progress(title: str) -> Iterator[Watcher]:
-    """Show a bar on standard error with simulated time and speed against real time."""
-    console = Console(stderr=True)
-    bar = Progress(
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        TextColumn("{task.fields[words]}", markup=False),
-        console=console,
-        transient=True,
-        disable=not console.is_terminal,
-    )
-    with bar:
-        task = bar.add_task(title, total=None, words="preparing (the first run compiles)")
+    """Show the simulated time and the speed against real time."""
+    with bar(title) as show:
 
-        def watch(report: Report) -> None:
+        def watch(report: Progress) -> None:
             speed = report.time / max(report.wall_time, 1e-9)
             words = f"{report.time:.3f} of {report.duration:.3f} s, {speed:.2f} x real time"
-            bar.update(task, completed=report.time, total=report.duration, words=words)
+            show(report.time, report.duration, words)
 
         yield watch

@@ -1,4 +1,4 @@
-"""`stridula calibrate` and `stridula sensitivity`: what runs under many parameters say, in tables."""
+"""`stridula calibrate` and `stridula sensitivity`: searches and statistics over many parameters, in tables."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from ..studies.points import Range
 from ..studies.sobol import FEWEST, sensitivity
 from .consoles import wide_console
 from .exits import INTERRUPTED, Stopped
+from .sweeping import points_done
 
 
 def calibrate_scenario(
@@ -124,14 +125,16 @@ def sensitivity_of_scenario(
     """Print Sobol indices and probabilities of the regimes, write them, and return the closing lines."""
     if out is not None:
         check_writable(out)
-    found = sensitivity(name, ranges, measures or ["regime"], overrides=overrides, **options)
+    title = str(read_tables(name).get("title", name))
+    with points_done(title) as watch:
+        found = sensitivity(name, ranges, measures or ["regime"], overrides=overrides, watchers=[watch], **options)
     console = wide_console()
     if "probability" in found and np.isfinite(found["probability"].values).all():
-        console.print("How likely each regime is")
+        console.print("Probability of each regime")
         console.print(_probabilities(found))
     indices = _indices(found)
     if indices.row_count:
-        console.print("Share of the variance that each value makes alone (in all), with intervals")
+        console.print("Share of the variance caused by each parameter alone (with others), with intervals")
         console.print(indices)
     else:
         console.print(_why_no_indices(found))
@@ -179,7 +182,7 @@ def _why_no_indices(found: xr.Dataset) -> str:
     used = int(found["used"].max()) if found.sizes["output"] else 0
     if used < FEWEST:
         return f"No shares of the variance: they take {FEWEST} samples in which all runs give numbers, got {used}."
-    return "No shares of the variance: nothing varies."
+    return "No shares of the variance: no quantity varies."
 
 
 def _table(*heads: str) -> Table:

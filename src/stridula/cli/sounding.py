@@ -1,4 +1,4 @@
-"""`stridula sound` and `stridula run --wav`: what one hears of a run."""
+"""`stridula sound` and `stridula run --wav`: the sound of a run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ..records.files import load
 from ..scenarios.load import Scenario, load_scenario, scenario_of_tables
 from ..scenarios.quantities import quantity
 from ..scenarios.read import tables_of_text
-from .hearing import print_levels
+from .hearing import loudest, print_levels
 from .outputs import check_outputs
 
 # Window of a spectrogram [s].
@@ -75,9 +75,9 @@ def _played(record: xr.Dataset) -> Scenario:
 
 
 def write_sound(record: xr.Dataset, system: Any, wav: str) -> str:
-    """Write what a pair of ears a metre above the track hears of a record, and return what was written, in words."""
+    """Write what two ears a metre above the track hear of a record, and return what was written and how loud it is."""
     pressure = _heard(record, system, None, True)
-    words = [str(write_wav(wav, pressure)), pressure.attrs["notes"]]
+    words = [str(write_wav(wav, pressure)), loudest(pressure), pressure.attrs["notes"]]
     return "\n".join(word for word in words if word)
 
 

@@ -1,4 +1,4 @@
-"""`stridula stability`: what linear theory says of sliding, at one set of parameters."""
+"""`stridula stability`: equilibrium and modes of sliding by linear theory, at one set of parameters."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from ..analysis.stability import sliding_stability
 from ..scenarios.load import load_scenario
 from ..scenarios.quantities import quantity
 from .consoles import wide_console
+from .counts import counted
 
 # Modes shown where none grows.
 FEWEST = 5
@@ -77,10 +78,10 @@ def _closing(modes: xr.Dataset, given: bool) -> list[str]:
         lines.append(f"{name}: {one['status'].item()}, {', '.join(forces)}{_motion(one)}")
     grows, kind = int(modes["unstable"].sum()), KINDS[modes.attrs["equilibrium"]]
     if modes.attrs["equilibrium"] == "jammed" and not modes.sizes["mode"]:
-        return [*lines, f"Equilibrium: {kind}; there is nothing to vibrate about."]
+        return [*lines, f"No equilibrium to linearise about; {kind}."]
     about = " about the contacts as given" if given else ""
-    words = f"{grows} mode{'s grow' if grows != 1 else ' grows'}" if grows else "no mode grows"
-    return [*lines, f"Equilibrium: {kind}; {words}, {modes.sizes['mode']} modes in all{about}."]
+    growing = f"{counted(grows, 'mode')} {'grows' if grows == 1 else 'grow'}" if grows else "no mode grows"
+    return [*lines, f"Equilibrium: {kind}; {growing} (of {modes.sizes['mode']}){about}."]
 
 
 def _motion(one: xr.Dataset) -> str:

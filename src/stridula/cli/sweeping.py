@@ -1,4 +1,4 @@
-"""`stridula sweep`: check what was asked for, compute under a progress bar, and say what came of the points."""
+"""`stridula sweep`: check the arguments, compute under a progress bar, and print a summary of the points."""
 
 from __future__ import annotations
 
@@ -8,15 +8,14 @@ from contextlib import contextmanager
 from typing import Any
 
 import xarray as xr
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from ..scenarios.read import read_tables
 from ..studies.machines import client_of
 from ..studies.measures import asked_for
 from ..studies.points import Grid
-from ..studies.sweeps import SweepProgress, sweep
+from ..studies.sweeps import SweepProgress, Watcher, sweep
 from ..studies.swept import failures, usual_failure
+from .bars import bar
 from .exits import FAILED, INTERRUPTED, Stopped
 from .outputs import check_outputs
 from .points import Points
@@ -57,7 +56,7 @@ def sweep_scenario(
         reached = progress
 
     try:
-        with _client(scheduler) as client, _bar(title) as watch:
+        with _client(scheduler) as client, points_done(title) as watch:
             found = sweep(
                 name,
                 points,
@@ -71,9 +70,11 @@ def sweep_scenario(
             )
     except KeyboardInterrupt:
         if not reached.done:
-            raise Stopped("interrupted before any point was safe; the same command starts again", INTERRUPTED) from None
-        words = f"interrupted; {reached.done} of {reached.points} points are safe in {out}.parts"
-        raise Stopped(f"{words}; the same command goes on from there", INTERRUPTED) from None
+            raise Stopped(
+                "interrupted before any point was saved; the same command starts again", INTERRUPTED
+            ) from None
+        words = f"interrupted; {reached.done} of {reached.points} points are saved in {out}.parts"
+        raise Stopped(f"{words}; the same command resumes from there", INTERRUPTED) from None
     except RuntimeError as error:
         # What other machines raise; points that fail are no errors.
         raise Stopped(f"{error} in {out}.parts", FAILED) from None
@@ -121,23 +122,7 @@ def _client(address: str | None) -> Iterator[Any]:
 
 
 @contextmanager
-def _bar(title: str) -> Iterator[Any]:
-    """Show a bar on standard error with points done and time left."""
-    console = Console(stderr=True)
-    bar = Progress(
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        TextColumn("{task.fields[words]}", markup=False),
-        TimeRemainingColumn(),
-        console=console,
-        transient=True,
-        disable=not console.is_terminal,
-    )
-    with bar:
-        task = bar.add_task(title, total=None, words="preparing (the first run compiles)")
-
-        def watch(progress: SweepProgress) -> None:
-            words = f"{progress.done} of {progress.points} points"
-            bar.update(task, completed=progress.done, total=progress.points, words=words)
-
-        yield watch
+def points_done(title: str) -> Iterator[Watcher]:
+    """Show the points done."""
+    with bar(title) as show:
+        yield lambda reached: show(reached.done, reached.points, f"{reached.done} of {reached.points} points")

@@ -1,4 +1,4 @@
-"""Where compiled code is kept from one process to the next."""
+"""Compiled code: where it is kept from one process to the next, and when something is compiled."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ import os
 import shutil
 import tempfile
 import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import numba
+from numba.core import event
 
 
 def find_a_place() -> None:
@@ -29,3 +32,24 @@ def find_a_place() -> None:
 
 def _anything() -> None:
     """Stand for all that is compiled."""
+
+
+@contextmanager
+def tell_of_compiling(begins: Callable[[], None]) -> Iterator[None]:
+    """Call a function whenever a compilation begins, in any thread; code that is loaded from disk is not compiled."""
+    with event.install_listener("numba:compile", _Beginnings(begins)):
+        yield
+
+
+class _Beginnings(event.Listener):
+    """Whoever wants to know that a compilation begins."""
+
+    def __init__(self, begins: Callable[[], None]) -> None:
+        self.begins = begins
+
+    def on_start(self, event: event.Event) -> None:
+        """Tell of it."""
+        self.begins()
+
+    def on_end(self, event: event.Event) -> None:
+        """Say nothing."""

@@ -28,7 +28,7 @@ def require_cuda() -> None:
 def _missing() -> str:
     """Return what is missing, in words; nothing where a GPU can be used."""
     if find_spec("numba_cuda") is None:
-        return "numba-cuda, which is not installed: pip install stridula[cuda]"
+        return "numba-cuda, which is not installed: pip install .[cuda] in the sources"
     from numba import cuda
 
     if cuda.is_available() and len(cuda.gpus):

@@ -1,4 +1,4 @@
-"""A run that goes on from the record of another: what it takes over, and what must be the same."""
+"""A run that continues the record of another: what it takes over, and what must be the same."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ from .timing import Timing
 STATEFUL = tuple(law.law for law in LAWS if law.state_units)
 STATE = ("modal", "remainder", "carried", "energies")
 ATTRIBUTES = ("ended", "scenario", "scheme", "step", "steps_per_sample", "last_step", "initial_energy")
-OTHER_VERSION = "a record of another version runs again, but cannot be gone on from"
+OTHER_VERSION = "a record of another version runs again, but cannot be continued"
 
 
 def state_of(
     start: xr.Dataset, system: System, arrays: Assembly, scheme: Scheme, timing: Timing, probes: Sequence[Probe]
 ) -> State:
-    """Return the state at the end of a record, for a run that goes on from it.
+    """Return the state at the end of a record, for a run that continues it.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def _check_whole(start: xr.Dataset) -> None:
         got = f"{times[-1]:.6g} s" if times.size else "none"
         raise ValueError(
             f"start must be a record up to its final state, at {last * step:.6g} s, got a last time of {got}: "
-            "a record that is cut cannot be gone on from, run as far as that first"
+            "a record that is cut cannot be continued, run as far as that first"
         )
 
 
@@ -130,7 +130,7 @@ def imposed_at(arrays: Assembly, last_step: int, step: float) -> dict[str, float
 def moved_on(
     start: xr.Dataset, system: System, arrays: Assembly, modes: Recurrence, state: State, step: float
 ) -> tuple[Assembly, Array]:
-    """Return a system whose root and rigid tracks go on from where a record left them, perhaps at other velocities.
+    """Return a system whose root and rigid tracks continue from where a record left them, perhaps at other velocities.
 
     What hangs at a root that is made to move faster does not move faster at once: `state` is changed so, and the energy
     that this gives it, as the root sees it, is work of the drive. What sticks to a belt has to follow it.
@@ -184,7 +184,7 @@ def _root_moved_on(
 
 
 def _frozen(tables: dict[str, Any], knows_motion: bool) -> dict[str, Any]:
-    """Return what a run that goes on from another must share with it: all but what drives it, friction and timing.
+    """Return what a run that continues another must share with it: all but what drives it, friction and timing.
 
     A record that does not say how far its rigid tracks have moved must share their motion, too.
     """

@@ -62,8 +62,8 @@ def simulate(
     contact_solve : GaussSeidel, optional
         How several contacts are solved together; one contact is solved exactly.
     start : xarray.Dataset, optional
-        A record to go on from; the new record begins where it ended. Bodies, contact point, gap, probes, scheme, step
-        and sampling must be the same; friction, drives and the motion of rigid tracks may change. A belt goes on from
+        A record to continue; the new record begins where it ended. Bodies, contact point, gap, probes, scheme, step
+        and sampling must be the same; friction, drives and the motion of rigid tracks may change. A belt continues from
         where it is.
     watchers : sequence of callable, optional
         Called with a `Progress` between chunks of the march.

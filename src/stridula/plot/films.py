@@ -99,7 +99,7 @@ def animate(
         One contact of a finite-element beam on a modal beam, a modal plate or a rigid track.
     out : str or Path
         The file, ``.mp4`` or ``.gif``, written whole or not at all. MP4 takes an encoder: ``pip install
-        stridula[video]``, or an ffmpeg on the path.
+        .[video]`` in the sources, or an ffmpeg on the path.
     start, duration : float, optional
         The window of time [s].
     slowdown : float, optional
@@ -259,7 +259,9 @@ def _writer(out: str | Path) -> AbstractMovieWriter:
         return PillowWriter(fps=FRAMES_PER_SECOND)
     encoder = _encoder()
     if encoder is None:
-        raise ValueError(f"out must end in .gif without an encoder (pip install stridula[video]), got {str(out)!r}")
+        raise ValueError(
+            f"out must end in .gif without an encoder (pip install .[video] in the sources), got {str(out)!r}"
+        )
     return FFMpegWriter(
         fps=FRAMES_PER_SECOND, codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-crf", "20", "-threads", "1"]
     )

@@ -45,7 +45,7 @@ class Target:
         Between these it is met; a bound that is left out does not count.
     scale : float, optional
         How far outside counts as a miss of 1, in the unit of the measure: half the width if left out, or a tenth of the
-        only bound. From 5 on misses are pressed together, to stay below the 10 of a run that fails.
+        only bound. Misses above 5 are compressed, to stay below the 10 of a failed run.
 
     Raises
     ------
@@ -120,11 +120,11 @@ def calibrate(
     watchers: Sequence[Callable[[CalibrationProgress], None]] = (),
     **options: Any,
 ) -> xr.Dataset:
-    """Find parameters whose run shows given measures.
+    """Find parameters whose run has given measures.
 
     Differential evolution (Storn & Price 1997; ``scipy.optimize.differential_evolution``) over the ranges; the runs of
-    a generation march side by side. What is least is the sum of the squared misses of the targets; a search ends once
-    all are met. Equal seeds give equal searches.
+    a generation march side by side. The search minimises the sum of the squared misses of the targets and ends once all
+    are met. Equal seeds give equal searches.
 
     Parameters
     ----------
@@ -134,8 +134,8 @@ def calibrate(
     ranges : mapping
         Where each parameter is searched: a `Range` or its two ends.
     targets : mapping
-        What each measure should be, by the name of its variable in a sweep: a `Target`, its two bounds, or a word that
-        it should be.
+        Target of each measure, by the name of its variable in a sweep: a `Target`, its two bounds, or the word that
+        the measure should equal.
     measures : mapping, optional
         Functions of a record by name, for targets that no measure of a sweep gives.
     population : int, optional

@@ -26,7 +26,10 @@ def client_of(address: str) -> Any:
     try:
         from distributed import Client
     except ImportError:
-        raise ValueError("scheduler needs dask.distributed: install stridula[distributed], or leave it out") from None
+        raise ValueError(
+            "scheduler needs dask.distributed, which is not installed: pip install .[distributed] in the sources, or "
+            "leave it out"
+        ) from None
     try:
         # Not for all that dask does in this process: one that cannot connect would stay in the way.
         return Client(address, timeout=PATIENCE, set_as_default=False)

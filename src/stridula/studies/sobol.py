@@ -37,8 +37,8 @@ def sensitivity(
 ) -> xr.Dataset:
     """Return Sobol indices of what is measured, and the probability of each regime, under uncertain parameters.
 
-    The first-order index of a parameter is the share of the variance of an output that it makes alone, the total-order
-    index the share that it has a part in (Saltelli et al. 2010, Comput. Phys. Commun. 181;
+    The first-order index of a parameter is the share of the variance of an output that it causes alone, the total-order
+    index the share that it contributes to (Saltelli et al. 2010, Comput. Phys. Commun. 181;
     ``scipy.stats.sobol_indices``). They take ``samples (parameters + 2)`` runs, at points of Sobol's sequence.
 
     Parameters
@@ -46,7 +46,7 @@ def sensitivity(
     scenario : str, Path or xarray.Dataset
         A scenario, as for `sweep`.
     uncertain : mapping
-        Distribution of each parameter by key: two ends of an even one, a `Range`, or a frozen distribution of
+        Distribution of each parameter by key: the two ends of a uniform one, a `Range`, or a frozen distribution of
         ``scipy.stats`` in SI. They are independent of each other.
     measures : str, mapping or sequence of them, optional
         What is measured, as for `sweep`.

@@ -73,7 +73,7 @@ def sweep(
     client: Any = None,
     watchers: Sequence[Watcher] = (),
 ) -> xr.Dataset:
-    """Run a scenario at many points of its parameters and return what is measured at each.
+    """Run a scenario at many points of its parameters and return the measures of each.
 
     Points are computed in parts of 64, in their order. Within a part runs march side by side, with the shortest of the
     time steps that they would take alone. A part does not depend on who computes it: any number of workers, other
@@ -100,8 +100,8 @@ def sweep(
     probes : bool, optional
         Whether the scenario's probes are recorded; if left out, where there are functions among the measures.
     out : str or Path, optional
-        NetCDF file to write. Parts that are done are kept in a folder beside it, ``<out>.parts``; the same call goes on
-        from there. Two of them at once do no harm.
+        NetCDF file to write. Parts that are done are kept in a folder beside it, ``<out>.parts``; the same call resumes
+        from there. Two processes may compute the same sweep at once.
     workers : int, optional
         Parts at a time; as many as there are processors if left out.
     client : distributed.Client, optional

@@ -44,7 +44,7 @@ def tones() -> Outcome:
         curves.append(Curve(np.array(STEADY), np.array(steady), "stationary method", marks=True))
         curves.append(Curve(np.array(VARYING), np.array(varying), "time-varying method", marks=True))
     else:
-        notes.append("Not run: it takes the package mosqito (pip install stridula[psycho]).")
+        notes.append("Not run: it takes the package mosqito (pip install .[psycho] in the sources).")
     return Outcome(rows, Sketch("level of 1 kHz [dB]", "loudness [sone]", curves), notes)
 
 

@@ -1,0 +1,44 @@
+"""Bars on standard error: how far a computation has come, and how long it will still take."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, Task, TextColumn, TimeRemainingColumn
+from rich.text import Text
+
+from ..integration.compiled_code import tell_of_compiling
+
+# Done, in all, and both in words.
+Show = Callable[[float, float, str], None]
+PREPARING, COMPILING = "preparing", "compiling, once: some ten seconds"
+
+
+class TimeLeft(TimeRemainingColumn):
+    """The time left, once it is known."""
+
+    def render(self, task: Task) -> Text:
+        """Return it in words."""
+        known = task.total is not None and task.time_remaining is not None and not task.finished
+        return super().render(task).append(" left") if known else Text("")
+
+
+@contextmanager
+def bar(title: str) -> Iterator[Show]:
+    """Show a bar where standard error is a terminal, and say so while code is being compiled."""
+    console = Console(stderr=True)
+    progress = Progress(
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TextColumn("{task.fields[words]}", markup=False),
+        TimeLeft(),
+        console=console,
+        transient=True,
+        disable=not console.is_terminal,
+    )
+    with progress:
+        task = progress.add_task(title, total=None, words=PREPARING)
+        with tell_of_compiling(lambda: progress.update(task, words=COMPILING)):
+            yield lambda done, total, words: progress.update(task, completed=done, total=total, words=words)

@@ -1,0 +1,63 @@
+"""The documentation: titles of the groups of names, formulas without a network, and no sentences that were riddles."""
+
+from __future__ import annotations
+
+import ast
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import stridula
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.rst"))]
+HELP = ROOT / "src" / "stridula" / "cli" / "commands.py"
+# What readers stumbled over, and what it is called instead.
+RIDDLES = {
+    r"\b(gone|goes|go) on from\b": "continue",
+    r"\bwhat came of\b": "the result",
+    r"\bagain and again\b": "several times",
+    r"\bsays? what\b.*\bsays?\b": "name the thing",
+    r"\bhangs on\b": "depends on",
+    r"\bfor himself\b": "separately",
+    r"\btakes? along\b": "save",
+    r"\bfaster than sound\b": "faster than real time",
+    r"^What (vibrates|pushes|it feels like|sound feels like|is heard)$": "a noun",
+}
+
+
+def settings() -> dict[str, Any]:
+    """Return the constants of the settings of the documentation, without Sphinx."""
+    found = {}
+    for node in ast.parse((ROOT / "docs" / "conf.py").read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            try:
+                found[node.targets[0].id] = ast.literal_eval(node.value)
+            except ValueError:
+                continue
+    return found
+
+
+def test_every_group_of_names_has_a_title():
+    assert set(settings()["HOMES"]) == set(stridula._HOME)
+
+
+def test_formulas_take_no_network():
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    assert "sphinx-mathjax-offline" in settings()["extensions"]
+    assert any(name.startswith("sphinx-mathjax-offline") for name in extras["docs"])
+
+
+@pytest.mark.parametrize("page", [*PAGES, HELP], ids=lambda page: page.name)
+def test_pages_and_help_texts_do_not_speak_in_riddles(page):
+    text = page.read_text(encoding="utf-8")
+    found = {riddle: plain for riddle, plain in RIDDLES.items() if re.search(riddle, text, re.MULTILINE)}
+    assert not found
+
+
+@pytest.mark.parametrize("sentence", ["it goes on from there", "Says what linear theory says", "What pushes"])
+def test_the_rule_can_fail(sentence):
+    assert any(re.search(riddle, sentence, re.MULTILINE | re.IGNORECASE) for riddle in RIDDLES)
