@@ -168,7 +168,7 @@ def test_overdamped_modes_of_a_track_in_contact_keep_the_ledger():
         (lambda: st.RisingDamping(0.1, float("nan")), "slope must be finite, got nan"),
         (lambda: st.SampledDamping([1.0, 1.0], [0.1, 0.1]), r"frequency\[1\] must be above 1.0"),
         (lambda: st.SampledDamping([1.0, 2.0], [0.1]), "ratio must have as many values as frequency"),
-        (lambda: st.SampledDamping([], []), "ratio must have as many values as frequency, at least one"),
+        (lambda: st.SampledDamping([], []), "ratio must have as many values as frequency, one or more"),
         (lambda: st.SampledDamping([1.0], [1.5]), r"ratio\[0\] must be below 1"),
         (lambda: st.SampledDamping(3.0, [0.5]), "frequency must be a list of numbers, got 3.0"),
         (lambda: rod(st.Rayleigh), "damping must be a number"),

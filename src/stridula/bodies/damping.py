@@ -118,7 +118,7 @@ class SampledDamping:
         ratios = _each("ratio", self.ratio, ratio)
         if not frequencies or len(frequencies) != len(ratios):
             raise ValueError(
-                f"ratio must have as many values as frequency, at least one, got {len(ratios)} and {len(frequencies)}"
+                f"ratio must have as many values as frequency, one or more, got {len(ratios)} and {len(frequencies)}"
             )
         for number, (before, after) in enumerate(pairwise(frequencies), start=1):
             if after <= before:

@@ -186,7 +186,10 @@ class DampingTable(_Kind):
                 given[key] = kind.read(value[key])
             except ValueError as error:
                 raise ValueError(f"must have a {key} that {error}") from None
-        build(**given)
+        try:
+            build(**given)
+        except ValueError as error:
+            raise ValueError(f"must be a law in order: {error}") from None
         return {"law": law, **given}
 
     def json_schema(self) -> dict[str, Any]:
@@ -203,7 +206,13 @@ LAW_OF_DAMPING = DampingTable()
 
 @dataclass(frozen=True)
 class RatioOrLaw(_Kind):
-    """One damping ratio, a list of one for each mode if `each`, or a law of damping."""
+    """One damping ratio, a list of one for each mode where that is allowed, or a law of damping.
+
+    Attributes
+    ----------
+    each : bool
+        Whether a list will do.
+    """
 
     each: bool
 

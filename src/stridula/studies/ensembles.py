@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import scipy.special
+import scipy.stats
 import xarray as xr
 
 from ..analysis import status_share
@@ -135,6 +136,29 @@ def mean_and_interval(values: Sequence[float] | Array, confidence: float = 0.95)
         return (float(known[0]) if known.size else float("nan")), float("nan")
     quantile = scipy.special.stdtrit(known.size - 1, 0.5 + confidence / 2.0)
     return float(known.mean()), float(quantile * known.std(ddof=1) / np.sqrt(known.size))
+
+
+def median_and_interval(values: Sequence[float] | Array, confidence: float = 0.95) -> tuple[float, float, float]:
+    """Return the median of the finite values and the ends of its interval, NaN where there are too few.
+
+    Order statistics of the binomial distribution, which assume nothing of the values (Conover 1999, Practical
+    Nonparametric Statistics, section 3.2).
+
+    Parameters
+    ----------
+    values : array_like
+        The values.
+    confidence : float, optional
+        Level of the interval [1].
+    """
+    given = np.asarray(values, dtype=float)
+    known = np.sort(given[np.isfinite(given)])
+    nan = float("nan")
+    if not known.size:
+        return nan, nan, nan
+    below = int(scipy.stats.binom.ppf((1.0 - confidence) / 2.0, known.size, 0.5))
+    low, high = (known[below - 1], known[-below]) if below else (nan, nan)
+    return float(np.median(known)), float(low), float(high)
 
 
 def _checked(measures: Any) -> dict[str, Measure]:

@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy.stats import binom
 
 from ... import analysis
 from ...acoustics import Air
 from ...bodies.modes import Array
-from .runs import LOADS, Runs
+from .pressure import ladder_words, largest_fall, relaxation, rise
+from .runs import LOADS, Runs, median_over_starts
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Claim:
     def check(self, runs: Runs) -> dict[str, Any]:
         """Return the row of `claims.json`."""
         values = self.values(runs)
-        value = median(values)
+        value, interval = median_over_starts(values)
         row: dict[str, Any] = {
             "claim": self.claim,
             "section": self.section,
@@ -83,7 +83,7 @@ class Claim:
             "basis": "fitted" if self.fitted else "predicted",
         }
         if self.chaotic:
-            row |= {"starts": values.size, "interval": interval_of_median(values)}
+            row |= {"starts": values.size, "interval": interval}
         if self.detail is not None:
             row["detail"] = self.detail(runs)
         return row
@@ -93,26 +93,8 @@ class Claim:
         if not self.chaotic:
             return np.array([float(self.measure(runs))])
         together = {claim.claim: claim.measure for claim in CLAIMS if claim.chaotic == self.chaotic}
-        if self.claim not in together:
-            together = {self.claim: self.measure}
-        return runs.over_starts(self.chaotic, together)[self.claim]
-
-
-def median(values: Array) -> float:
-    """Return the median over starts, NaN unless it can be measured from more than half of them."""
-    known = values[np.isfinite(values)]
-    return float(np.median(known)) if 2 * known.size > values.size else float("nan")
-
-
-def interval_of_median(values: Array, confidence: float = 0.95) -> list[float] | None:
-    """Return the values between which the median of all starts lies, None if there are too few.
-
-    Order statistics of the binomial distribution, which suppose nothing of the values (Conover 1999, Practical
-    Nonparametric Statistics, section 3.2).
-    """
-    known = np.sort(values[np.isfinite(values)])
-    below = int(binom.ppf((1.0 - confidence) / 2.0, known.size, 0.5))
-    return [float(known[below - 1]), float(known[-below])] if below else None
+        values = runs.once(f"{self.chaotic} over starts", lambda: runs.over_starts(self.chaotic, together))
+        return np.asarray(values[self.claim])
 
 
 def near(printed: float, share: float) -> tuple[float, float]:
@@ -289,25 +271,18 @@ def relaxation_share(status: str) -> Callable[[Runs], float]:
 
 def relaxation_frequency(runs: Runs) -> float:
     """Return the dominant frequency of the normal force in the relaxations under 50 N [Hz]."""
-    return _relaxation(runs.record("strong-pressure"))[0]
-
-
-def _relaxation(run: xr.Dataset) -> tuple[float, float]:
-    """Return the dominant frequency in the relaxations of a run and its resolution [Hz]."""
-    between = analysis.bursts(run)
-    force = run["normal_force"]
-    return analysis.dominant_frequency(force, between), analysis.frequency_resolution(force, between)
+    return relaxation(runs.record("strong-pressure"))[0]
 
 
 def pressure_raises_frequency(runs: Runs) -> float:
     """Return the least rise of the relaxations' frequency from load to load, in units of its resolution [1]."""
-    pairs = [_relaxation(runs.under_load(load)) for load in LOADS]
+    pairs = [relaxation(runs.under_load(load)) for load in LOADS]
     rises = [(b - a) / max(ra, rb) for (a, ra), (b, rb) in pairwise(pairs)]
     return float(min(rises))
 
 
 def _frequencies_under_load(runs: Runs) -> str:
-    pairs = [(load, *_relaxation(runs.under_load(load))) for load in LOADS]
+    pairs = [(load, *relaxation(runs.under_load(load))) for load in LOADS]
     return ", ".join(f"{load:g} N: {f:.0f} Hz (resolution {r:.0f} Hz)" for load, f, r in pairs)
 
 
@@ -494,6 +469,27 @@ CLAIMS = (
         pressure_raises_frequency,
         fitted=False,
         detail=_frequencies_under_load,
+    ),
+    Claim(
+        "10 to 200 N: largest fall of the median frequency, in resolutions",
+        "3.4",
+        "higher with pressure",
+        -INFINITE,
+        1.0,
+        "1",
+        largest_fall,
+        fitted=False,
+        detail=ladder_words,
+    ),
+    Claim(
+        "10 to 200 N: rise of the median frequency",
+        "3.4",
+        "higher with pressure",
+        2.0,
+        INFINITE,
+        "1",
+        rise,
+        fitted=False,
     ),
     Claim(
         "heard: a tone of the bursts",

@@ -18,7 +18,7 @@ from ...analysis import settling_time
 from ...bodies.modes import Array
 from ...integration import simulate_many
 from ...scenarios.load import Scenario, load_scenario
-from ...studies.ensembles import perturbed_starts
+from ...studies.ensembles import median_and_interval, perturbed_starts
 
 CASES = ("stable-sliding", "squeal", "axial-sliding", "judder", "weak-pressure", "strong-pressure")
 LOADS = (20.0, 40.0, 80.0, 150.0)
@@ -45,7 +45,7 @@ class Runs:
     _records: dict[str, xr.Dataset] = field(default_factory=dict, repr=False)
     _sounds: dict[str, xr.DataArray] = field(default_factory=dict, repr=False)
     _onsets: dict[str, dict[float, str]] = field(default_factory=dict, repr=False)
-    _measured: dict[str, Mapping[str, Array]] = field(default_factory=dict, repr=False)
+    _made: dict[str, Any] = field(default_factory=dict, repr=False)
 
     def scenario(self, case: str, **overrides: Any) -> Scenario:
         """Return a case of the paper under these parameters, with further overrides."""
@@ -83,26 +83,29 @@ class Runs:
                 self._onsets[case][float(friction)] = ending(run)
         return self._onsets[case]
 
+    def once(self, name: str, make: Callable[[], Any]) -> Any:
+        """Return what `make` returns, made when it is first asked for by this name."""
+        if name not in self._made:
+            self._made[name] = make()
+        return self._made[name]
+
     def over_starts(
         self, case: str, measures: Mapping[str, Callable[[Runs], float]], starts: int = STARTS
-    ) -> Mapping[str, Array]:
+    ) -> dict[str, Array]:
         """Return measures of a case from starts that differ by parts in a million, each of shape (starts,).
 
-        A measure is given these runs with the case's record in the place of the one from the first start; it finds the
-        records of other cases as they are. Kept by the name of the case.
+        A measure is given these runs with the case's record from one of the starts.
         """
-        if case not in self._measured:
-            self.report(f"{case} from {starts} starts")
-            scenario = self.scenario(case)
+        self.report(f"{case} from {starts} starts")
+        scenario = self.scenario(case)
 
-            def measured(record: xr.Dataset) -> list[float]:
-                own = self._with(case, record)
-                return [float(measure(own)) for measure in measures.values()]
+        def measured(record: xr.Dataset) -> list[float]:
+            own = self._with(case, record)
+            return [float(measure(own)) for measure in measures.values()]
 
-            systems = perturbed_starts(scenario.system, starts)
-            values = simulate_many(systems, scenario.duration, measured, provenance=False)
-            self._measured[case] = dict(zip(measures, np.array(values).T, strict=True))
-        return self._measured[case]
+        systems = perturbed_starts(scenario.system, starts)
+        values = simulate_many(systems, scenario.duration, measured, provenance=False)
+        return dict(zip(measures, np.array(values).T, strict=True))
 
     def _with(self, case: str, record: xr.Dataset) -> Runs:
         other = copy(self)
@@ -115,6 +118,15 @@ class Runs:
             self.report(key)
             self._records[key] = self.scenario(case, **overrides).simulate()
         return self._records[key]
+
+
+def median_over_starts(values: Array) -> tuple[float, list[float] | None]:
+    """Return the median over starts and its interval; NaN and None unless more than half of them have a value."""
+    known = values[np.isfinite(values)]
+    if 2 * known.size <= values.size:
+        return float("nan"), None
+    median, *interval = median_and_interval(known)
+    return median, interval if np.isfinite(interval).all() else None
 
 
 def ending(run: xr.Dataset) -> str:

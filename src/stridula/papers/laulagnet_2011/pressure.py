@@ -1,0 +1,137 @@
+"""How the frequency of the relaxations goes with the load, as medians over starts: section 3.4."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ... import analysis
+from ...analysis.stability import sliding_stability
+from ...bodies.modes import Array
+from ...integration import simulate_many
+from ...plot.colours import LINES
+from ...studies.ensembles import perturbed_starts
+from .runs import Runs, median_over_starts
+
+PRESSURES = tuple(float(load) for load in np.round(np.geomspace(10.0, 200.0, 24), 1))
+# Starts under each load: those that march side by side.
+STARTS = 8
+
+
+@dataclass(frozen=True)
+class Relaxations:
+    """Frequencies of the relaxations under one load.
+
+    Attributes
+    ----------
+    load : float
+        Normal load [N].
+    frequency, resolution : ndarray, shape (starts,)
+        Dominant frequency inside the relaxations and what their length resolves [Hz]; NaN from a start without any.
+    """
+
+    load: float
+    frequency: Array
+    resolution: Array
+
+    @property
+    def median(self) -> float:
+        """Median frequency over the starts [Hz]."""
+        return median_over_starts(self.frequency)[0]
+
+    @property
+    def resolved(self) -> float:
+        """Median resolution over the starts [Hz]."""
+        return median_over_starts(self.resolution)[0]
+
+
+def relaxation(run: xr.Dataset) -> tuple[float, float]:
+    """Return the dominant frequency in the relaxations of a run and its resolution [Hz]."""
+    between = analysis.bursts(run)
+    force = run["normal_force"]
+    return analysis.dominant_frequency(force, between), analysis.frequency_resolution(force, between)
+
+
+def relaxations(runs: Runs) -> list[Relaxations]:
+    """Return the relaxations under each of `PRESSURES`, computed once for a set of runs."""
+    found: list[Relaxations] = runs.once("relaxations", lambda: [_under(runs, load) for load in PRESSURES])
+    return found
+
+
+def _under(runs: Runs, load: float) -> Relaxations:
+    runs.report(f"relaxations under {load:g} N from {STARTS} starts")
+    scenario = runs.scenario("strong-pressure", normal_load=load)
+    systems = perturbed_starts(scenario.system, STARTS)
+    found = np.array(simulate_many(systems, scenario.duration, relaxation, probes=(), provenance=False))
+    known = np.isfinite(found[:, 0])
+    return Relaxations(load, found[:, 0], np.where(known, found[:, 1], np.nan))
+
+
+def largest_fall(runs: Runs) -> float:
+    """Return how far the median frequency falls below what a lower load gave, in resolutions [1]."""
+    known = _known(runs)
+    falls = [
+        (before.median - after.median) / max(before.resolved, after.resolved)
+        for k, after in enumerate(known)
+        for before in known[:k]
+    ]
+    return max(0.0, *falls) if len(falls) > 1 else float("nan")
+
+
+def rise(runs: Runs) -> float:
+    """Return the median frequency under the highest load over that under the lowest with relaxations [1]."""
+    known = _known(runs)
+    return known[-1].median / known[0].median if known else float("nan")
+
+
+def ladder_words(runs: Runs) -> str:
+    """Return the median frequency under each load, in words."""
+    return ", ".join(f"{one.load:g} N: {one.median:.0f} Hz" for one in relaxations(runs))
+
+
+def _known(runs: Runs) -> list[Relaxations]:
+    return [one for one in relaxations(runs) if np.isfinite(one.median)]
+
+
+def draw(runs: Runs) -> Figure:
+    """Draw the frequencies of every start over the load, their medians, and the modes that grow in steady sliding."""
+    figure = Figure(figsize=(8.0, 5.0), layout="constrained")
+    axes = figure.subplots()
+    known = relaxations(runs)
+    loads = np.repeat([one.load for one in known], STARTS)
+    axes.plot(loads, np.concatenate([one.frequency for one in known]), "o", color=LINES[0], alpha=0.25, mec="none")
+    medians = np.array([one.median for one in known])
+    bounds = np.array([median_over_starts(one.frequency)[1] or (np.nan, np.nan) for one in known])
+    at = [one.load for one in known]
+    axes.vlines(at, *bounds.T, color=LINES[0])
+    axes.plot(at, medians, "-", color=LINES[0], marker="_", markersize=10, label="median of 8 starts, its interval")
+    for frequency, growth, name in growing_modes(runs):
+        axes.axhline(frequency, color="0.4", linewidth=0.8, linestyle="--")
+        words = f"{frequency:.0f} Hz, grows at {growth:.0f} 1/s: {name}"
+        axes.annotate(words, (1.0, frequency), (-4, 3), ("axes fraction", "data"), "offset points", ha="right", size=8)
+    axes.set(xscale="log", xlabel="Normal load [N]", ylabel="Frequency of the relaxations [Hz]", ylim=(0.0, None))
+    axes.set_xticks([10, 20, 50, 100, 200], labels=["10", "20", "50", "100", "200"])
+    axes.legend(loc="upper left", frameon=False)
+    axes.set_title("Frequency of the relaxations at 1 cm/s over the load")
+    return figure
+
+
+def growing_modes(runs: Runs) -> list[tuple[float, float, str]]:
+    """Return frequency [Hz] and growth rate [1/s] of the modes that grow in steady sliding, and their names.
+
+    A mode is named by the mode of the slider with its tip pinned that is nearest in frequency.
+    """
+    system = runs.scenario("strong-pressure").system
+    found: Any = sliding_stability(system)
+    pinned = replace(system.slider, tip_support="pinned").modes().frequency
+    pinned = pinned[pinned > 0.0]
+    modes = []
+    for k in np.flatnonzero(found["unstable"].values):
+        frequency, growth = float(found["frequency"][k]), float(found["growth_rate"][k])
+        near = int(np.argmin(np.abs(pinned - frequency)))
+        modes.append((frequency, growth, f"slider with its tip pinned, mode {near + 1} ({pinned[near]:.0f} Hz)"))
+    return modes
