@@ -27,6 +27,8 @@ GRACE = 2
 PATIENCE = 2.0
 # Hosts that stand for all addresses of this machine.
 EVERYWHERE = ("0.0.0.0", "::")
+# An address and a port that are nobody's.
+ELSEWHERE = ("192.0.2.1", 9)
 COMPILING = "stridula: compiling, once; this takes some ten seconds"
 
 
@@ -110,13 +112,17 @@ def addresses(host: str, port: int) -> list[str]:
     address = f"http://{shown}:{port}/"
     if is_loopback(host):
         return [address]
-    name = socket.gethostname().partition(".")[0]
-    return [
-        address,
-        f"other machines open http://{name if host in EVERYWHERE else shown}:{port}/, which is silent: browsers play "
-        "sound from https or localhost only",
-        f"with sound: ssh -L {port}:{shown}:{port} {name} there, and then http://localhost:{port}/",
-    ]
+    # A name with a dot would be refused.
+    names = [socket.gethostname().partition(".")[0], *outward()] if host in EVERYWHERE else [shown]
+    return [address, "other machines open " + " or ".join(f"http://{name}:{port}/" for name in names)]
+
+
+def outward() -> list[str]:
+    """Return the address by which other machines reach this one, if it has one; nothing is sent to find it."""
+    with suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
+        asked.connect(ELSEWHERE)
+        return [asked.getsockname()[0]]
+    return []
 
 
 def is_loopback(host: str) -> bool:

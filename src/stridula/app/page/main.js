@@ -300,11 +300,6 @@ $("repeat").addEventListener("change", () => {
 });
 $("sound").addEventListener("click", async () => {
   const on = !sound.on;
-  const missing = Sound.missing(window.isSecureContext, location);
-  if (missing) {
-    problem([missing]);
-    return;
-  }
   $("sound").setAttribute("aria-pressed", String(on));
   $("sound").textContent = on ? "Mute" : "Sound on";
   moves.clear();

@@ -1,13 +1,13 @@
-// What sounds: a queue of samples, a high-pass, a volume and a limiter, in the thread of the sound.
+// What sounds: a queue of samples, a high-pass, a volume and a limiter; in the thread of the sound where there is one.
 const CEILING = 0.7; // Never louder than 3 dB below full scale.
 const AHEAD = 0.003; // The limiter sees loud samples so much earlier than they sound [s].
 const RELEASE = 0.15; // It lets go over so much [s].
 const LOWEST = 20; // What is slower cannot be heard [Hz].
 const FADE = 0.005; // Sound goes and comes over so much where samples are missing [s].
 
-class Player extends AudioWorkletProcessor {
-  constructor() {
-    super();
+export class Voice {
+  constructor(sampleRate, tell) {
+    Object.assign(this, { sampleRate, tell });
     this.queue = new Float32Array(1 << 17);
     this.mask = this.queue.length - 1;
     this.written = this.read = 0;
@@ -30,7 +30,6 @@ class Player extends AudioWorkletProcessor {
     this.release = 1 - Math.exp(-1 / (RELEASE * sampleRate));
     this.quanta = 0;
     this.loudest = this.power = this.least = 0;
-    this.port.onmessage = ({ data }) => this.told(data);
   }
 
   told(data) {
@@ -52,8 +51,9 @@ class Player extends AudioWorkletProcessor {
     for (const value of sound) this.queue[this.written++ & this.mask] = value;
   }
 
-  process(_, [[out]]) {
-    const step = 1 / (FADE * sampleRate);
+  // Fill a block with what sounds next.
+  fill(out) {
+    const step = 1 / (FADE * this.sampleRate);
     if (!this.runs && this.written - this.read >= this.needed && this.written > this.read) this.runs = true;
     for (let i = 0; i < out.length; i++) {
       let value = 0;
@@ -78,8 +78,7 @@ class Player extends AudioWorkletProcessor {
       this.loudest = Math.max(this.loudest, size);
       this.power += size * size;
     }
-    this.tell(out.length);
-    return true;
+    this.report(out.length);
   }
 
   limited(value) {
@@ -97,18 +96,18 @@ class Player extends AudioWorkletProcessor {
     return Math.max(-CEILING, Math.min(CEILING, late * this.gain));
   }
 
-  tell(samples) {
+  report(samples) {
     while (this.marks.length && this.marks[0].at <= this.read) {
       const { revision } = this.marks.shift();
       if (revision !== this.revision) {
         this.revision = revision;
-        this.port.postMessage({ revision });
+        this.tell({ revision });
       }
     }
     if (++this.quanta % 4) return;
     if (this.stream) this.stream.postMessage({ left: this.written - this.read });
     if (this.quanta % 16) return;
-    this.port.postMessage({
+    this.tell({
       peak: this.loudest,
       level: Math.sqrt(this.power / (16 * samples)),
       reduction: 1 + this.least,
@@ -118,4 +117,18 @@ class Player extends AudioWorkletProcessor {
   }
 }
 
-registerProcessor("player", Player);
+if (globalThis.AudioWorkletProcessor) {
+  class Player extends AudioWorkletProcessor {
+    constructor() {
+      super();
+      this.voice = new Voice(sampleRate, (said) => this.port.postMessage(said));
+      this.port.onmessage = ({ data }) => this.voice.told(data);
+    }
+
+    process(_, [[out]]) {
+      this.voice.fill(out);
+      return true;
+    }
+  }
+  registerProcessor("player", Player);
+}
