@@ -40,7 +40,7 @@ def test_a_page_too_many_says_so(chromium, own):
     with ExitStack() as stack, Browsing(chromium, own) as browsing:
         browsing.complains = False
         for _ in range(16):
-            stack.enter_context(conversation(own)).until("hello")
+            stack.enter_context(conversation(own)).say("repeat", on=True)
         page = browsing.context.new_page()
         page.goto(own.address)
         page.locator("#lost").wait_for(state="visible")

@@ -87,7 +87,23 @@ def test_who_calls_the_socket_by_another_name_is_refused(server, host):
 
 @pytest.mark.parametrize("host", ["localhost", "127.0.0.1", "[::1]"])
 def test_this_machine_has_three_names(server, host):
-    assert server.get("/", Host=f"{host}:{server.port}")[0].status == 200
+    answer, _ = server.get("/", Host=f"{host}:{server.port}")
+    assert answer.status == 200
+    # A policy cannot hold an address of IPv6: browsers would complain of it.
+    assert "[" not in answer.getheader("content-security-policy")
+    assert "connect-src 'self'" in answer.getheader("content-security-policy")
+
+
+def test_an_open_server_has_names_of_the_house_and_addresses(tmp_path):
+    opened = Server(tmp_path / "errors", arguments=["--open"])
+    try:
+        for host in ("bench", "bench.local", "bench.lan:80", "192.168.0.7:87", "[fe80::1]:87"):
+            assert opened.get("/", Host=host)[0].status == 200
+        for host in ("evil.example", "bench; script-src *", "bench:x", "a b", "[fe80::1", ""):
+            assert opened.get("/", Host=host)[0].status == 421
+    finally:
+        opened.stop()
+    assert opened.complaints == ""
 
 
 @pytest.mark.parametrize("origin", ["http://evil.example", "null", "http://127.0.0.1:1", "file://", None])

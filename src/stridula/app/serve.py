@@ -15,6 +15,7 @@ from contextlib import suppress
 import uvicorn
 
 from ..studies.task import use_one_thread
+from .caller import Caller, is_news
 from .instrument import RATE, Instrument
 from .messages import LARGEST
 from .parts import Part, packed
@@ -67,20 +68,34 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
     logging.getLogger("asyncio").setLevel(logging.ERROR)
     if opens_browser:
         threading.Timer(0.5, webbrowser.open, [address]).start()
+    # Ctrl-C is how it ends.
+    with suppress(KeyboardInterrupt):
+        server(is_open).run(sockets=[listening])
+
+
+def server(is_open: bool) -> uvicorn.Server:
+    """Return what serves the page.
+
+    Parameters
+    ----------
+    is_open : bool
+        Whether other machines may ask.
+    """
     config = uvicorn.Config(
         create_app(is_open),
+        http=Caller,
         ws="websockets-sansio",
         ws_max_size=LARGEST,
         ws_per_message_deflate=False,
-        log_level="warning",
+        # What callers do wrong is told to them.
+        log_level="error",
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=GRACE,
         limit_concurrency=200,
     )
-    # Ctrl-C is how it ends.
-    with suppress(KeyboardInterrupt):
-        uvicorn.Server(config).run(sockets=[listening])
+    logging.getLogger("uvicorn.error").addFilter(is_news)
+    return uvicorn.Server(config)
 
 
 def _get_ready() -> None:
