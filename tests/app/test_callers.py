@@ -120,7 +120,7 @@ INSERTED = (
     b"\r\n", b"\0", b"\xff\xfe", b" ", b":", b"Content-Length: -1\r\n", b"Content-Length: 1" + 40 * b"0" + b"\r\n",
     b"Transfer-Encoding: chunked\r\n", b"HTTP/9.9", 20_000 * b"A", b"%00", b"\r\n\r\n", b"GET / HTTP/1.1\r\n\r\n",
 )  # fmt: skip
-# What sockets may not hold: no UTF-8, no such opcode, reserved bits, no mask, a size without end, an end without a start.
+# What sockets may not hold: no UTF-8, no such opcode, reserved bits, no mask, a size without end, no start.
 FRAMES = (
     b"\x81\x82\0\0\0\0\xff\xfe", b"\x83\x81\0\0\0\0x", b"\xf1\x81\0\0\0\0x", b"\x81\x01x",
     b"\x81\xff\x7f" + 11 * b"\xff", b"\x80\x81\0\0\0\0x", b"\x88\x81\0\0\0\0x",

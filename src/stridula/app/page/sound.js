@@ -31,7 +31,7 @@ export class Sound {
     Object.assign(this, { stream, onTold });
     this.on = false;
     this.decibels = 0;
-    this.fullScale = 1;
+    this.levelled = true;
   }
 
   async turn(on) {
@@ -68,13 +68,13 @@ export class Sound {
     this.tell?.({ flush: true });
   }
 
-  volume(decibels, fullScale) {
-    this.decibels = decibels;
-    this.fullScale = fullScale;
+  // Set the volume, on top of a level that follows what is heard if it is to be levelled.
+  volume(decibels, levelled) {
+    Object.assign(this, { decibels, levelled });
     this.#tell();
   }
 
   #tell() {
-    if (this.on) this.tell?.({ volume: 10 ** (this.decibels / 20) / this.fullScale });
+    if (this.on) this.tell?.({ volume: 10 ** (this.decibels / 20), levelled: this.levelled });
   }
 }
