@@ -86,7 +86,7 @@ def test_a_phone_need_not_scroll_sideways(chromium, server, intro):
         assert page.evaluate(f"({SEEN})().filter((one) => one.getBoundingClientRect().right > 390.5).length") == 0
 
 
-@pytest.mark.parametrize("width", [390, 800, 1120, 1440, 1920])
+@pytest.mark.parametrize("width", [390, 800, 1120, 1360, 1920])
 def test_all_frames_are_as_wide_as_the_page(chromium, server, width):
     with Browsing(chromium, server, viewport={"width": width, "height": 900}) as browsing:
         page = browsing.open()
@@ -100,7 +100,7 @@ def test_all_frames_are_as_wide_as_the_page(chromium, server, width):
         assert sound == pytest.approx(right, abs=0.5)
         assert last - right == pytest.approx(left - first, abs=0.5)
         # The beams are in sight at once.
-        if width >= 1440:
+        if width >= 1360:
             assert page.locator("#beams").bounding_box()["y"] < 240
 
 
