@@ -2,6 +2,8 @@
 
     python benchmarks/page.py                                   two minutes
     python benchmarks/page.py --minutes 10 --write docs/performance.md
+    python benchmarks/page.py --map on off --busy               with a map and without, a busy process beside the server
+    python benchmarks/page.py --cores 1                         browser and all on one core
     python benchmarks/page.py --short                           some seconds; the server alone where there is no browser
 
 It needs Debian's chromium and playwright. Chromium plays into a sink without a sound card, at the pace of one. From
@@ -17,6 +19,8 @@ import subprocess
 import sys
 import time
 import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -64,6 +68,21 @@ def idle() -> str:
         server.wait(10)
 
 
+@contextmanager
+def busy(wanted: bool) -> Iterator[None]:
+    """Keep the core of the server busy meanwhile, if wanted: a process of the same priority that never rests."""
+    if not wanted:
+        yield
+        return
+    process = subprocess.Popen([sys.executable, "-c", "while True: pass"])
+    os.sched_setaffinity(process.pid, {min(os.sched_getaffinity(0))})
+    try:
+        yield
+    finally:
+        process.kill()
+        process.wait()
+
+
 def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
     """Play for some minutes, turning the friction every second and a half; return what was seen."""
     from playwright.sync_api import sync_playwright
@@ -104,14 +123,12 @@ def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
     return seen
 
 
-def table(seen: dict[str, list[float]], minutes: float, with_map: bool) -> list[str]:
+def table(seen: dict[str, list[float]], words: str) -> list[str]:
     """Return what was seen as lines of Markdown."""
     latency, fps = np.array(seen["latency"]), np.array(seen["fps"])
-    words = "with maps computed beside it" if with_map else "without maps"
     first, last = seen["memory"][0], seen["memory"][-1]
     return [
-        *(f"- {line}" for line in machine.description()),
-        f"- {minutes:g} minutes, {words}, load of the machine at the end {os.getloadavg()[0]:.2f}",
+        f"- {words}, load of the machine at the end {os.getloadavg()[0]:.2f}",
         "",
         "| quantity | bar | median | 95 % | worst |",
         "|---|---|---:|---:|---:|",
@@ -124,21 +141,38 @@ def table(seen: dict[str, list[float]], minutes: float, with_map: bool) -> list[
     ]
 
 
+def circumstances(minutes: float, with_map: bool, is_busy: bool) -> str:
+    """Return what was measured, in words."""
+    words = f"{minutes:g} minutes, {'with maps computed beside it' if with_map else 'without maps'}"
+    words += ", a busy process on the core of the server" * is_busy
+    cores = len(os.sched_getaffinity(0))
+    return words + (f", all on {cores} core{'s' * (cores > 1)}" if cores < (os.cpu_count() or cores) else "")
+
+
 def main() -> None:
     """Measure and print, and write if asked."""
     parser = arguments(__doc__)
     parser.add_argument("--minutes", type=float, default=sized(2.0, 0.1))
-    parser.add_argument("--no-map", action="store_true")
+    parser.add_argument("--map", nargs="+", choices=("on", "off"), default=["on"], help="both are measured in turns")
+    parser.add_argument("--busy", action="store_true", help="with a busy process on the core of the server")
+    parser.add_argument("--cores", type=int, help="cores for all of it, browser included; every one if left out")
     parser.add_argument("--write", type=Path)
     asked = parser.parse_args()
+    if asked.cores:
+        os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: asked.cores])
     if not Path(CHROMIUM).exists():
         if not SHORT:
             raise SystemExit(f"{CHROMIUM} must be there to play the page in")
         print(idle())
         print(f"skipped: {CHROMIUM} is not there, so no page is played")
         return
-    lines = table(played(asked.minutes, not asked.no_map), asked.minutes, not asked.no_map)
-    print("\n".join(lines))
+    lines = [f"- {line}" for line in machine.description()]
+    print("\n".join(lines), flush=True)
+    for map in asked.map:
+        with busy(asked.busy):
+            more = table(played(asked.minutes, map == "on"), circumstances(asked.minutes, map == "on", asked.busy))
+        print("\n".join(["", *more]), flush=True)
+        lines += more if len(asked.map) == 1 else ["", *more]
     if asked.write:
         write_between(BEGIN, END, asked.write, lines)
 

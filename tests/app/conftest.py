@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -48,9 +50,9 @@ def talk(server) -> Iterator[Conversation]:
         yield opened
 
 
-@pytest.fixture(scope="module")
-def chromium():
-    """Start a browser; not for longer than a file of tests, for it keeps a loop of events running."""
+@contextmanager
+def launched(*more: str) -> Iterator[Any]:
+    """Start a browser with more arguments."""
     if not CHROMIUM.exists():
         if os.environ.get("CI"):
             pytest.fail(MISSING, pytrace=False)
@@ -58,9 +60,16 @@ def chromium():
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=list(ARGUMENTS))
+        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=[*ARGUMENTS, *more])
         yield browser
         browser.close()
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    """Start a browser; not for longer than a file of tests, for it keeps a loop of events running."""
+    with launched() as browser:
+        yield browser
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
 from typing import Any
@@ -22,13 +22,13 @@ COMMAND = (sys.executable, "-c", "from stridula.cli import main; main()", "app",
 
 
 class Server:
-    """`stridula app` on a free port, or on one that is given; with more in its environment, if asked."""
+    """`stridula app` on a free port, or on one that is given; with more arguments and in its environment, if asked."""
 
-    def __init__(self, errors: Path, port: int = 0, **environment: str) -> None:
+    def __init__(self, errors: Path, port: int = 0, arguments: Sequence[str] = (), **environment: str) -> None:
         self.errors = errors
         with errors.open("ab") as file:
             self.process = subprocess.Popen(
-                [*COMMAND, "--port", str(port)],
+                [*COMMAND, "--port", str(port), *arguments],
                 stdout=subprocess.PIPE,
                 stderr=file,
                 text=True,

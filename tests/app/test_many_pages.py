@@ -28,6 +28,7 @@ def test_sixteen_pages_at_most_until_one_goes(own):
         pages = [stack.enter_context(conversation(own)) for _ in range(MOST_PAGES)]
         for page in pages:
             page.until("hello")
+            page.say("repeat", on=True)
         with conversation(own) as one_more, pytest.raises(ConnectionClosed) as refused:
             one_more.hear()
         assert (refused.value.rcvd.code, refused.value.rcvd.reason) == (4429, "at most 16 pages can be open")

@@ -108,6 +108,30 @@ def test_it_is_muted_until_sound_is_turned_on(browsing):
     plays_on(page)
 
 
+def test_the_level_follows_what_is_heard_and_says_what_full_scale_is(browsing):
+    page = browsing.open("#case=strong-pressure")
+    words = page.locator("#level-out")
+    assert words.text_content() == "muted"
+    page.locator("#sound").click()
+    # At 0.1 Pa the limiter would take some 30 dB away.
+    until(page, "/^full scale \\d+ Pa$/.test(document.getElementById('scale-out').textContent)")
+    until(page, "stridula.stats.reduction > 0.7 && stridula.stats.peak > 0.1")
+    page.locator("#levelled").uncheck()
+    until(page, "document.getElementById('scale-out').textContent === 'full scale 0.1 Pa'")
+    until(page, "stridula.stats.reduction < 0.2")
+    page.locator("#source").select_option("force")
+    until(page, "document.getElementById('scale-out').textContent === 'full scale 20 N'")
+    assert "20 N is full scale" in page.locator("#source-words").text_content()
+    page.locator("#speed").select_option("100")
+    page.wait_for_timeout(500)
+    assert words.text_content() == "silent in slow motion"
+    page.locator("#play").click()
+    page.wait_for_timeout(500)
+    assert words.text_content() == "silent while paused"
+    page.locator("#sound").click()
+    until(page, "document.getElementById('level-out').textContent === 'muted'")
+
+
 def test_more_friction_changes_the_ribbon_within_a_second_of_time_played(browsing):
     page = browsing.open("#case=stable-sliding")
     until(page, "stridula.shares()[2] > 0.9")

@@ -86,6 +86,24 @@ def test_a_phone_need_not_scroll_sideways(chromium, server, intro):
         assert page.evaluate(f"({SEEN})().filter((one) => one.getBoundingClientRect().right > 390.5).length") == 0
 
 
+@pytest.mark.parametrize("width", [390, 800, 1120, 1360, 1920])
+def test_all_frames_are_as_wide_as_the_page(chromium, server, width):
+    with Browsing(chromium, server, viewport={"width": width, "height": 900}) as browsing:
+        page = browsing.open()
+        edges = page.evaluate(
+            """['.sound', '#scenario', 'main'].map((one) => {
+              const found = document.querySelector(one).getBoundingClientRect();
+              return [found.left, found.right];
+            })"""
+        )
+        (_, sound), (left, right), (first, last) = edges
+        assert sound == pytest.approx(right, abs=0.5)
+        assert last - right == pytest.approx(left - first, abs=0.5)
+        # The beams are in sight at once.
+        if width >= 1360:
+            assert page.locator("#beams").bounding_box()["y"] < 240
+
+
 def test_the_keyboard_reaches_everything(browsing):
     page = browsing.open()
     page.locator("#scenario summary").click()
@@ -118,7 +136,23 @@ def test_space_pauses_where_nothing_else_takes_it(browsing):
     page.keyboard.press("Space")
     assert play.text_content() == "Pause"
     plays_on(page)
-    # On a button it presses the button.
+    # A slider that was dragged has no use for it, but the keys of a slider.
+    for slide in ("#contact-friction-coefficient-slide", "#volume"):
+        before = page.locator(slide).input_value()
+        page.locator(slide).click(position={"x": 20, "y": 8})
+        assert page.locator(slide).input_value() != before
+        page.keyboard.press("Space")
+        assert play.text_content() == "Play"
+        page.keyboard.press("Space")
+        assert play.text_content() == "Pause"
+        before = page.locator(slide).input_value()
+        page.keyboard.press("ArrowLeft")
+        assert page.locator(slide).input_value() != before
+    # On a button it presses the button, in a box it checks it.
+    page.locator("#levelled").focus()
+    page.keyboard.press("Space")
+    assert not page.locator("#levelled").is_checked()
+    assert play.text_content() == "Pause"
     page.locator("#theme").focus()
     theme = page.locator("#theme").text_content()
     page.keyboard.press("Space")

@@ -36,12 +36,18 @@ def test_the_page_comes_back_with_its_server_and_plays_on_as_it_was(chromium, ow
         assert again.complaints == ""
 
 
-def test_a_page_too_many_says_so(chromium, own):
+def test_a_page_too_many_says_so_and_plays_when_there_is_room(chromium, own):
     with ExitStack() as stack, Browsing(chromium, own) as browsing:
         browsing.complains = False
-        for _ in range(16):
-            stack.enter_context(conversation(own)).until("hello")
+        pages = [stack.enter_context(conversation(own)) for _ in range(16)]
+        for one in pages:
+            one.say("repeat", on=True)
         page = browsing.context.new_page()
         page.goto(own.address)
         page.locator("#lost").wait_for(state="visible")
-        assert page.locator("#lost").text_content() == "No room: at most 16 pages can be open."
+        assert page.locator("#lost").text_content() == (
+            "No room: at most 16 pages can be open. This page tries again every 5 s."
+        )
+        pages[0].socket.close()
+        page.locator("#lost").wait_for(state="hidden")
+        plays_on(page)

@@ -14,7 +14,7 @@ from ..integration.live import LiveChunk, LiveMarch
 from .last_seconds import LastSeconds
 from .parts import Part, Shapes, Stop
 from .playable import Playable
-from .sources import source_of
+from .sources import SOURCES, source_of
 
 RATE = 48_000
 # A tip that sticks under a constant force, or has been off the track, for so long [s] begins another stroke.
@@ -73,7 +73,8 @@ class Instrument:
         return goes_on
 
     def listen_to(self, name: str) -> None:
-        """Let something else be heard."""
+        """Let something else be heard, led over from what was heard at the same level."""
+        self._last *= SOURCES[name].full_scale / SOURCES[self.name].full_scale
         self.name, self.source, self._must_blend = name, source_of(name, self.live), True
 
     def restart(self) -> None:

@@ -8,6 +8,8 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 # Largest message [bytes].
 LARGEST = 100_000
+# Longest line that says what is wrong with one.
+LONGEST = 300
 Number = Annotated[float, Field(allow_inf_nan=False, ge=-1e9, le=1e9)]
 Revision = Annotated[int, Field(ge=0, le=2**50)]
 Key = Annotated[str, Field(max_length=100)]
@@ -102,5 +104,11 @@ def message_of(text: str) -> Message:
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"])) or "message"
-        raise ValueError(f"{where} must be what the page sends: {first['msg'].lower()}") from None
+        raise ValueError(_line(f"{where} must be what the page sends: {first['msg'].lower()}")) from None
     return found
+
+
+def _line(text: str) -> str:
+    """Return a text in one line that is not too long, whatever of a message stands in it."""
+    line = " ".join(text.split())
+    return line if len(line) <= LONGEST else f"{line[: LONGEST - 3]}..."

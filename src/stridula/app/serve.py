@@ -15,6 +15,7 @@ from contextlib import suppress
 import uvicorn
 
 from ..studies.task import use_one_thread
+from .caller import Caller, is_news
 from .instrument import RATE, Instrument
 from .messages import LARGEST
 from .parts import Part, packed
@@ -27,6 +28,8 @@ GRACE = 2
 PATIENCE = 2.0
 # Hosts that stand for all addresses of this machine.
 EVERYWHERE = ("0.0.0.0", "::")
+# An address and a port that are nobody's.
+ELSEWHERE = ("192.0.2.1", 9)
 COMPILING = "stridula: compiling, once; this takes some ten seconds"
 
 
@@ -65,20 +68,34 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
     logging.getLogger("asyncio").setLevel(logging.ERROR)
     if opens_browser:
         threading.Timer(0.5, webbrowser.open, [address]).start()
+    # Ctrl-C is how it ends.
+    with suppress(KeyboardInterrupt):
+        server(is_open).run(sockets=[listening])
+
+
+def server(is_open: bool) -> uvicorn.Server:
+    """Return what serves the page.
+
+    Parameters
+    ----------
+    is_open : bool
+        Whether other machines may ask.
+    """
     config = uvicorn.Config(
         create_app(is_open),
+        http=Caller,
         ws="websockets-sansio",
         ws_max_size=LARGEST,
         ws_per_message_deflate=False,
-        log_level="warning",
+        # What callers do wrong is told to them.
+        log_level="error",
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=GRACE,
         limit_concurrency=200,
     )
-    # Ctrl-C is how it ends.
-    with suppress(KeyboardInterrupt):
-        uvicorn.Server(config).run(sockets=[listening])
+    logging.getLogger("uvicorn.error").addFilter(is_news)
+    return uvicorn.Server(config)
 
 
 def _get_ready() -> None:
@@ -110,13 +127,17 @@ def addresses(host: str, port: int) -> list[str]:
     address = f"http://{shown}:{port}/"
     if is_loopback(host):
         return [address]
-    name = socket.gethostname().partition(".")[0]
-    return [
-        address,
-        f"other machines open http://{name if host in EVERYWHERE else shown}:{port}/, which is silent: browsers play "
-        "sound from https or localhost only",
-        f"with sound: ssh -L {port}:{shown}:{port} {name} there, and then http://localhost:{port}/",
-    ]
+    # A name with a dot would be refused.
+    names = [socket.gethostname().partition(".")[0], *outward()] if host in EVERYWHERE else [shown]
+    return [address, "other machines open " + " or ".join(f"http://{name}:{port}/" for name in names)]
+
+
+def outward() -> list[str]:
+    """Return the address by which other machines reach this one, if it has one; nothing is sent to find it."""
+    with suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
+        asked.connect(ELSEWHERE)
+        return [asked.getsockname()[0]]
+    return []
 
 
 def is_loopback(host: str) -> bool:

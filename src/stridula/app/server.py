@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ipaddress
 import mimetypes
+import re
 from contextlib import suppress
 from importlib.resources import files
 
@@ -22,9 +23,10 @@ MOST_PAGES = 16
 # Codes of a closed socket: a page from elsewhere, one too many.
 FROM_ELSEWHERE, TOO_MANY = 4403, 4429
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
+NAME = re.compile(r"[A-Za-z0-9_.-]+")
 POLICY = (
     "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
-    "connect-src 'self' {sockets}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    "connect-src {sockets}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 HEADERS = {
     "X-Content-Type-Options": "nosniff",
@@ -77,9 +79,7 @@ def create_app(is_open: bool = False) -> ASGIApp:
         if name not in known:
             return PlainTextResponse("not found", 404, HEADERS)
         kind = mimetypes.guess_type(name)[0] or "application/octet-stream"
-        # Not every browser takes the socket of a page's own server for its own.
-        host = request.headers["host"]
-        policy = {"Content-Security-Policy": POLICY.format(sockets=f"ws://{host} wss://{host}")}
+        policy = {"Content-Security-Policy": POLICY.format(sockets=_sockets(request.headers["host"]))}
         kind = "text/javascript" if name.endswith(".js") else kind
         return Response(known[name].read_bytes(), 200, HEADERS | policy, kind)
 
@@ -87,6 +87,12 @@ def create_app(is_open: bool = False) -> ASGIApp:
     app = Starlette(routes=routes)
     app.state.pages = pages
     return _named_rightly(app, is_open)
+
+
+def _sockets(host: str) -> str:
+    """Return where a page may open sockets: not every browser takes that of its own server for its own."""
+    # A policy cannot hold an address of IPv6.
+    return "'self'" if host.startswith("[") else f"'self' ws://{host} wss://{host}"
 
 
 def _named_rightly(app: ASGIApp, is_open: bool) -> ASGIApp:
@@ -121,7 +127,7 @@ def _is_right(host: str, is_open: bool) -> bool:
     with suppress(ValueError):
         ipaddress.ip_address(name.strip("[]"))
         return True
-    return "." not in name or name.endswith((".local", ".lan"))
+    return NAME.fullmatch(name) is not None and ("." not in name or name.endswith((".local", ".lan")))
 
 
 def _is_same_origin(socket: WebSocket) -> bool:

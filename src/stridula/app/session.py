@@ -32,8 +32,10 @@ AHEAD, FASTEST = 1.0, 1.5
 PARTS_AT_ONCE = 4
 # Quiet time after a change before linear theory is asked [s].
 PAUSE = 0.25
-# Code of a socket that closed without one.
-GONE = 1006
+# A page that says nothing for so long at first [s] makes room for another.
+HURRY = 10.0
+# Codes of a socket that closed without one, and of one whose page said nothing.
+GONE, SILENT = 1006, 4408
 
 
 class Session:
@@ -68,11 +70,16 @@ class Session:
             **controls.described(),
         )
         try:
+            patience: float | None = HURRY
             while True:
                 try:
-                    await self._answer(message_of(await self._heard()))
+                    heard = await asyncio.wait_for(self._heard(), patience)
+                    patience = None
+                    await self._answer(message_of(heard))
                 except ValueError as error:
                     await self._tell("problem", problems=_lines(error))
+        except TimeoutError:
+            await self.socket.close(SILENT, f"a page must speak within {HURRY:g} s")
         finally:
             for task in self._tasks.values():
                 task.cancel()

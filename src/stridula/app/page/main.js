@@ -60,9 +60,8 @@ async function welcome(message) {
     // Undo does not go back to before the link.
     scene.past = [];
   }
-  say({ type: "listen", source: $("source").value });
+  listenTo();
   say({ type: "repeat", on: $("repeat").checked });
-  listen();
   map.again();
   send();
 }
@@ -168,7 +167,7 @@ function came(data) {
 
 function lost({ code, reason }) {
   stats.connected = false;
-  $("lost").textContent = code === 4429 ? `No room: ${reason}.` : code === 4403 ? `Refused: ${reason}.` : "Connection lost. This page comes back by itself when the server does.";
+  $("lost").textContent = code === 4429 ? `No room: ${reason}. This page tries again every 5 s.` : code === 4403 ? `Refused: ${reason}.` : "Connection lost. This page comes back by itself when the server does.";
   $("lost").hidden = false;
 }
 
@@ -191,15 +190,34 @@ function heard(data) {
   const decibels = (value) => 20 * Math.log10(Math.max(value, 1e-6));
   $("level").style.width = `${Math.max(0, Math.min(100, 100 + (100 * decibels(data.peak)) / 60))}%`;
   $("limiter").style.width = `${Math.min(100, (-100 * decibels(data.reduction)) / 30)}%`;
-  if (sound.on) $("level-out").textContent = `${Math.round(decibels(data.peak))} dB, limited by ${Math.round(-decibels(data.reduction))} dB`;
+  stats.reduction = data.reduction;
+  if (silence()) return;
+  const { full_scale: fullScale, unit } = hello.sources[$("source").value];
+  const factor = data.gain * 10 ** (Number($("volume").value) / 20);
+  $("level-out").textContent = `${Math.round(decibels(data.peak))} dB, limited by ${Math.round(-decibels(data.reduction))} dB`;
+  $("scale-out").textContent = `full scale ${Number((fullScale / factor).toPrecision(2))} ${unit}`;
+}
+
+// Why nothing is to be heard, nothing if something is.
+function silence() {
+  if (!sound.on) return "muted";
+  if (mode === "paused") return "silent while paused";
+  return $("speed").value === "1" ? "" : "silent in slow motion";
+}
+
+function listenTo() {
+  const source = hello.sources[$("source").value];
+  stream.postMessage({ say: { type: "listen", source: $("source").value }, fullScale: source.full_scale });
+  $("spectrogram-words").textContent = `of the ${source.name.toLowerCase()}`;
+  listen();
 }
 
 function listen() {
-  const source = hello.sources[$("source").value];
-  $("source-words").textContent = `${source.words} 0 dB: ${source.full_scale} ${source.unit} is full scale.`;
-  $("spectrogram-words").textContent = `of the ${source.name.toLowerCase()}`;
+  const { words, full_scale: fullScale, unit } = hello.sources[$("source").value];
+  const levelled = $("levelled").checked;
+  $("source-words").textContent = `${words} 0 dB: ${levelled ? "the loudest of the last 4 s is 3 dB below full scale" : `${fullScale} ${unit} is full scale`}.`;
   $("volume-out").textContent = `${$("volume").value} dB`;
-  sound.volume(Number($("volume").value), source.full_scale);
+  sound.volume(Number($("volume").value), levelled);
 }
 
 function pace() {
@@ -211,7 +229,8 @@ function pace() {
   if (mode === "paused" || slow !== 1) sound.flush();
   $("play").textContent = mode === "paused" ? "Play" : "Pause";
   $("step").disabled = mode !== "paused";
-  $("level-out").textContent = sound.on ? (slow === 1 ? "" : "silent in slow motion") : "muted";
+  $("level-out").textContent = silence();
+  $("scale-out").textContent = "";
 }
 
 function draw() {
@@ -300,22 +319,15 @@ $("repeat").addEventListener("change", () => {
 });
 $("sound").addEventListener("click", async () => {
   const on = !sound.on;
-  const missing = Sound.missing(window.isSecureContext, location);
-  if (missing) {
-    problem([missing]);
-    return;
-  }
   $("sound").setAttribute("aria-pressed", String(on));
   $("sound").textContent = on ? "Mute" : "Sound on";
   moves.clear();
   await sound.turn(on);
   pace();
 });
-$("source").addEventListener("change", () => {
-  say({ type: "listen", source: $("source").value });
-  listen();
-});
+$("source").addEventListener("change", listenTo);
 $("volume").addEventListener("input", listen);
+$("levelled").addEventListener("change", listen);
 $("save-wav").addEventListener("click", () => say({ type: "save", format: "wav" }));
 $("save-nc").addEventListener("click", () => say({ type: "save", format: "nc" }));
 $("save-png").addEventListener("click", savePictures);
@@ -335,11 +347,12 @@ window.addEventListener("hashchange", async () => {
 });
 document.addEventListener("keydown", (event) => {
   const writing = event.target.matches("textarea, input[type=number], input[type=text]");
+  const takesSpace = event.target.matches("button, select, summary, textarea, input:not([type=range])") || $("intro").open;
   if ((event.ctrlKey || event.metaKey) && !writing && ["z", "y"].includes(event.key.toLowerCase())) {
     event.preventDefault();
     if (event.key.toLowerCase() === "y" || event.shiftKey) scene.redo();
     else scene.undo();
-  } else if (event.key === " " && event.target === document.body) {
+  } else if (event.key === " " && !takesSpace) {
     event.preventDefault();
     $("play").click();
   }

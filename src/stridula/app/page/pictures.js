@@ -9,7 +9,28 @@ const HEARD = 1 << 14; // Samples in which the strongest tone is looked for: bin
 const HIGHEST = 12000; // Highest frequency shown [Hz].
 const WINDOW = 1.0; // Time shown live [s].
 const PORTRAIT = 0.06; // Time of the phase portrait live [s].
+const FALL = 400; // An axis comes down over so much [ms].
 export const STATES = ["separated", "sticking", "sliding"];
+
+// The top of an axis: up at once to what is seen, and soon down to it.
+export class Top {
+  constructor() {
+    this.value = this.time = 0;
+  }
+
+  follow(largest, now) {
+    this.value = Math.max(1.05 * largest, this.value * Math.exp((this.time - now) / FALL));
+    this.time = now;
+    return this.value;
+  }
+}
+
+// Where a word beside the tip begins: on the side to which the slider does not lean, or below where there is no room.
+export function besideTip(x, y, lean, word, width) {
+  const left = lean > 0 ? x - 14 - word : x + 14;
+  if (left >= 4 && left + word <= width - 4) return [left, y - 14];
+  return [Math.max(4, Math.min(width - 4 - word, x - word / 2)), y + 26];
+}
 
 export class Pictures {
   constructor() {
@@ -25,6 +46,7 @@ export class Pictures {
     this.slow = 1;
     this.exaggeration = 0;
     this.loudest = 1e-9;
+    this.top = new Top();
     this.window = hann(SIZE);
     this.heard = new Float32Array(0);
     this.theme();
@@ -126,8 +148,9 @@ export class Pictures {
     const margin = 24;
     const [rise, reach] = [body.length * Math.cos(body.angle), body.length * Math.sin(body.angle)];
     const [left, right] = [Math.min(0, place + reach), Math.max(beam.length, place + reach)];
-    const scale = Math.min((width - 2 * margin) / (right - left), (height - 2 * margin - 34) / Math.max(rise, 0.15 * beam.length));
-    const [x0, y0] = [(width - scale * (right - left)) / 2 - scale * left, height - margin - 26];
+    const [tall, space] = [Math.max(rise, 0.15 * beam.length), height - 2 * margin - 34];
+    const scale = Math.min((width - 2 * margin) / (right - left), space / tall);
+    const [x0, y0] = [(width - scale * (right - left)) / 2 - scale * left, height - margin - 26 - (space - scale * tall) / 2];
     let most = 1e-12;
     for (const value of track) most = Math.max(most, Math.abs(value));
     for (const value of slider) most = Math.max(most, Math.abs(value));
@@ -169,7 +192,7 @@ export class Pictures {
     draw.strokeStyle = this.colours.ink;
     draw.stroke();
     draw.fillStyle = this.colours.ink;
-    draw.fillText(STATES[state], Math.min(cx + 14, width - 70), Math.max(14, cy - 14));
+    draw.fillText(STATES[state], ...besideTip(cx, cy, body.angle, draw.measureText(STATES[state]).width, width));
     draw.fillStyle = this.colours.soft;
     draw.fillText(`stroke ${this.stroke}, tip at ${(1000 * place).toFixed(1)} mm`, 8, height - 6);
     this.much = much;
@@ -181,13 +204,13 @@ export class Pictures {
     const points = this.#since(span);
     const [left, lanes] = [44, 3 * 11 + 6];
     const [inner, tall] = [width - left - 6, height - lanes - 18];
-    let top = 1e-9;
-    for (const k of points) top = Math.max(top, this.force[k]);
-    this.top = this.top && this.top > top ? Math.max(top, this.top * 0.995) : top * 1.05;
+    let largest = 1e-9;
+    for (const k of points) largest = Math.max(largest, this.force[k]);
+    const top = this.top.follow(largest, performance.now());
     const start = this.clock - span;
     const x = (k) => left + ((this.time[k] - start) / span) * inner;
-    const y = (value) => 6 + tall * (1 - value / this.top);
-    axis(draw, this.colours, left, 6, inner, tall, `${short(this.top)} N`, "0");
+    const y = (value) => 6 + tall * (1 - value / top);
+    axis(draw, this.colours, left, 6, inner, tall, `${short(top)} N`, "0");
     // Of the points in a column the largest and the least: nothing is lost between them.
     const columns = new Map();
     for (const k of points) {

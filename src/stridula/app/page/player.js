@@ -1,13 +1,50 @@
-// What sounds: a queue of samples, a high-pass, a volume and a limiter, in the thread of the sound.
+// What sounds: a queue of samples, a high-pass, a volume and a limiter; in the thread of the sound where there is one.
 const CEILING = 0.7; // Never louder than 3 dB below full scale.
 const AHEAD = 0.003; // The limiter sees loud samples so much earlier than they sound [s].
 const RELEASE = 0.15; // It lets go over so much [s].
 const LOWEST = 20; // What is slower cannot be heard [Hz].
 const FADE = 0.005; // Sound goes and comes over so much where samples are missing [s].
+const SPAN = 0.25; // A level is that of the largest sample in so many spans of time [s].
+const SPANS = 16;
+const RISE = 1; // It rises over so much, and falls faster [s].
+const FALL = 0.02;
+const MOST = 30; // It amplifies at most so much.
+const FAINT = 1e-6; // What is fainter is silence, in which it stays.
 
-class Player extends AudioWorkletProcessor {
-  constructor() {
-    super();
+// A level that follows slowly what is heard: it peaks where the limiter begins, which rests.
+class Level {
+  constructor(sampleRate) {
+    this.on = true;
+    this.gain = 1;
+    this.largest = new Float32Array(SPANS);
+    this.span = Math.round(SPAN * sampleRate);
+    this.at = this.samples = this.most = 0;
+    this.rise = 1 - Math.exp(-1 / (RISE * sampleRate));
+    this.fall = 1 - Math.exp(-1 / (FALL * sampleRate));
+  }
+
+  // Hear a sample and return how much it is to be amplified.
+  heard(value) {
+    const size = Math.abs(value);
+    if (size > this.largest[this.at]) {
+      this.largest[this.at] = size;
+      this.most = Math.max(this.most, size);
+    }
+    if (++this.samples === this.span) {
+      this.samples = 0;
+      this.at = (this.at + 1) % SPANS;
+      this.largest[this.at] = 0;
+      this.most = Math.max(...this.largest);
+    }
+    const wanted = !this.on ? 1 : this.most > FAINT ? Math.min(MOST, CEILING / this.most) : this.gain;
+    this.gain += (wanted < this.gain ? this.fall : this.rise) * (wanted - this.gain);
+    return this.gain;
+  }
+}
+
+export class Voice {
+  constructor(sampleRate, tell) {
+    Object.assign(this, { sampleRate, tell });
     this.queue = new Float32Array(1 << 17);
     this.mask = this.queue.length - 1;
     this.written = this.read = 0;
@@ -28,9 +65,9 @@ class Player extends AudioWorkletProcessor {
     this.gain = 1;
     this.attack = 1 - Math.exp(-8 / ahead);
     this.release = 1 - Math.exp(-1 / (RELEASE * sampleRate));
+    this.auto = new Level(sampleRate);
     this.quanta = 0;
     this.loudest = this.power = this.least = 0;
-    this.port.onmessage = ({ data }) => this.told(data);
   }
 
   told(data) {
@@ -39,6 +76,7 @@ class Player extends AudioWorkletProcessor {
       this.stream.onmessage = ({ data: part }) => this.take(part);
     }
     if ("volume" in data) this.wanted = data.volume;
+    if ("levelled" in data) this.auto.on = data.levelled;
     if ("needed" in data) this.needed = data.needed;
     if (data.flush) {
       this.read = this.written;
@@ -52,8 +90,9 @@ class Player extends AudioWorkletProcessor {
     for (const value of sound) this.queue[this.written++ & this.mask] = value;
   }
 
-  process(_, [[out]]) {
-    const step = 1 / (FADE * sampleRate);
+  // Fill a block with what sounds next.
+  fill(out) {
+    const step = 1 / (FADE * this.sampleRate);
     if (!this.runs && this.written - this.read >= this.needed && this.written > this.read) this.runs = true;
     for (let i = 0; i < out.length; i++) {
       let value = 0;
@@ -73,13 +112,13 @@ class Player extends AudioWorkletProcessor {
       this.low = this.keep * (this.low + value - this.before);
       this.before = value;
       this.volume += 0.002 * (this.wanted - this.volume);
-      out[i] = this.limited(this.low * this.fade * this.volume);
+      const heard = this.low * this.fade;
+      out[i] = this.limited(heard * this.auto.heard(heard) * this.volume);
       const size = Math.abs(out[i]);
       this.loudest = Math.max(this.loudest, size);
       this.power += size * size;
     }
-    this.tell(out.length);
-    return true;
+    this.report(out.length);
   }
 
   limited(value) {
@@ -97,25 +136,40 @@ class Player extends AudioWorkletProcessor {
     return Math.max(-CEILING, Math.min(CEILING, late * this.gain));
   }
 
-  tell(samples) {
+  report(samples) {
     while (this.marks.length && this.marks[0].at <= this.read) {
       const { revision } = this.marks.shift();
       if (revision !== this.revision) {
         this.revision = revision;
-        this.port.postMessage({ revision });
+        this.tell({ revision });
       }
     }
     if (++this.quanta % 4) return;
     if (this.stream) this.stream.postMessage({ left: this.written - this.read });
     if (this.quanta % 16) return;
-    this.port.postMessage({
+    this.tell({
       peak: this.loudest,
       level: Math.sqrt(this.power / (16 * samples)),
       reduction: 1 + this.least,
+      gain: this.auto.gain,
       dropouts: this.dropouts,
     });
     this.loudest = this.power = this.least = 0;
   }
 }
 
-registerProcessor("player", Player);
+if (globalThis.AudioWorkletProcessor) {
+  class Player extends AudioWorkletProcessor {
+    constructor() {
+      super();
+      this.voice = new Voice(sampleRate, (said) => this.port.postMessage(said));
+      this.port.onmessage = ({ data }) => this.voice.told(data);
+    }
+
+    process(_, [[out]]) {
+      this.voice.fill(out);
+      return true;
+    }
+  }
+  registerProcessor("player", Player);
+}

@@ -1,17 +1,37 @@
-// What one hears: the player in the thread of the sound, fed by the stream; muted at first.
+// What one hears: the player, fed by the stream; muted at first.
+import { Voice } from "./player.js";
+
+const QUANTUM = 128; // Samples that the thread of the sound takes at once.
+const BLOCK = 1024; // Samples that a page without one takes at once.
+
+// A player in the thread of the sound; returns what tells it something.
+async function threaded(context, onTold) {
+  await context.audioWorklet.addModule("player.js");
+  const node = new AudioWorkletNode(context, "player", { numberOfInputs: 0, outputChannelCount: [1] });
+  node.port.onmessage = ({ data }) => onTold(data);
+  node.connect(context.destination);
+  return (data, moved = []) => node.port.postMessage(data, moved);
+}
+
+// The same in the page itself: browsers keep the thread of the sound to secure addresses.
+function unthreaded(context, onTold) {
+  const voice = new Voice(context.sampleRate, onTold);
+  const node = context.createScriptProcessor(BLOCK, 0, 1);
+  node.onaudioprocess = ({ outputBuffer }) => {
+    const out = outputBuffer.getChannelData(0);
+    for (let at = 0; at < BLOCK; at += QUANTUM) voice.fill(out.subarray(at, at + QUANTUM));
+  };
+  node.connect(context.destination);
+  // A node that nothing holds may be collected, and is silent then.
+  return Object.assign((data) => voice.told(data), { node });
+}
+
 export class Sound {
   constructor(stream, onTold) {
     Object.assign(this, { stream, onTold });
     this.on = false;
     this.decibels = 0;
-    this.fullScale = 1;
-  }
-
-  // Why this page can have no sound, nothing if it can: browsers keep the thread of the sound to secure addresses.
-  static missing(secure, { hostname, port }) {
-    if (secure) return "";
-    const local = `localhost:${port}`;
-    return `Sound needs a secure address, which this is not: open ${local} on the machine that serves the page; elsewhere, run ssh -L ${port}:localhost:${port} ${hostname} and open ${local} there.`;
+    this.levelled = true;
   }
 
   async turn(on) {
@@ -19,42 +39,42 @@ export class Sound {
     this.on = on;
     if (!on) {
       this.stream.postMessage({ mute: true });
-      this.player?.port.postMessage({ volume: 0, flush: true });
+      this.tell?.({ volume: 0, flush: true });
       await this.context?.suspend();
       return;
     }
     if (!this.context) await this.#begin();
     await this.context.resume();
     const { port1, port2 } = new MessageChannel();
-    this.player.port.postMessage({ stream: port1, flush: true, needed: Math.round(0.06 * 48000) }, [port1]);
+    this.tell({ stream: port1, flush: true, needed: Math.round(0.06 * 48000) }, [port1]);
     this.stream.postMessage({ player: port2 }, [port2]);
     this.#tell();
   }
 
   async #begin() {
     this.context = new AudioContext({ sampleRate: 48000, latencyHint: "interactive" });
-    await this.context.audioWorklet.addModule("player.js");
-    this.player = new AudioWorkletNode(this.context, "player", { numberOfInputs: 0, outputChannelCount: [1] });
-    this.player.port.onmessage = ({ data }) => this.onTold(data);
-    this.player.connect(this.context.destination);
+    const player = this.context.audioWorklet ? threaded : unthreaded;
+    this.tell = await player(this.context, this.onTold);
   }
 
   // Time from the queue of the player to the ear [s].
   get late() {
-    return this.context ? (this.context.outputLatency || 0) + this.context.baseLatency + 0.003 : 0;
+    if (!this.context) return 0;
+    const block = this.context.audioWorklet ? 0 : BLOCK / this.context.sampleRate;
+    return block + (this.context.outputLatency || 0) + this.context.baseLatency + 0.003;
   }
 
   flush() {
-    this.player?.port.postMessage({ flush: true });
+    this.tell?.({ flush: true });
   }
 
-  volume(decibels, fullScale) {
-    this.decibels = decibels;
-    this.fullScale = fullScale;
+  // Set the volume, on top of a level that follows what is heard if it is to be levelled.
+  volume(decibels, levelled) {
+    Object.assign(this, { decibels, levelled });
     this.#tell();
   }
 
   #tell() {
-    if (this.on) this.player?.port.postMessage({ volume: 10 ** (this.decibels / 20) / this.fullScale });
+    if (this.on) this.tell?.({ volume: 10 ** (this.decibels / 20), levelled: this.levelled });
   }
 }

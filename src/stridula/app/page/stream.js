@@ -6,7 +6,10 @@ import { Queue } from "./queue.js";
 const PART = 480; // Samples of a part while live.
 const FEWEST = 2; // Parts asked for at once.
 const RATE = 48000;
-const RETRY = 1000; // Time between attempts to come back [ms].
+const RETRY = 1000; // Time between attempts to come back [ms]
+const ROOM = 5000; // and to find room.
+const FULL = 4429; // Codes of a server that is full
+const ELSEWHERE = 4403; // and of one whose page this is not.
 const FRAME = 1000 / 60;
 
 let socket, player, url;
@@ -15,6 +18,8 @@ let behind = false;
 let pace = { mode: "live", slow: 1 };
 let asked = 0; // Samples asked for that have not come.
 let left = 0; // Samples the player has.
+let scale = 1; // What full scale is for the player, now
+let next = null; // and for what is asked for from now on.
 let clock = 0; // When time without a player was last counted [ms].
 let owed = 0; // Samples owed to slow motion.
 let file = null;
@@ -51,6 +56,10 @@ self.onmessage = ({ data }) => {
   } else if (data.say) {
     if (data.say.type === "scene") scene(data.say);
     else say(data.say);
+    if (data.fullScale) {
+      next = 1 / data.fullScale;
+      rescale();
+    }
   }
 };
 
@@ -68,7 +77,7 @@ function connect() {
   socket.onclose = ({ code, reason }) => {
     hasScene = false;
     postMessage({ lost: true, code, reason });
-    if (code !== 4429 && code !== 4403) setTimeout(connect, RETRY);
+    if (code !== ELSEWHERE) setTimeout(connect, code === FULL ? ROOM : RETRY);
   };
 }
 
@@ -114,12 +123,20 @@ function came(data) {
   for (const { head, values } of parts(data)) {
     const [revision, , , samples] = head;
     if (!player || pace.mode !== "live") break;
-    const sound = values.slice(0, samples);
+    const sound = values.slice(0, samples).map((value) => scale * value);
     player.postMessage({ sound, revision }, [sound.buffer]);
     left += samples;
   }
+  rescale();
   postMessage({ parts: data }, [data]);
   feed();
+}
+
+// What was asked for before something else was listened to comes as it was.
+function rescale() {
+  if (asked || next === null) return;
+  scale = next;
+  next = null;
 }
 
 // Ask for what is missing.

@@ -1,0 +1,68 @@
+"""The HTTP side of a connection: who dawdles is let go, and of what is no HTTP the terminal says nothing."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+
+import h11
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+# Whoever has asked for nothing whole for so long is let go [s].
+HURRY = 10.0
+
+
+class Caller(H11Protocol):
+    """Whoever has called the server, until it asks for a socket."""
+
+    _lets_go: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """Wait for what it asks for."""
+        super().connection_made(transport)
+        self._wait()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Wait no more."""
+        self._stop_waiting()
+        super().connection_lost(exc)
+
+    def handle_websocket_upgrade(self, event: h11.Request) -> None:
+        """Leave it to the socket."""
+        self._stop_waiting()
+        super().handle_websocket_upgrade(event)
+
+    def on_response_complete(self) -> None:
+        """Wait for what it asks for next, and until it has read what it asked for."""
+        self._wait()
+        super().on_response_complete()
+
+    def send_400_response(self, msg: str) -> None:
+        """Refuse what is no HTTP; in the middle of an answer there is nothing to be said."""
+        if self.conn.our_state is h11.IDLE:
+            super().send_400_response(msg)
+            return
+        if self.cycle is not None:
+            self.cycle.disconnected = True
+            self.cycle.message_event.set()
+        self.transport.close()
+
+    def _wait(self) -> None:
+        self._stop_waiting()
+        self._lets_go = self.loop.call_later(HURRY, self._let_go)
+
+    def _stop_waiting(self) -> None:
+        if self._lets_go is not None:
+            self._lets_go.cancel()
+            self._lets_go = None
+
+    def _let_go(self) -> None:
+        if self.cycle is None or self.cycle.response_complete:
+            self.transport.abort()
+        else:
+            self._wait()
+
+
+def is_news(record: logging.LogRecord) -> bool:
+    """Return whether a record of the server's log is about the server, and not about what a page sent."""
+    return not str(record.msg).startswith("Invalid UTF-8")

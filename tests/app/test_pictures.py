@@ -1,0 +1,40 @@
+"""What is drawn, without a page."""
+
+from __future__ import annotations
+
+import pytest
+
+from .scripting import result_of
+
+TOP = """import { Top } from "./pictures.js";
+const top = new Top();
+result = given.map(([largest, now]) => top.follow(largest, now));"""
+BESIDE = """import { besideTip } from "./pictures.js";
+result = given.map((words) => besideTip(...words));"""
+# A word of so many pixels over a tip at this height.
+WORD, TIP, WIDTH = 60.0, 200.0, 700.0
+
+
+@pytest.mark.parametrize("pictures", [15, 30])
+def test_the_axis_of_the_force_comes_down_within_two_seconds_after_a_loud_case(tmp_path, pictures):
+    times = [1000.0 * k / pictures for k in range(6 * pictures)]
+    # What is seen is the last second.
+    seen = [79.0 if now < 3000.0 else 10.0 for now in times]
+    tops = result_of(tmp_path, TOP, list(zip(seen, times, strict=True)))
+    assert all(top >= 1.05 * force for top, force in zip(tops, seen, strict=True))
+    assert tops[2 * pictures] == pytest.approx(1.05 * 79.0)
+    # It was loud until 2 s.
+    assert tops[4 * pictures] < 1.1 * 10.5
+    # An axis that jumps down could not be read.
+    assert tops[3 * pictures + 1] > 50.0
+
+
+@pytest.mark.parametrize("lean", [-1.2, -0.3, 0.0, 0.3, 1.2])
+@pytest.mark.parametrize("x", [10.0, 40.0, 120.0, 350.0, 640.0, 690.0])
+def test_the_word_beside_the_tip_lies_in_the_picture_and_not_over_the_slider(tmp_path, lean, x):
+    ((left, base),) = result_of(tmp_path, BESIDE, [[x, TIP, lean, WORD, WIDTH]])
+    assert 0.0 <= left <= left + WORD <= WIDTH
+    if base < TIP:
+        assert left + WORD < x if lean > 0.0 else left > x
+    else:
+        assert base - 12.0 > TIP + 8.0

@@ -1,0 +1,1 @@
+"""Inputs at random, from a seed, and what must hold for each of them."""

@@ -1,0 +1,40 @@
+"""A few hundred conversations at random."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import psutil
+import pytest
+
+from . import messages
+
+SEED, COUNT = 7, 300
+# What they may leave in memory, once memory is as the first of them left it [bytes].
+GROWTH = 60e6
+
+
+def test_whatever_a_page_says_its_session_answers_and_lives_on(capfd):
+    process, found = psutil.Process(), Counter()
+    for number, given in enumerate(messages.inputs(SEED, COUNT)):
+        found[messages.check(given)] += 1
+        if number == COUNT // 3:
+            before = process.memory_info().rss
+    assert process.memory_info().rss < before + GROWTH
+    # Both kinds are there, or nothing would be tried.
+    assert min(found["accepted"], found["refused"]) > COUNT // 10
+    assert capfd.readouterr() == ("", "")
+
+
+def test_the_same_seed_says_the_same():
+    assert list(messages.inputs(3, 20)) == list(messages.inputs(3, 20))
+    assert list(messages.inputs(3, 20)) != list(messages.inputs(4, 20))
+
+
+def test_a_session_that_ends_is_found(monkeypatch):
+    def ends(text):
+        raise RuntimeError("no way")
+
+    monkeypatch.setattr("stridula.app.session.message_of", ends)
+    with pytest.raises(AssertionError, match="the session ended"):
+        messages.check(['{"type": "restart"}'])
