@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import scipy.special
-import scipy.stats
 import xarray as xr
 
 from ..analysis import status_share
@@ -156,7 +155,8 @@ def median_and_interval(values: Sequence[float] | Array, confidence: float = 0.9
     nan = float("nan")
     if not known.size:
         return nan, nan, nan
-    below = int(scipy.stats.binom.ppf((1.0 - confidence) / 2.0, known.size, 0.5))
+    chances = scipy.special.bdtr(np.arange(known.size + 1), known.size, 0.5)
+    below = int(np.searchsorted(chances, (1.0 - confidence) / 2.0))
     low, high = (known[below - 1], known[-below]) if below else (nan, nan)
     return float(np.median(known)), float(low), float(high)
 

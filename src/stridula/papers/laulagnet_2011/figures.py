@@ -1,15 +1,18 @@
-"""The paper's figures 2 to 21: the same quantities over the same axes."""
+"""The paper's figures 2 to 21, the same quantities over the same axes, and the frequency over the load."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from ... import analysis
 from ...plot import timeline
-from .runs import Runs
+from ...plot.colours import LINES
+from .pressure import STARTS, growing_modes, relaxations
+from .runs import Runs, median_over_starts
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,30 @@ def _one_burst(run: xr.Dataset) -> tuple[float, float]:
     return float(first - margin), float(last + margin)
 
 
+def pressure_figure(runs: Runs) -> Figure:
+    """Draw the frequencies of every start over the load, their medians, and the modes that grow in steady sliding."""
+    figure = Figure(figsize=(8.0, 5.0), layout="constrained")
+    axes = figure.subplots()
+    known = relaxations(runs)
+    loads = np.repeat([one.load for one in known], STARTS)
+    axes.plot(loads, np.concatenate([one.frequency for one in known]), "o", color=LINES[0], alpha=0.25, mec="none")
+    medians = np.array([one.median for one in known])
+    bounds = np.array([median_over_starts(one.frequency)[1] or (np.nan, np.nan) for one in known])
+    at = [one.load for one in known]
+    axes.vlines(at, *bounds.T, color=LINES[0])
+    axes.plot(at, medians, "-", color=LINES[0], marker="_", markersize=10, label="median of 8 starts, its interval")
+    for frequency, growth, name in growing_modes(runs):
+        axes.axhline(frequency, color="0.4", linewidth=0.8, linestyle="--")
+        words = f"{frequency:.0f} Hz, grows at {growth:.0f} 1/s: {name}"
+        axes.annotate(words, (1.0, frequency), (-4, 3), ("axes fraction", "data"), "offset points", ha="right", size=8)
+    axes.set(xscale="log", xlabel="Normal load [N]", ylabel="Frequency of the relaxations [Hz]", ylim=(0.0, None))
+    axes.set_xticks([10, 20, 50, 100, 200], labels=["10", "20", "50", "100", "200"])
+    axes.legend(loc="upper left", frameon=False)
+    axes.set_title("Frequency of the relaxations at 1 cm/s over the load")
+    return figure
+
+
+PRESSURE_FIGURE = "frequency-over-load.png"
 FIGURES = (
     PaperFigure(2, "stable-sliding", "contact_position", "Trajectory of the contact point, stable case"),
     PaperFigure(3, "stable-sliding", "status", "Status of the contact point, stable case"),

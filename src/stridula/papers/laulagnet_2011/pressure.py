@@ -7,13 +7,11 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from ... import analysis
 from ...analysis.stability import sliding_stability
 from ...bodies.modes import Array
 from ...integration import simulate_many
-from ...plot.colours import LINES
 from ...studies.ensembles import perturbed_starts
 from .runs import Runs, median_over_starts
 
@@ -95,29 +93,6 @@ def ladder_words(runs: Runs) -> str:
 
 def _known(runs: Runs) -> list[Relaxations]:
     return [one for one in relaxations(runs) if np.isfinite(one.median)]
-
-
-def draw(runs: Runs) -> Figure:
-    """Draw the frequencies of every start over the load, their medians, and the modes that grow in steady sliding."""
-    figure = Figure(figsize=(8.0, 5.0), layout="constrained")
-    axes = figure.subplots()
-    known = relaxations(runs)
-    loads = np.repeat([one.load for one in known], STARTS)
-    axes.plot(loads, np.concatenate([one.frequency for one in known]), "o", color=LINES[0], alpha=0.25, mec="none")
-    medians = np.array([one.median for one in known])
-    bounds = np.array([median_over_starts(one.frequency)[1] or (np.nan, np.nan) for one in known])
-    at = [one.load for one in known]
-    axes.vlines(at, *bounds.T, color=LINES[0])
-    axes.plot(at, medians, "-", color=LINES[0], marker="_", markersize=10, label="median of 8 starts, its interval")
-    for frequency, growth, name in growing_modes(runs):
-        axes.axhline(frequency, color="0.4", linewidth=0.8, linestyle="--")
-        words = f"{frequency:.0f} Hz, grows at {growth:.0f} 1/s: {name}"
-        axes.annotate(words, (1.0, frequency), (-4, 3), ("axes fraction", "data"), "offset points", ha="right", size=8)
-    axes.set(xscale="log", xlabel="Normal load [N]", ylabel="Frequency of the relaxations [Hz]", ylim=(0.0, None))
-    axes.set_xticks([10, 20, 50, 100, 200], labels=["10", "20", "50", "100", "200"])
-    axes.legend(loc="upper left", frameon=False)
-    axes.set_title("Frequency of the relaxations at 1 cm/s over the load")
-    return figure
 
 
 def growing_modes(runs: Runs) -> list[tuple[float, float, str]]:

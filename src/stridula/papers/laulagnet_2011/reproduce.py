@@ -13,7 +13,7 @@ from ...plot import save as save_figure
 from ...records.files import save as save_record
 from ...version import __version__
 from .claims import CLAIMS
-from .figures import FIGURES
+from .figures import FIGURES, PRESSURE_FIGURE, pressure_figure
 from .runs import CASES, Runs
 
 
@@ -51,6 +51,8 @@ def reproduce(folder: str | Path, report: Callable[[str], None] = lambda name: N
     for figure in FIGURES:
         report(figure.file_name)
         save_figure(figure.draw(runs), target / figure.file_name)
+    report(PRESSURE_FIGURE)
+    save_figure(pressure_figure(runs), target / PRESSURE_FIGURE)
     rows = [claim.check(runs) for claim in CLAIMS]
     write(target / "claims.json", (json.dumps(rows, indent=2, ensure_ascii=False) + "\n").encode())
     write(target / "claims.md", claims_table(rows).encode())
