@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import non_negative
+from ..checks import brief, non_negative
 from .modes import Array
 
 Damping = float | Sequence[float] | Array
@@ -23,14 +23,14 @@ def checked_damping(given: Any) -> float | tuple[float, ...]:
     """
     if isinstance(given, (Sequence, np.ndarray)) and not isinstance(given, str):
         if np.ndim(given) != 1:
-            raise ValueError(f"damping must be one ratio or a list of one for each mode, got {given!r}")
+            raise ValueError(f"damping must be one ratio or a list of one for each mode, got {brief(given)}")
         return tuple(_ratio(f"damping[{number}]", ratio) for number, ratio in enumerate(np.asarray(given).tolist()))
     return _ratio("damping", given)
 
 
 def _ratio(name: str, value: Any) -> float:
     if non_negative(name, value) >= 1.0:
-        raise ValueError(f"{name} must be below 1 (critical), got {value!r}")
+        raise ValueError(f"{name} must be below 1 (critical), got {brief(value)}")
     return float(value)
 
 

@@ -1,0 +1,149 @@
+"""Arguments of the wrong kind or size: refused in one line, at once, before anything is made of them."""
+
+from __future__ import annotations
+
+import time
+import tracemalloc
+
+import pytest
+
+import stridula as st
+from stridula.bodies.ordinary import MOST_MODES
+from stridula.checks import brief, by_key, count, finite, in_one_line, suggestion
+
+STEEL, STRIP = st.Material(2.1e11, 7800.0), st.Rectangle(0.02, 0.008)
+
+
+@pytest.fixture(scope="module", name="run")
+def run_():
+    return st.load_scenario("squeal").simulate(duration=0.01)
+
+
+def refused(call, pattern, kind=ValueError):
+    with pytest.raises(kind, match=pattern) as caught:
+        call()
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 400
+    return str(caught.value)
+
+
+# Many problems, and long ones.
+
+
+@pytest.mark.parametrize("place", ["", "[contact]\n"])
+def test_of_many_unknown_keys_the_first_are_told_and_the_rest_counted(tmp_path, place):
+    keys = "\n".join(f"key{k} = {k}" for k in range(20_000))
+    (tmp_path / "case.toml").write_text(f'base = "squeal"\n{place}{keys}\n')
+    began = time.perf_counter()
+    with pytest.raises(st.ScenarioError) as caught:
+        st.load_scenario(tmp_path / "case.toml")
+    assert time.perf_counter() - began < 5.0
+    assert len(caught.value.problems) == 21
+    assert "key0 = 0" in caught.value.problems[0]
+    assert caught.value.problems[-1] == "19980 other problems"
+    assert len(str(caught.value)) < 2000
+    assert str(caught.value).endswith("other problems")
+
+
+def test_problems_that_are_few_are_all_told():
+    assert st.ScenarioError(["a", "b", "a"]).problems == ("a", "b")
+    assert str(st.ScenarioError(["a\nb", "c"])) == "a b; c"
+    assert st.ScenarioError([str(k) for k in range(21)]).problems[-1] == "1 other problem"
+    long = st.ScenarioError(["x" * 400] * 2 + [f"{k}" + "y" * 490 for k in range(9)], others=5)
+    assert str(long).endswith("; 12 other problems")
+    assert len(str(long)) < 2000
+
+
+def test_keys_set_by_hand_are_not_looked_at_for_ever():
+    began = time.perf_counter()
+    with pytest.raises(st.ScenarioError) as caught:
+        st.load_scenario("squeal", {f"key{k}": 1 for k in range(5000)})
+    assert time.perf_counter() - began < 5.0
+    assert len(caught.value.problems) == 20
+    assert caught.value.problems[-1] == "keys must be right before others are looked at, 4981 were not"
+
+
+def test_a_scenario_holds_so_many_bodies_at_most(tmp_path):
+    tables = "".join(f'[bodies.b{k}]\nkind = "point mass"\nmass = 1.0\n' for k in range(3000))
+    (tmp_path / "case.toml").write_text(
+        f"{tables}[[contacts]]\ntip = {{ body = 'b0' }}\ntrack = {{ kind = 'rigid' }}\n"
+    )
+    with pytest.raises(st.ScenarioError, match="bodies must hold at most 1000, got 3000"):
+        st.load_scenario(tmp_path / "case.toml")
+
+
+def test_values_are_cut_in_messages(tmp_path):
+    long = "x" * 3000
+    refused(lambda: st.load_scenario("squeal", {long: 1}), r"^key must be .*, got 'xxx.*\.\.\.$", st.ScenarioError)
+    refused(lambda: st.load_scenario("squeal", {"law": long}), r"got 'xxx.*\.\.\.$", st.ScenarioError)
+    refused(lambda: st.load_scenario("squeal", {"coefficient": 10**5000}), "must be finite", st.ScenarioError)
+    (tmp_path / "case.toml").write_text(f'base = "squeal"\n[contact]\n{long} = 1\n')
+    refused(lambda: st.load_scenario(tmp_path / "case.toml"), "one of the known keys", st.ScenarioError)
+    refused(lambda: st.load("y" * 3000), r"^cannot read '\.\.\.y+': file name too long$", OSError)
+    refused(lambda: st.save(st.load_scenario("squeal").simulate(duration=1e-4), "y" * 3000), "name too long", OSError)
+
+
+def test_a_number_that_is_none_is_named_by_its_kind(run):
+    assert refused(lambda: finite("x", run), "must be a number") == "x must be a number, got a Dataset"
+    assert refused(lambda: finite("x", 10**400), "must be finite") == "x must be finite, got an int"
+    assert refused(lambda: count("x", 5, high=4), "at most") == "x must be at most 4, got 5"
+    assert brief(10**5000) == "an int"
+    assert brief("x" * 100) == "'" + "x" * 76 + "..."
+    assert suggestion("coulom" * 100, ["coulomb"]) == ""
+    assert in_one_line(KeyError()) == "KeyError"
+    assert by_key("x", None) == {}
+
+
+# Sizes.
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        (
+            {"track.length": 1e20},
+            r"^cutoff must leave at most 50000 modes, got 15000.0 Hz, below which there are 3.29709e\+21$",
+        ),
+        ({"track.length": 1e11}, "cutoff must leave at most 50000 modes"),
+        ({"track.length": 1e5}, "cutoff must leave at most 50000 modes"),
+        ({"material.density": 1.4e15}, "cutoff must leave at most 50000 modes"),
+        ({"track.length": 1e-300}, "track must hold numbers of ordinary size: its modes overflow"),
+        ({"section.height": 1e-200}, "width and height must be of ordinary size"),
+        ({"section.height": 1e200}, "width and height must be of ordinary size"),
+    ],
+)
+def test_tracks_have_so_many_modes_at_most(keys, message):
+    st.load_scenario("squeal")
+    tracemalloc.start()
+    with pytest.raises(st.ScenarioError, match=message):
+        st.load_scenario("squeal", keys)
+    assert tracemalloc.get_traced_memory()[1] < 20e6
+    tracemalloc.stop()
+
+
+def test_so_many_modes_may_be_asked_for():
+    beam = st.ModalBeam(STEEL, STRIP, 1.0, bending_modes=MOST_MODES - 20)
+    assert beam.modes().count == MOST_MODES
+    refused(lambda: st.ModalBeam(STEEL, STRIP, 1.0, bending_modes=MOST_MODES), "modes must be at most 50000 in all")
+    refused(lambda: st.ModalPlate(STEEL, 1e-3, 1.0, 1.0, (10**6, 10**6)), "modes must be at most 50000 in all")
+    refused(lambda: st.ModalPlate(STEEL, 1e-3, 1e4, 1e4, cutoff=1e4), "cutoff must leave at most 50000 modes")
+    refused(
+        lambda: st.ModalPlate(STEEL, 1e-3, 1.0, 1.0, in_plane=True, in_plane_modes=(10**6, 10**6)),
+        "modes must be at most 50000 in all",
+    )
+    refused(lambda: st.ModalPlate(STEEL, 1e-200, 1.0, 1.0, cutoff=1e4), "must")
+
+
+def test_springs_couple_so_many_modes_at_most():
+    beam, mass = st.ModalBeam(STEEL, STRIP, 1.0, bending_modes=5000), st.PointMass(1.0)
+    system = st.System(
+        st.PointContact(mass.centre, beam, at=0.5), (), [st.Spring(beam.at(0.3), mass.centre, stiffness=1e3)]
+    )
+    refused(lambda: st.simulate(system, 1e-3), "connections must couple at most 4000 modes, got 50")
+
+
+def test_numbers_that_overflow_are_refused_and_warn_of_nothing():
+    refused(lambda: st.ModalBeam(STEEL, st.Section(5e-324, 1.0), 1e-200, cutoff=1e4), "ordinary size")
+    mass = st.PointMass(1e-12)
+    far = st.System(st.PointContact(mass.centre, st.RigidTrack(1e300)), [st.Force(mass.centre, y=-1e308)])
+    refused(lambda: st.simulate(far, 1e-3, step=1e-3, sample_rate=1e3), "ordinary size", (ValueError, st.Diverged))
