@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import time
 import tracemalloc
+import zipfile
 
+import numpy as np
 import pytest
+import scipy.io
+import scipy.sparse
 
 import stridula as st
 from stridula.bodies.ordinary import MOST_MODES
@@ -92,6 +96,70 @@ def test_a_number_that_is_none_is_named_by_its_kind(run):
     assert suggestion("coulom" * 100, ["coulomb"]) == ""
     assert in_one_line(KeyError()) == "KeyError"
     assert by_key("x", None) == {}
+
+
+# Matrices.
+
+
+def test_an_npz_is_judged_by_its_headers(tmp_path):
+    large = np.zeros((9000, 9000))
+    np.savez_compressed(tmp_path / "large.npz", mass=large, stiffness=large)
+    assert (tmp_path / "large.npz").stat().st_size < 2e6
+    tracemalloc.start()
+    refused(
+        lambda: st.ReducedBody.read(tmp_path / "large.npz"),
+        "large.npz': mass must have at most 4000 degrees of freedom, got 9000",
+    )
+    assert tracemalloc.get_traced_memory()[1] < 20e6
+    tracemalloc.stop()
+
+
+def test_a_header_that_says_more_than_there_is_makes_no_room(tmp_path):
+    header = b"\x93NUMPY\x01\x00v\x00" + b"{'descr': '<f8', 'fortran_order': False, 'shape': (4000, 4000), }"
+    with zipfile.ZipFile(tmp_path / "body.npz", "w") as archive:
+        for name in ("mass", "stiffness"):
+            archive.writestr(f"{name}.npy", header.ljust(127) + b"\n" + b"\0" * 800)
+    refused(lambda: st.ReducedBody.read(tmp_path / "body.npz"), "mass must hold the 16000000 numbers .* holds less$")
+
+
+@pytest.mark.parametrize("packed", [False, True])
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_matlab_files_are_read_as_scipy_reads_them(tmp_path, packed, order):
+    body = st.ReducedBody(np.diag([1.0, 2.0]), np.array([[3.0, -1.0], [-1.0, 3.0]]), {"tip": (0, 1)})
+    held = {"M": scipy.sparse.csc_array(body.mass), "K": body.stiffness, "C": np.eye(2, dtype=np.int8), "other": "text"}
+    if order == ">":
+        whole = _big_endian({"M": body.mass, "K": body.stiffness, "point_tip": np.eye(2)})
+        (tmp_path / "b.mat").write_bytes(whole)
+        assert scipy.io.loadmat(tmp_path / "b.mat")["K"].tolist() == body.stiffness.tolist()
+    else:
+        scipy.io.savemat(tmp_path / "b.mat", held | {"point_tip": np.eye(2)}, do_compression=packed)
+    again = st.ReducedBody.read(tmp_path / "b.mat")
+    np.testing.assert_array_equal(again.mass, body.mass)
+    np.testing.assert_array_equal(again.stiffness, body.stiffness)
+    assert (np.ndim(again.damping) == 2) == (order == "<")
+
+
+def _big_endian(arrays):
+    """Return a file as MATLAB wrote them on other machines."""
+
+    def element(kind, data):
+        return np.array([kind, len(data)], ">u4").tobytes() + data + b"\0" * (-len(data) % 8)
+
+    content = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x01\x00MI"
+    for name, array in arrays.items():
+        parts = element(6, np.array([6, 0], ">u4").tobytes()) + element(5, np.array(array.shape, ">i4").tobytes())
+        parts += element(1, name.encode()) + element(9, array.T.astype(">f8").tobytes())
+        content += element(14, parts)
+    return content
+
+
+def test_a_sparse_matrix_that_points_beyond_itself_ends_no_process(tmp_path):
+    # To unfold it would write outside of its memory.
+    bad = scipy.sparse.csc_array(np.eye(3))
+    bad.indices[1] = 10**6
+    refused(lambda: st.ReducedBody(bad, np.eye(3), {"tip": (0, 1)}), "indices")
+    scipy.io.savemat(tmp_path / "b.mat", {"M": bad, "K": np.eye(3), "point_tip": np.eye(2, 3)})
+    refused(lambda: st.ReducedBody.read(tmp_path / "b.mat"), r"^cannot read '.*b.mat': .*indices")
 
 
 # Sizes.
