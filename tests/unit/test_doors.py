@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import time
 import tracemalloc
 import zipfile
@@ -215,3 +218,32 @@ def test_numbers_that_overflow_are_refused_and_warn_of_nothing():
     mass = st.PointMass(1e-12)
     far = st.System(st.PointContact(mass.centre, st.RigidTrack(1e300)), [st.Force(mass.centre, y=-1e308)])
     refused(lambda: st.simulate(far, 1e-3, step=1e-3, sample_rate=1e3), "ordinary size", (ValueError, st.Diverged))
+
+
+# What a process that was killed leaves.
+
+
+def test_what_a_killed_process_left_is_removed_by_the_next_that_writes(tmp_path, run):
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    left = tmp_path / f".stridula-{gone.pid}-12345.part"
+    others = [tmp_path / name for name in (f".stridula-{os.getppid()}-1.part", ".stridula-x-1.part", "a.part")]
+    for path in (left, *others):
+        path.write_bytes(b"half")
+    st.save(run, tmp_path / "run.nc")
+    assert sorted(tmp_path.iterdir()) == sorted([*others, tmp_path / "run.nc"])
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no locks there")
+def test_what_another_machine_writes_is_left_alone(tmp_path, run):
+    import fcntl
+
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    written = tmp_path / f".stridula-{gone.pid}-12345.part"
+    with written.open("wb") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        st.save(run, tmp_path / "run.nc")
+        assert written.exists()
+    st.save(run, tmp_path / "run.nc")
+    assert not written.exists()
