@@ -15,6 +15,7 @@ import scipy.io
 import scipy.sparse
 
 import stridula as st
+from stridula import analysis, plot
 from stridula.bodies.ordinary import MOST_MODES
 from stridula.checks import brief, by_key, count, finite, in_one_line, suggestion
 
@@ -220,6 +221,105 @@ def test_numbers_that_overflow_are_refused_and_warn_of_nothing():
     refused(lambda: st.simulate(far, 1e-3, step=1e-3, sample_rate=1e3), "ordinary size", (ValueError, st.Diverged))
 
 
+# Kinds.
+
+
+def test_a_path_is_not_a_record(run):
+    for call in (analysis.bursts, plot.overview, st.regime, analysis.settling_time):
+        refused(
+            lambda call=call: call("squeal.nc"), "^run must be a record of simulate, .*, got 'squeal.nc': read a file"
+        )
+        refused(
+            lambda call=call: call(run.normal_force), "^run must be .*Dataset.*, got a DataArray named 'normal_force'"
+        )
+        refused(lambda call=call: call(3), "^run must be .*Dataset.*, got 3$")
+        refused(lambda call=call: call(run.drop_vars("time")), "^run must be a record with time, got one with")
+    refused(lambda: st.save(3, "x.nc"), "^run must be a Dataset, got 3$")
+    refused(lambda: st.export(3, "x.csv"), "^run must be a record of simulate, a Dataset, got 3$")
+    refused(lambda: analysis.spectrum(run), "^signal must be a DataArray")
+    refused(lambda: plot.timeline(run, "status"), "^variables must be a list of names, got 'status'$")
+    refused(lambda: plot.timeline(run, ["status"], 3), "^span must be a start and an end in s, got 3$")
+    refused(lambda: plot.save(3, "a.png"), "^figure must be a Figure, got 3$")
+    refused(lambda: analysis.status_share(run, "sliding", 3), "^intervals must be pairs of start and end in s, got 3$")
+
+
+@pytest.mark.parametrize("overrides", [3, "friction=1", [("friction", 1)], {3: 1}])
+def test_values_by_key_are_a_mapping(overrides):
+    refused(lambda: st.load_scenario("squeal", overrides), "^overrides must ")
+    refused(lambda: st.sweep("squeal", [{"at": 0.3}], "regime", overrides=overrides), "^overrides must ")
+    refused(lambda: st.root_loci("squeal", "at", [0.3, 0.4], overrides=overrides), "^overrides must ")
+
+
+@pytest.mark.parametrize("path", [0, 1, 1.5, None, b"x", "a\0b"])
+def test_a_number_is_no_file(run, path):
+    for call in (st.load, lambda path: st.save(run, path), st.read_wav):
+        refused(lambda call=call: call(path), "^path must be the name of a file, got ")
+    for stream in range(3):
+        os.fstat(stream)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"rate": 1e-8}, "^rate must be at least twice the lowest tone, 600 Hz, got 1e-08$"),
+        ({"lowest_tone": 1e300}, "^lowest_tone must be from 0.001 to 1e"),
+        ({"frame": 1e-300}, "^frame must be from 1e-06 to 10000"),
+    ],
+)
+def test_a_regime_is_not_looked_for_for_ever(run, options, message):
+    refused(lambda: st.regime(run, **options), message)
+
+
+def test_a_record_shorter_than_a_sample_of_the_rate_has_a_regime(run):
+    assert st.regime(run.isel(time=slice(2)))["confidence"] == 0.5
+    assert st.regime(run, rate=1e-2, lowest_tone=1e-3)["audibility"] == 0.0
+
+
+def test_a_watcher_of_a_calibration_says_itself_what_is_wrong():
+    def calibrate(watcher):
+        def measured(points):
+            return [{"x": 1.0} for _ in points]
+
+        st.calibrate(measured, {"a": (0.0, 1.0)}, {"x": (2.0, 3.0)}, population=5, generations=1, watchers=[watcher])
+
+    refused(lambda: calibrate(3), "not callable", TypeError)
+    refused(lambda: calibrate(lambda progress: int("x")), "invalid literal")
+
+
+def test_sound_of_no_wavelength_is_refused():
+    plate = st.ModalPlate(STEEL, 0.002, 0.4, 0.3, (2, 2))
+    refused(
+        lambda: st.radiation_efficiency(plate, 1e12), "^frequency must be at most 198605 Hz for a track of this size"
+    )
+    assert st.radiation_efficiency(plate, 50e3) == pytest.approx(1.0, abs=1e-3)
+
+
+# Records edited by hand.
+
+
+@pytest.mark.parametrize(
+    ("edit", "message"),
+    [
+        (
+            lambda run: run.isel(contact_status=[0, 1]),
+            "must have a status_share of each of separated, sticking, sliding",
+        ),
+        (lambda run: run.assign_coords(time=0.0 * run.time), "must have finite times that rise"),
+        (lambda run: run.assign_coords(time=run.time[::-1].values), "must have finite times that rise"),
+        (lambda run: run.assign(status_share=("time", np.ones(run.sizes["time"]))), "must have a status_share of each"),
+        (lambda run: run.assign(normal_force=1.0), "must have a normal_force of numbers over time"),
+        (lambda run: run.assign(normal_force=run.normal_force.astype(str)), "must have a normal_force of numbers"),
+        (lambda run: run.drop_vars("status_share"), "must be a record with status_share"),
+    ],
+)
+def test_a_record_that_was_edited_is_refused(run, edit, message):
+    edited = edit(run)
+    refused(lambda: st.regime(edited), message)
+    if "normal_force" not in message:
+        refused(lambda: analysis.phases(edited, "sliding"), message)
+        refused(lambda: plot.timeline(edited, ["normal_force", "status"]), message)
+
+
 # What a process that was killed leaves.
 
 
@@ -247,3 +347,9 @@ def test_what_another_machine_writes_is_left_alone(tmp_path, run):
         assert written.exists()
     st.save(run, tmp_path / "run.nc")
     assert not written.exists()
+
+
+def test_a_state_beyond_all_sizes_is_not_gone_on_from(run):
+    edited = run.assign(state_modal=run.state_modal * 0.0 + 1e308)
+    system = st.load_scenario("squeal").system
+    refused(lambda: st.simulate(system, 1e-3, start=edited), "^start must have a finite state_modal")

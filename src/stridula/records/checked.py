@@ -35,9 +35,9 @@ def record(name: str, value: Any, *needed: str, least: int = 0) -> xr.Dataset:
     ValueError
         If it is something else, such as the name of a file, lacks a variable or samples, or its times do not rise.
     """
-    if isinstance(value, (str, Path)):
-        raise ValueError(f"{name} must be a record of simulate, got {brief(str(value))}: read a file with load")
-    instance(name, value, xr.Dataset)
+    if not isinstance(value, xr.Dataset):
+        way = ": read a file with load" if isinstance(value, (str, Path)) else ""
+        raise ValueError(f"{name} must be a record of simulate, a Dataset, got {brief(value)}{way}")
     lacking = [word for word in ("time", *needed) if word not in value.variables]
     if lacking:
         raise ValueError(f"{name} must be a record with {listed(lacking)}, got one with {_held(value)}")
