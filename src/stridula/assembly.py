@@ -11,6 +11,7 @@ import numpy as np
 
 from .bodies import BodyPoint, FiniteElementBeam
 from .bodies.modes import Array, Modes
+from .bodies.ordinary import check_coupled_count, of_ordinary_size
 from .checks import brief
 from .connections import Spring, ends, unit
 from .contact import PointContact, RigidTrack
@@ -121,6 +122,7 @@ class Assembly:
         return len(self.stiffness)
 
 
+@of_ordinary_size("system")
 def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
     """Turn a system and its probes into flat arrays."""
     layout = _Layout(system)
@@ -291,6 +293,7 @@ class _Layout:
 def _matrices(layout: _Layout) -> tuple[Array, Array]:
     """Return the stiffness and the damping matrix of the modes of joined bodies, which come first."""
     size = sum(layout.modes(body).count for body in layout.joined)
+    check_coupled_count(size)
     stiffness, dissipation = np.zeros((size, size)), np.zeros((size, size))
     for body in layout.joined:
         modes, span = layout.modes(body), slice(*layout.spans[body])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from difflib import get_close_matches
 from numbers import Integral, Real
@@ -22,17 +22,24 @@ def finite(name: str, value: Any) -> float:
     """Return `value` as a float if it is a finite real number."""
     # Asking whether a thing is a Real takes ten times as long.
     if type(value) is not float and (isinstance(value, bool) or not isinstance(value, Real)):
-        raise ValueError(f"{name} must be a number, got {value!r}")
-    if not math.isfinite(value):
-        raise ValueError(f"{name} must be finite, got {value!r}")
+        raise ValueError(f"{name} must be a number, got {brief(value)}")
+    if not _is_finite(value):
+        raise ValueError(f"{name} must be finite, got {brief(value)}")
     return float(value)
+
+
+def _is_finite(number: Real | float) -> bool:
+    try:
+        return math.isfinite(number)
+    except OverflowError:
+        return False
 
 
 def positive(name: str, value: Any) -> float:
     """Return `value` as a float if it is finite and above zero."""
     number = finite(name, value)
     if number <= 0.0:
-        raise ValueError(f"{name} must be above 0, got {value!r}")
+        raise ValueError(f"{name} must be above 0, got {brief(value)}")
     return number
 
 
@@ -40,7 +47,7 @@ def non_negative(name: str, value: Any) -> float:
     """Return `value` as a float if it is finite and not below zero."""
     number = finite(name, value)
     if number < 0.0:
-        raise ValueError(f"{name} must be 0 or above, got {value!r}")
+        raise ValueError(f"{name} must be 0 or above, got {brief(value)}")
     return number
 
 
@@ -51,23 +58,25 @@ def within(name: str, value: Any, low: float, high: float, *, ends: bool = True)
     if not inside:
         least, most = bounds(low, high)
         words = f"from {least} to {most}" if ends else f"strictly between {least} and {most}"
-        raise ValueError(f"{name} must be {words}, got {value!r}")
+        raise ValueError(f"{name} must be {words}, got {brief(value)}")
     return number
 
 
-def count(name: str, value: Any, low: int = 1) -> int:
-    """Return `value` as an int if it is a whole number of at least `low`."""
+def count(name: str, value: Any, low: int = 1, high: int | None = None) -> int:
+    """Return `value` as an int if it is a whole number of at least `low`, and at most `high` if that is given."""
     if isinstance(value, bool) or not isinstance(value, Integral):
-        raise ValueError(f"{name} must be a whole number, got {value!r}")
+        raise ValueError(f"{name} must be a whole number, got {brief(value)}")
     if value < low:
-        raise ValueError(f"{name} must be at least {low}, got {value!r}")
+        raise ValueError(f"{name} must be at least {low}, got {brief(value)}")
+    if high is not None and int(value) > high:
+        raise ValueError(f"{name} must be at most {high}, got {brief(value)}")
     return int(value)
 
 
 def choice(name: str, value: Any, allowed: Sequence[str]) -> str:
     """Return `value` if it is one of the words in `allowed`."""
     if value not in allowed:
-        raise ValueError(f"{name} must be one of {', '.join(allowed)}, got {value!r}{suggestion(value, allowed)}")
+        raise ValueError(f"{name} must be one of {', '.join(allowed)}, got {brief(value)}{suggestion(value, allowed)}")
     return str(value)
 
 
@@ -76,7 +85,7 @@ def one_or_each(name: str, value: Any, check: Callable[[str, Any], T], size: int
     if isinstance(value, str) or not (hasattr(value, "__len__") and hasattr(value, "__getitem__")):
         return check(name, value)
     if size is not None and len(value) != size:
-        raise ValueError(f"{name} must hold one for each contact, {size} in all, got {value!r}")
+        raise ValueError(f"{name} must hold one for each contact, {size} in all, got {brief(value)}")
     return tuple(check(f"{name}[{number}]", one) for number, one in enumerate(value))
 
 
@@ -87,11 +96,29 @@ def instance(name: str, value: Any, kinds: type | tuple[type, ...]) -> None:
         raise ValueError(f"{name} must be {_article(words)} {words}, got {brief(value)}")
 
 
+def by_key(name: str, value: Any) -> Mapping[str, Any]:
+    """Return values by key, none of them for None."""
+    if value is None:
+        return {}
+    if not isinstance(value, Mapping):
+        raise ValueError(f"{name} must be values by key, got {brief(value)}")
+    for key in value:
+        if not isinstance(key, str):
+            raise ValueError(f"{name} must have keys that are text, got {brief(key)}")
+    return value
+
+
 def brief(value: Any) -> str:
-    """Return a value as it is written, or its kind and its name where that would be long."""
-    text = repr(value)
-    if "\n" not in text and len(text) <= LONGEST:
+    """Return a value as it is written, a long text cut, or its kind and its name where that would be long."""
+    try:
+        text = repr(value)
+    except Exception:
+        # A whole number of 5000 digits has no text, and what others wrote may raise anything.
+        text = ""
+    if text and "\n" not in text and len(text) <= LONGEST:
         return text
+    if isinstance(value, str):
+        return f"{text[: LONGEST - 3]}..."
     kind, name = type(value).__name__, getattr(value, "name", None)
     return f"{_article(kind)} {kind}" + (f" named {name!r}" if name and isinstance(name, str) else "")
 
@@ -138,6 +165,16 @@ def _article(word: str) -> str:
 
 
 def suggestion(word: Any, known: Sequence[str]) -> str:
-    """Return ``"; did you mean 'x'?"`` for the known word nearest to `word`, or nothing."""
-    nearest = get_close_matches(str(word), known, n=1, cutoff=0.6)
+    """Return ``"; did you mean 'x'?"`` for the known word nearest to `word`, or nothing; a long text is no word."""
+    nearest = get_close_matches(word, known, n=1, cutoff=0.6) if _is_word(word) else []
     return f"; did you mean {nearest[0]!r}?" if nearest else ""
+
+
+def _is_word(value: Any) -> bool:
+    return isinstance(value, str) and len(value) <= LONGEST
+
+
+def in_one_line(error: BaseException, longest: int = LONGEST_LIST) -> str:
+    """Return what an exception says in one line, cut if it is long; its kind where it says nothing."""
+    words = " ".join(str(error).split()) or type(error).__name__
+    return words if len(words) <= longest else f"{words[: longest - 3]}..."

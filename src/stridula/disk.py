@@ -3,28 +3,66 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import IO
+
+try:
+    import fcntl
+except ImportError:
+    # Windows has none.
+    fcntl = None  # type: ignore[assignment]
+
+# Longest name of a file that a message shows as it is.
+LONGEST_NAME = 200
+LEFT_OVER = re.compile(r"\.stridula-(\d+)-\d+\.part")
 
 
 def read(path: str | Path, size: int = -1) -> bytes:
     """Return what a file holds, its first `size` bytes if given."""
-    with one_line(f"cannot read {str(path)!r}"), open(path, "rb") as file:
+    check_path("path", path)
+    with one_line(f"cannot read {named(path)}"), open(path, "rb") as file:
         return file.read(size)
+
+
+def check_path(name: str, path: object) -> None:
+    """Raise ValueError unless `path` names a file: a number would be taken for an open one."""
+    text = os.fspath(path) if isinstance(path, (str, os.PathLike)) else None
+    if not isinstance(text, str) or "\0" in text:
+        got = repr(path) if isinstance(path, (str, float)) else f"a {type(path).__name__}"
+        raise ValueError(f"{name} must be the name of a file, got {got[:LONGEST_NAME]}")
+
+
+def is_there(path: str | os.PathLike[str]) -> bool:
+    """Return whether there is something at `path`; nothing is at a name that the system does not take."""
+    try:
+        return os.path.exists(path)
+    except (OSError, ValueError):
+        return False
+
+
+def named(path: str | os.PathLike[str]) -> str:
+    """Return the name of a file as it goes into a message, without its beginning where it is long."""
+    text = str(path)
+    return repr(text) if len(text) <= LONGEST_NAME else f"'...{text[-LONGEST_NAME:]}'"
 
 
 def check_writable(path: str | Path) -> None:
     """Raise OSError if no file can be written at `path`; leave everything as it is."""
-    target = Path(path).resolve()
-    cannot = f"cannot write {str(path)!r}"
+    check_path("path", path)
+    target = _target(path)
+    cannot = f"cannot write {named(path)}"
+    with one_line(cannot):
+        exists, is_file = target.exists(), target.is_file()
     if target.is_dir():
         raise IsADirectoryError(f"{cannot}: it is a directory")
     if not target.parent.is_dir():
-        raise FileNotFoundError(f"{cannot}: there is no folder {str(Path(path).parent)!r}")
-    if target.exists() and not os.access(target, os.W_OK):
+        raise FileNotFoundError(f"{cannot}: there is no folder {named(Path(path).parent)}")
+    if exists and not os.access(target, os.W_OK):
         raise PermissionError(f"{cannot}: permission denied")
-    if target.is_file() or not target.exists():
+    if is_file or not exists:
         with one_line(cannot), open(_beside(target), "xb"):
             pass
         _beside(target).unlink()
@@ -32,12 +70,17 @@ def check_writable(path: str | Path) -> None:
 
 def write(path: str | os.PathLike[str], content: bytes | memoryview) -> None:
     """Write a file beside its place under a temporary name, then move it there; a device is written directly."""
-    target = Path(path).resolve()
-    is_device = target.exists() and not target.is_file()
+    check_path("path", path)
+    target = _target(path)
+    with one_line(f"cannot write {named(path)}"):
+        is_device = target.exists() and not target.is_file()
     written = target if is_device else _beside(target)
     try:
-        with one_line(f"cannot write {str(path)!r}"):
+        with one_line(f"cannot write {named(path)}"):
+            _sweep(target.parent)
             with open(written, "wb") as file:
+                with suppress(OSError):
+                    _lock(file)
                 file.write(content)
                 file.flush()
                 if not is_device:
@@ -47,6 +90,46 @@ def write(path: str | os.PathLike[str], content: bytes | memoryview) -> None:
     finally:
         if not is_device:
             written.unlink(missing_ok=True)
+
+
+def _target(path: str | os.PathLike[str]) -> Path:
+    with one_line(f"cannot write {named(path)}"):
+        try:
+            return Path(path).resolve()
+        except RuntimeError as error:
+            raise OSError("its links lead back to themselves") from error
+
+
+def _sweep(folder: Path) -> None:
+    """Remove what processes left that were killed while they wrote; what cannot be removed stays."""
+    with suppress(OSError):
+        for name in os.listdir(folder):
+            found = LEFT_OVER.fullmatch(name)
+            if found and not _is_running(int(found[1])):
+                with suppress(OSError), open(folder / name, "rb") as file:
+                    # Where machines share a folder, the process may run on another one.
+                    _lock(file)
+                    (folder / name).unlink()
+
+
+def _lock(file: IO[bytes]) -> None:
+    """Lock a file until it is closed; raise OSError if another process has."""
+    if fcntl is not None:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def _is_running(process: int) -> bool:
+    """Return whether a process is there, as far as can be told: one that is not ours is."""
+    if os.name == "nt":
+        # There a signal of 0 would end it.
+        return True
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except OSError:
+        return True
+    return True
 
 
 def _beside(target: Path) -> Path:

@@ -164,7 +164,7 @@ class Sampled:
         for name in ("time", "value"):
             numbers = getattr(self, name)
             if isinstance(numbers, str) or not isinstance(numbers, Iterable):
-                raise ValueError(f"{name} must be a sequence of numbers, got {numbers!r}")
+                raise ValueError(f"{name} must be a sequence of numbers, got {brief(numbers)}")
             checked = tuple(finite(f"{name}[{k}]", number) for k, number in enumerate(numbers))
             object.__setattr__(self, name, checked)
         if len(self.time) < 2 or len(self.time) != len(self.value):

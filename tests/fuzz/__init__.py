@@ -1,1 +1,1 @@
-"""Inputs at random, from a seed, and what must hold for each of them."""
+"""Inputs that are wrong on purpose: what comes of each is a result, or a refusal in one line."""

@@ -417,7 +417,7 @@ def test_wallace_close_by_falls_short(monkeypatch):
         ({"track": replace(BEAM, length=0.08)}, "the one the run presses on"),
         ({"run": record(1)}, "at least 2 samples"),
         ({"run": record(100, ended="energy created")}, "energy created"),
-        ({"run": record(100).drop_vars("normal_force")}, "normal_force and contact_position"),
+        ({"run": record(100).drop_vars("normal_force")}, "run must be a record with normal_force, got one"),
         ({"run": None}, "run must be a record"),
         ({"run": record(100).assign_coords(time=np.arange(100) ** 2.0)}, "evenly sampled"),
         ({"run": record(100, at=np.nan)}, "contact_position must be finite"),

@@ -128,7 +128,7 @@ def test_what_cannot_be_written_is_told_and_leaves_nothing(record, tmp_path, nam
 
 
 def test_what_is_no_record_cannot_be_exported(tmp_path):
-    with pytest.raises(ValueError, match="run must be a Dataset"):
+    with pytest.raises(ValueError, match="run must be a record of simulate, a Dataset"):
         st.export(3, tmp_path / "run.csv")
-    with pytest.raises(ValueError, match="run must be a record with the coordinate time"):
+    with pytest.raises(ValueError, match="run must be a record with time, got one with"):
         st.export(xr.Dataset({"a": ("x", [1.0])}), tmp_path / "run.csv")

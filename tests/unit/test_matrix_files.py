@@ -400,15 +400,17 @@ def test_containers_must_hold_matrices_and_points(tmp_path):
     with pytest.raises(ValueError, match=r"^points must have at least one point, got none$"):
         ReducedBody.read(path)
     np.savez(path, mass=MASS, stiffness=np.array([None]), allow_pickle=True)
-    with pytest.raises(ValueError, match=r"^cannot read '.*body.npz': Object arrays cannot be loaded"):
+    with pytest.raises(
+        ValueError, match=r"^cannot read '.*body.npz': stiffness must be an array of numbers, got .* object"
+    ):
         ReducedBody.read(path)
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("mass", "no array")
         archive.writestr("stiffness", "no array")
-    with pytest.raises(ValueError, match=r"^mass must be an array of numbers, got a bytes"):
+    with pytest.raises(ValueError, match=r"mass must be an array of numbers, got other bytes"):
         ReducedBody.read(path)
     scipy.io.savemat(tmp_path / "b.mat", {"M": MASS, "K": "stiff", "point_tip": np.eye(SIZE)[:2]})
-    with pytest.raises(ValueError, match=r"^stiffness must be"):
+    with pytest.raises(ValueError, match=r"K must be a matrix of numbers"):
         ReducedBody.read(tmp_path / "b.mat")
 
 

@@ -154,7 +154,7 @@ def _band(name: str, nominal: float) -> int:
     """Return the number of the band with a nominal centre."""
     positive(name, nominal)
     known = NOMINAL[BANDS - 10]
-    nearest = int(np.argmin(np.abs(np.log(known / nominal))))
+    nearest = int(np.argmin(np.abs(np.log(known) - np.log(nominal))))
     if abs(known[nearest] - nominal) > 1e-6 * nominal:
         raise ValueError(
             f"{name} must be the nominal centre of a third-octave band from 25 to 20000 Hz, got {nominal!r}; "

@@ -54,7 +54,7 @@ def listeners_of(listener: Any) -> Array:
     for number, place in enumerate(several):
         name = "listener" if several is not listener else f"listener[{number}]"
         if not isinstance(place, (Sequence, np.ndarray)) or isinstance(place, (str, bytes)) or len(place) != 3:
-            raise ValueError(f"{name} must be three distances x, y, z, got {place!r}")
+            raise ValueError(f"{name} must be three distances x, y, z, got {brief(place)}")
         found.append([_distance(f"{name}.{axis}", value) for axis, value in zip("xyz", place, strict=True)])
     return np.array(found)
 
@@ -62,7 +62,7 @@ def listeners_of(listener: Any) -> Array:
 def _distance(name: str, value: Any) -> float:
     number = finite(name, value.item() if isinstance(value, np.generic) else value)
     if abs(number) > FARTHEST:
-        raise ValueError(f"{name} must be within {FARTHEST:g} m, got {value!r}")
+        raise ValueError(f"{name} must be within {FARTHEST:g} m, got {brief(value)}")
     return number
 
 

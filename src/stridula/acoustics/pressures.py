@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..bodies.modes import Array
-from ..checks import at_least, at_most, instance
+from ..checks import at_least, at_most, brief, instance
 
 # Share of the sample interval by which samples may be off an even grid: rounding of times leaves far less.
 EVEN = 1e-3
@@ -42,7 +42,7 @@ def channels(pressure: xr.DataArray) -> tuple[Array, float]:
         )
     units = pressure.attrs.get("units", "Pa")
     if units != "Pa":
-        raise ValueError(f"pressure must be in Pa, got {units!r}")
+        raise ValueError(f"pressure must be in Pa, got {brief(units)}")
     values = pressure.values.astype(float).reshape(pressure.shape[0], -1)
     if not np.isfinite(values).all():
         raise ValueError(f"pressure must be finite, got {np.count_nonzero(~np.isfinite(values))} values that are not")
@@ -61,6 +61,7 @@ def _interval(pressure: xr.DataArray) -> float:
 
 def positions(pressure: xr.DataArray) -> Array | None:
     """Return where the listeners are [m], shape (listeners, 3), or None if the coordinates x, y, z do not say."""
+    instance("pressure", pressure, xr.DataArray)
     if not all(name in pressure.coords and pressure[name].dims == ("listener",) for name in "xyz"):
         return None
     return np.stack([pressure[name].values.astype(float) for name in "xyz"], axis=1)

@@ -9,7 +9,8 @@ import numpy as np
 import xarray as xr
 
 from ..bodies.modes import Array
-from ..checks import at_least, at_most
+from ..checks import at_least, at_most, count
+from ..records.checked import record
 from .panels import Panel
 
 DIVERGED = ("not finite", "contact unsolved", "energy created")
@@ -53,15 +54,11 @@ def pressing(run: xr.Dataset, panel: Panel) -> Pressing:
     ValueError
         If it is no record, has one sample, is not evenly sampled, diverged, holds NaN, or presses beyond the track.
     """
-    if not isinstance(run, xr.Dataset) or not {"normal_force", "contact_position", "time"} <= set(run.variables):
-        raise ValueError(
-            f"run must be a record with normal_force and contact_position, got {type(run).__name__} without"
-        )
+    run = record("run", run).transpose("time", ...)
+    record("run", run, "normal_force", "contact_position", least=2)
     if run.attrs.get("ended") in DIVERGED:
         raise ValueError(f"run must be one that can be believed, got one that ended {run.attrs['ended']!r}")
     time = run["time"].values
-    if time.size < 2:
-        raise ValueError(f"run must have at least 2 samples, got {time.size}")
     interval = float((time[-1] - time[0]) / (time.size - 1))
     if not (interval > 0.0 and np.allclose(np.diff(time), interval, rtol=1e-3, atol=0.0)):
         raise ValueError("run must be evenly sampled in rising time, got uneven times")
@@ -72,7 +69,7 @@ def pressing(run: xr.Dataset, panel: Panel) -> Pressing:
             raise ValueError(f"{name} must be finite, got {values[~np.isfinite(values)][0]} at {bad:.6g} s")
     _check_on_track(position, panel)
     before = np.concatenate([position[:, :1], position[:, :-1]], axis=1)
-    steps = int(run.attrs.get("steps_per_sample", 1_000_000))
+    steps = count("steps_per_sample", run.attrs.get("steps_per_sample", 1_000_000))
     return Pressing(float(time[0]) - interval, interval, steps, force, (before + position) / 2.0)
 
 

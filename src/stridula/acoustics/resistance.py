@@ -6,12 +6,14 @@ import numpy as np
 
 from ..bodies import ModalBeam, ModalPlate
 from ..bodies.modes import Array
-from ..checks import instance, positive
+from ..checks import at_most, instance, positive
 from .air import Air
 from .panels import Panel, panel_of
 
 # Gauss-Legendre points in a piece of a side, over which the phase turns by 2 pi at most.
 POINTS = 10
+# Wavelengths along times wavelengths across, beyond which the integral takes minutes, and is 1 in any case.
+MOST_WAVES = 40_000
 
 
 def radiation_efficiency(track: ModalBeam | ModalPlate, frequency: float | Array, air: Air | None = None) -> Array:
@@ -48,8 +50,13 @@ def radiation_efficiency(track: ModalBeam | ModalPlate, frequency: float | Array
     given = np.atleast_1d(np.asarray(frequency, dtype=float))
     if given.shape not in ((1,), panel.angular_frequency.shape):
         raise ValueError(f"frequency must be one number or {panel.angular_frequency.size}, got {given.size}")
+    longest, area = max(panel.length, panel.width), panel.length * panel.width
+    highest = air.speed * min(MOST_WAVES / longest, float(np.sqrt(MOST_WAVES / area)))
     for value in given:
-        positive("frequency", float(value))
+        if positive("frequency", float(value)) > highest:
+            raise ValueError(
+                f"frequency must be at most {at_most(highest)} Hz for a track of this size, got {float(value)!r}"
+            )
     each = np.broadcast_to(2.0 * np.pi * given / air.speed, panel.angular_frequency.shape)
     return np.array([_efficiency(panel.only([k]), float(wavenumber)) for k, wavenumber in enumerate(each)])
 

@@ -71,8 +71,8 @@ def frames(forces: Array, interval: float, length: float, lowest: float) -> Fram
     lowest : float
         Lowest tone [Hz].
     """
-    size = min(round(length / interval), forces.shape[1])
-    lags = int(np.ceil(1.0 / (lowest * interval))) + 1
+    size = round(min(length / interval, forces.shape[1]))
+    lags = int(np.ceil(min(1.0 / (lowest * interval), size))) + 1
     if size < FEWEST:
         return Frames(np.zeros(0), np.zeros(0))
     pieces = np.lib.stride_tricks.sliding_window_view(forces, size, axis=1)[:, :: max(size // 2, 1)]

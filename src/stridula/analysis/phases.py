@@ -7,13 +7,16 @@ import xarray as xr
 
 from ..bodies.modes import Array
 from ..checks import choice, positive
+from ..records import checked
 from ..records.variables import STATUS_WORDS
-from .signals import of_one_contact
+from .signals import checked_intervals, record_of_one
 
 SMOOTHING = 5e-3
 SHORTEST_STOP = 20e-3
 # Share of a sample that rounding may make of nothing.
 ROUND_OFF = 1e-9
+# Widest mean, in lengths of what it is taken of.
+WIDEST = 20
 
 
 def phases(run: xr.Dataset, status: str, smoothing: float = SMOOTHING) -> Array:
@@ -38,7 +41,7 @@ def phases(run: xr.Dataset, status: str, smoothing: float = SMOOTHING) -> Array:
     """
     choice("status", status, STATUS_WORDS)
     positive("smoothing", smoothing)
-    share = of_one_contact(run)["status_share"].values[:, STATUS_WORDS.index(status)]
+    share = record_of_one(run, "status_share")["status_share"].values[:, STATUS_WORDS.index(status)]
     time, interval = _clock(run)
     width = max(1, 2 * round(smoothing / interval / 2.0) + 1)
     prevails = moving_mean(share, width) > 0.5
@@ -65,6 +68,7 @@ def bursts(run: xr.Dataset, shortest_stop: float = SHORTEST_STOP) -> Array:
 def complete(intervals: Array, run: xr.Dataset) -> Array:
     """Return the intervals that neither end of the record cuts, shape (intervals, 2) [s]."""
     time, interval = _clock(run)
+    intervals = checked_intervals(intervals)
     inside = (intervals[:, 0] > time[0] - interval / 2.0) & (intervals[:, 1] < time[-1] - interval / 2.0)
     return intervals[inside]
 
@@ -72,7 +76,7 @@ def complete(intervals: Array, run: xr.Dataset) -> Array:
 def status_share(run: xr.Dataset, status: str, intervals: Array | None = None) -> float:
     """Return the share of the time [1] in which the contact has a status, in the intervals or the whole run."""
     choice("status", status, STATUS_WORDS)
-    share = of_one_contact(run)["status_share"].values[:, STATUS_WORDS.index(status)]
+    share = record_of_one(run, "status_share")["status_share"].values[:, STATUS_WORDS.index(status)]
     chosen = share if intervals is None else share[inside(run, intervals)]
     return float(np.mean(chosen)) if chosen.size else float("nan")
 
@@ -80,7 +84,9 @@ def status_share(run: xr.Dataset, status: str, intervals: Array | None = None) -
 def settling_time(run: xr.Dataset) -> float:
     """Return the time [s] from which the contact slides at every step to the end; NaN if it does not end sliding."""
     time, interval = _clock(run)
-    slides = of_one_contact(run)["status_share"].values[:, STATUS_WORDS.index("sliding")] >= 1.0 - ROUND_OFF
+    slides = (
+        record_of_one(run, "status_share")["status_share"].values[:, STATUS_WORDS.index("sliding")] >= 1.0 - ROUND_OFF
+    )
     if not slides[-1]:
         return float("nan")
     others = np.flatnonzero(~slides)
@@ -90,7 +96,7 @@ def settling_time(run: xr.Dataset) -> float:
 def longest_unchanged(run: xr.Dataset) -> float:
     """Return the longest time [s] during which the status does not change."""
     _, interval = _clock(run)
-    share = of_one_contact(run)["status_share"].values
+    share = record_of_one(run, "status_share")["status_share"].values
     pure = np.where(share.max(axis=1) >= 1.0 - ROUND_OFF, share.argmax(axis=1), -1)
     changes = np.flatnonzero(np.diff(pure)) + 1
     starts = np.concatenate([[0], changes])
@@ -100,10 +106,11 @@ def longest_unchanged(run: xr.Dataset) -> float:
 
 def advance(run: xr.Dataset, intervals: Array | None = None) -> float:
     """Return how far the contact point has moved along the track [m], net, in the intervals or the whole run."""
-    position, (time, _) = of_one_contact(run)["contact_position"].values, _clock(run)
+    position = record_of_one(run, "contact_position")["contact_position"].values
+    time, _ = _clock(run)
     if intervals is None:
         return float(position[-1] - position[0])
-    ends = np.interp(np.asarray(intervals), time, position)
+    ends = np.interp(checked_intervals(intervals), time, position)
     return float(np.sum(ends[:, 1] - ends[:, 0]))
 
 
@@ -112,20 +119,20 @@ def inside(run: xr.Dataset, intervals: Array) -> Array:
     time, interval = _clock(run)
     middle = time - interval / 2.0
     chosen = np.zeros(time.size, dtype=bool)
-    for first, last in intervals:
+    for first, last in checked_intervals(intervals):
         chosen |= (middle > first) & (middle < last)
     return chosen
 
 
 def moving_mean(values: Array, width: int) -> Array:
     """Return the mean over an odd number of samples about each, the first and the last one repeated beyond the ends."""
+    # Far beyond the ends there is nothing but what was repeated.
+    width = min(width, WIDEST * values.size | 1)
     sums = np.cumsum(np.pad(values, (width // 2 + 1, width // 2), mode="edge"))
     return np.asarray(sums[width:] - sums[:-width]) / width
 
 
 def _clock(run: xr.Dataset) -> tuple[Array, float]:
     """Return the times of the samples and the interval between them [s]."""
-    time = run["time"].values
-    if time.size < 2:
-        raise ValueError(f"run must have at least 2 samples, got {time.size}")
+    time = checked.record("run", run, least=2)["time"].values
     return time, float((time[-1] - time[0]) / (time.size - 1))

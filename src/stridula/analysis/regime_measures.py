@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..bodies.modes import Array
-from ..checks import positive, within
+from ..checks import at_least, positive, within
 from .heard import Frames, frames, strongest_tone
 from .phases import ROUND_OFF, SMOOTHING
 from .status_changes import (
@@ -90,8 +90,14 @@ class Thresholds:
     def __post_init__(self) -> None:
         for name in ("rest", "tonal", "rare"):
             within(name, getattr(self, name), 0.0, 1.0, ends=False)
-        for name in ("faint", "lossy", "lowest_tone", "frame", "rate"):
+        for name in ("faint", "lossy", "rate"):
             positive(name, getattr(self, name))
+        within("lowest_tone", self.lowest_tone, 1e-3, 1e6)
+        within("frame", self.frame, 1e-6, 1e4)
+        if self.rate < 2.0 * self.lowest_tone:
+            raise ValueError(
+                f"rate must be at least twice the lowest tone, {at_least(2.0 * self.lowest_tone)} Hz, got {self.rate!r}"
+            )
 
 
 @dataclass(frozen=True)
@@ -240,7 +246,7 @@ def _heard(forces: Array, interval: float, limits: Thresholds) -> Frames:
 
     A record of forces is one of means: this is the record that a lower rate would have given.
     """
-    ratio = max(1, int(1.0 / (limits.rate * interval) * (1.0 + 1e-9)))
+    ratio = max(1, int(min(1.0 / (limits.rate * interval), forces.shape[1]) * (1.0 + 1e-9)))
     end = forces.shape[1] // ratio * ratio
     means = np.asarray(sum(forces[:, i:end:ratio] for i in range(ratio)) / ratio)
     return frames(means, ratio * interval, limits.frame, limits.lowest_tone)

@@ -7,9 +7,10 @@ import math
 import numpy as np
 import xarray as xr
 
-from ..checks import within
+from ..checks import instance, within
+from ..records import checked
 from .regime_measures import BUDDING, Measures, Signals, Thresholds, measures
-from .signals import of_one_contact
+from .signals import record_of_one
 
 REGIMES = ("stable sliding", "sticking", "stick-slip", "squeal", "judder", "off the track")
 SLIDES, STICKS, SLIPS, SQUEALS, JUDDERS, LEFT = REGIMES
@@ -124,6 +125,7 @@ def regime_of(run: xr.Dataset, *, start: float | None = None, limits: Thresholds
     limits : Thresholds, optional
         The thresholds of `regime`.
     """
+    instance("limits", limits, Thresholds)
     signals = signals_of(run)
     length = signals.interval * signals.share.shape[0]
     left_aside = TRANSIENT * length if start is None else within("start", start, 0.0, length)
@@ -136,13 +138,10 @@ def regime_of(run: xr.Dataset, *, start: float | None = None, limits: Thresholds
 
 def signals_of(run: xr.Dataset) -> Signals:
     """Return the plain arrays of a record that decide its regime."""
-    held = of_one_contact(run).variables
+    held = checked.record("run", record_of_one(run, *NEEDED), least=2).variables
+    if "landings" in held:
+        checked.record("run", run, "landings")
     time = held["time"].values
-    if time.size < 2:
-        raise ValueError(f"run must have at least 2 samples, got {time.size}")
-    lacking = [name for name in NEEDED if name not in held]
-    if lacking:
-        raise ValueError(f"run must have {', '.join(NEEDED)}, got a record without {', '.join(lacking)}")
     return Signals(
         interval=float((time[-1] - time[0]) / (time.size - 1)),
         share=held["status_share"].values,

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
 
 from ..bodies.modes import Array
-from ..checks import at_most, listed
+from ..checks import at_most, brief, listed
+from ..records import checked
 
 Recorded = TypeVar("Recorded", xr.Dataset, xr.DataArray)
 
@@ -16,6 +17,7 @@ Recorded = TypeVar("Recorded", xr.Dataset, xr.DataArray)
 def samples(signal: xr.DataArray) -> tuple[Array, float]:
     """Return the values of a signal over time and their interval [s]."""
     of_one_contact(signal)
+    checked.signal("signal", signal)
     if signal.dims != ("time",) or signal.size < 2:
         raise ValueError(f"signal must have the one dimension time and at least 2 samples, got {dict(signal.sizes)}")
     time = signal["time"].values
@@ -30,7 +32,7 @@ def of_one_contact(recorded: Recorded) -> Recorded:
     ValueError
         If it has the dimension ``contact``.
     """
-    if "contact" in recorded.dims:
+    if "contact" in getattr(recorded, "dims", ()):
         names = listed(repr(str(name)) for name in recorded["contact"].values)
         kind = "run" if isinstance(recorded, xr.Dataset) else "signal"
         raise ValueError(
@@ -39,12 +41,34 @@ def of_one_contact(recorded: Recorded) -> Recorded:
     return recorded
 
 
+def record_of_one(run: xr.Dataset, *needed: str) -> xr.Dataset:
+    """Return a record of one contact that has the variables needed.
+
+    Raises
+    ------
+    ValueError
+        If it is no record, lacks a variable, or has several contacts.
+    """
+    return checked.record("run", of_one_contact(run), *needed)
+
+
+def checked_intervals(intervals: Any) -> Array:
+    """Return intervals as an array of finite starts and ends, shape (intervals, 2)."""
+    try:
+        pairs = np.asarray(intervals, dtype=float)
+    except (TypeError, ValueError):
+        pairs = np.empty(0)
+    if pairs.ndim != 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
+        raise ValueError(f"intervals must be pairs of start and end in s, got {brief(intervals)}")
+    return pairs
+
+
 def pieces(signal: xr.DataArray, values: Array, intervals: Array | None) -> list[Array]:
     """Return the values in each interval of at least 8 samples, or all of them without intervals."""
     if intervals is None:
         return [values]
     time = signal["time"].values
-    bounds = np.searchsorted(time, np.asarray(intervals))
+    bounds = np.searchsorted(time, checked_intervals(intervals))
     return [values[first:last] for first, last in bounds if last - first >= 8]
 
 

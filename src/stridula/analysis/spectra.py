@@ -6,11 +6,13 @@ import numpy as np
 import xarray as xr
 
 from ..bodies.modes import Array
-from ..checks import positive
-from .signals import blocks, pieces, samples
+from ..checks import at_most, brief, positive
+from .signals import blocks, checked_intervals, pieces, samples
 
 PERIODS = 10.0
 FINEST = 2.0
+# Sample rate [Hz] beyond which a spectrum that fine does not fit into memory.
+FASTEST = 1e8
 
 
 def spectrum(signal: xr.DataArray, intervals: Array | None = None) -> tuple[Array, Array]:
@@ -33,6 +35,8 @@ def spectrum(signal: xr.DataArray, intervals: Array | None = None) -> tuple[Arra
         Energy spectral density, in units of the signal squared times s².
     """
     values, interval = samples(signal)
+    if interval * FASTEST < 1.0:
+        raise ValueError(f"signal must be sampled at {FASTEST:g} Hz at most, got {1.0 / interval:.6g} Hz")
     chosen = pieces(signal, values, intervals)
     longest = max((piece.size for piece in chosen), default=0)
     size = 2 ** int(np.ceil(np.log2(max(longest, 1.0 / (FINEST * interval), 2))))
@@ -109,7 +113,9 @@ def tones(
 
     positive("prominence", prominence)
     frequency, energy = spectrum(signal, intervals)
-    width = max(1, round(positive("resolution", resolution) / frequency[1]))
+    if positive("resolution", resolution) > frequency[-1]:
+        raise ValueError(f"resolution must be at most {at_most(float(frequency[-1]))} Hz, got {brief(resolution)}")
+    width = max(1, round(resolution / frequency[1]))
     smooth = np.convolve(energy, np.full(width, 1.0 / width), "same")
     level = 10.0 * np.log10(smooth / max(float(smooth.max()), 1e-300) + 1e-30)
     peaks, _ = find_peaks(level, prominence=prominence)
@@ -130,8 +136,13 @@ def envelope(signal: xr.DataArray, window: float = 5e-3) -> Array:
 
 
 def envelope_correlation(first: xr.DataArray, second: xr.DataArray, window: float = 5e-3) -> float:
-    """Return the correlation coefficient [1] of the envelopes of two signals on one time axis."""
-    return float(np.corrcoef(envelope(first, window), envelope(second, window))[0, 1])
+    """Return the correlation coefficient [1] of the envelopes of two signals on one time axis, NaN of a steady one."""
+    one, other = envelope(first, window), envelope(second, window)
+    if one.shape != other.shape:
+        raise ValueError(f"second must have as many windows as first, {one.size}, got {other.size}")
+    if one.size < 2 or not np.ptp(one) > 0.0 or not np.ptp(other) > 0.0:
+        return float("nan")
+    return float(np.corrcoef(one, other)[0, 1])
 
 
 def _peaks(values: Array) -> Array:
@@ -146,5 +157,5 @@ def _median_length(signal: xr.DataArray, intervals: Array | None) -> float:
     if intervals is None:
         values, interval = samples(signal)
         return values.size * interval
-    lengths = np.diff(np.asarray(intervals), axis=1)
+    lengths = np.diff(checked_intervals(intervals), axis=1)
     return float(np.median(lengths)) if lengths.size else 1.0

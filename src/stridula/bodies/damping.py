@@ -144,7 +144,7 @@ def ratio(name: str, value: Any) -> float:
         If it is not from 0 to 1, 1 excluded.
     """
     if non_negative(name, value) >= 1.0:
-        raise ValueError(f"{name} must be below 1 (critical), got {value!r}")
+        raise ValueError(f"{name} must be below 1 (critical), got {brief(value)}")
     return float(value)
 
 

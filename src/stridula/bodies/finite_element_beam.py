@@ -20,6 +20,7 @@ from .finite_elements import (
     element_stiffness,
 )
 from .modes import Array, BodyPoint, Modes
+from .ordinary import of_ordinary_size
 from .sections import Circle, Material, Rectangle, Section
 
 LARGEST_ELEMENTS = 500
@@ -195,6 +196,7 @@ def _reduced(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
     return (_small if beam.elements <= FEW_ELEMENTS else _large)(beam, held_x)
 
 
+@of_ordinary_size("material, section and length")
 def _reduce(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
     section, material = beam.section, beam.material
     le = beam.length / beam.elements

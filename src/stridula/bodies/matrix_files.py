@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import itertools
+import math
 import os
 import zipfile
 from collections import Counter
@@ -17,12 +18,17 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
-from ..checks import at_least, listed
+from ..checks import at_least, in_one_line, listed
 from ..disk import one_line, write
+from .matlab import read_matlab
 from .modes import Array
 
 LARGEST_FILE = 2 * 1024**3
 LARGEST_SIZE = 4000
+# Readers of the headers of NumPy's arrays, by version; of version 3 are arrays with named fields only.
+HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
+LONGEST_HEADER = 10_000
+VERSION_5 = b"MATLAB 5.0"
 
 # Abaqus marks a constrained degree of freedom by 1e36 on the diagonal of the stiffness; no body is as stiff as this.
 PENALTY = 1e30
@@ -169,7 +175,7 @@ def _kind(path: str | os.PathLike[str]) -> str:
         return "npz"
     if head.startswith(b"MATLAB 7.3") or head.startswith(b"\x89HDF"):
         raise ValueError(f"cannot read {os.fspath(path)!r}: a MATLAB file of version 7.3, save it with '-v7'")
-    if head.startswith(b"MATLAB 5.0") or Path(path).suffix.lower() == ".mat":
+    if head.startswith(VERSION_5) or Path(path).suffix.lower() == ".mat":
         return "mat"
     return "matrix market" if head.startswith(b"%%MatrixMarket") else "abaqus"
 
@@ -177,11 +183,37 @@ def _kind(path: str | os.PathLike[str]) -> str:
 def _npz(path: str | os.PathLike[str]) -> dict[str, Any]:
     with zipfile.ZipFile(path) as archive:
         unpacked = sum(entry.file_size for entry in archive.infolist())
-    if unpacked > LARGEST_FILE:
-        raise ValueError(f"{at_least(unpacked / 1024**3, 3)} GiB when unpacked, at most 2 GiB are read")
+        if unpacked > LARGEST_FILE:
+            raise ValueError(f"{at_least(unpacked / 1024**3, 3)} GiB when unpacked, at most 2 GiB are read")
+        entries = _arrays_in(archive)
+        for name, entry in entries.items():
+            _check_header(name, archive, entry)
     with np.load(path, allow_pickle=False) as file:
-        wanted = [name for name in file.files if name in (*SYNONYMS, *MATRICES, *OTHERS) or name.startswith(POINT)]
-        return _by_words({name: file[name] for name in wanted})
+        return _by_words({name: file[name] for name in entries})
+
+
+def _arrays_in(archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
+    """Return where the arrays that have a meaning lie, by name."""
+    entries = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
+    known = (*SYNONYMS, *MATRICES, *OTHERS)
+    return {name: entry for name, entry in entries.items() if name in known or name.startswith(POINT)}
+
+
+def _check_header(name: str, archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> None:
+    """Raise ValueError unless the header of an array announces numbers, or a text, that its file holds."""
+    with archive.open(entry) as file:
+        try:
+            version = np.lib.format.read_magic(file)
+        except ValueError:
+            raise ValueError(f"{name} must be an array of numbers, got other bytes") from None
+        if version not in HEADERS:
+            raise ValueError(f"{name} must be an array of numbers, got one of version {version} of its format")
+        shape, _, kind = HEADERS[version](file, max_header_size=LONGEST_HEADER)
+    if kind.kind not in "fiubcSU":
+        raise ValueError(f"{name} must be an array of numbers, got one of kind {kind}")
+    check_size(name, max(shape, default=0))
+    if math.prod(shape) * kind.itemsize > entry.file_size:
+        raise ValueError(f"{name} must hold the {math.prod(shape)} numbers that its header says, it holds less")
 
 
 def _by_words(held: Mapping[str, Any]) -> dict[str, Any]:
@@ -205,17 +237,32 @@ def _equal(one: Any, other: Any) -> bool:
 
 
 def _mat(path: str | os.PathLike[str]) -> dict[str, Any]:
-    shapes = {name: shape for name, shape, _ in scipy.io.whosmat(os.fspath(path), appendmat=False)}
-    wanted = [name for name in shapes if name in (*SYNONYMS, *MATRICES, "translation") or name.startswith(POINT)]
-    for name in wanted:
-        check_size(name, max(shapes[name], default=0))
-    held = scipy.io.loadmat(os.fspath(path), appendmat=False, variable_names=wanted)
-    arrays = _by_words({name: held[name] for name in wanted})
+    with open(path, "rb") as file:
+        # A file of version 4 begins with a number below 5000.
+        is_of_version_5 = 0 not in file.read(4)
+    arrays = _by_words((read_matlab if is_of_version_5 else _of_version_4)(path, _is_matrix, _check_shape))
     damping = arrays.get("damping")
     if isinstance(damping, np.ndarray) and 1 in damping.shape and damping.shape != arrays["mass"].shape:
         # MATLAB keeps numbers and lists as matrices: one number is a ratio, a row or a column a list of them.
         arrays["damping"] = damping.ravel() if damping.size > 1 else damping.ravel()[0]
     return arrays
+
+
+def _is_matrix(name: str) -> bool:
+    return name in (*SYNONYMS, *MATRICES, "translation") or name.startswith(POINT)
+
+
+def _check_shape(name: str, shape: tuple[int, ...]) -> None:
+    check_size(name, max(shape, default=0))
+
+
+def _of_version_4(path: str | os.PathLike[str], is_wanted: Any, check_shape: Any) -> dict[str, Any]:
+    shapes = {name: shape for name, shape, _ in scipy.io.whosmat(os.fspath(path), appendmat=False)}
+    wanted = [name for name in shapes if is_wanted(name)]
+    for name in wanted:
+        check_shape(name, shapes[name])
+    held = scipy.io.loadmat(os.fspath(path), appendmat=False, variable_names=wanted)
+    return {name: held[name] for name in wanted}
 
 
 def _one_matrix(name: str, path: str | os.PathLike[str]) -> _Entries:
@@ -403,5 +450,4 @@ def _whole(path: str | os.PathLike[str]) -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise ValueError(f"cannot read {os.fspath(path)!r}: {reason}") from error
+        raise ValueError(f"cannot read {os.fspath(path)!r}: {in_one_line(error)}") from error

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse
 
-from ..checks import instance
+from ..checks import brief, instance
 from .damping import DampingLaw, checked_damping, ratio
 from .matrix_files import check_size
 from .modes import Array
@@ -56,6 +56,9 @@ def check_damping(matrix: Array) -> None:
 
 def numbers(name: str, value: Any) -> Array:
     """Return `value` as an array of floats of its own, or raise ValueError if it is not one of real numbers."""
+    if hasattr(value, "check_format"):
+        # To unfold one whose indices lie outside would write outside of its memory.
+        value.check_format(full_check=True)
     try:
         array = value.toarray() if scipy.sparse.issparse(value) else np.array(value)
     except ValueError as error:
@@ -122,7 +125,7 @@ def points_of(points: Any, size: int) -> dict[str, Array]:
     rows = {}
     for name, value in points.items():
         if not isinstance(name, str) or not name:
-            raise ValueError(f"points must have names that are text, got {name!r}")
+            raise ValueError(f"points must have names that are text, got {brief(name)}")
         rows[name] = point_rows(f"points[{name!r}]", value, size)
         rows[name].flags.writeable = False
     return rows
@@ -136,7 +139,7 @@ def point_rows(word: str, value: Any, size: int) -> Array:
     for row, number in zip(rows, value, strict=True):
         if number is not None:
             if isinstance(number, bool) or not 0 <= number < size:
-                raise ValueError(f"{word} must name degrees of freedom from 0 to {size - 1}, got {number!r}")
+                raise ValueError(f"{word} must name degrees of freedom from 0 to {size - 1}, got {brief(number)}")
             row[int(number)] = 1.0
     return rows
 

@@ -11,6 +11,7 @@ import numpy as np
 from ..checks import at_least, count, instance, positive, within
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .modes import Array, BodyPoint, Modes
+from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .sections import Circle, Material, Rectangle, Section
 
 
@@ -55,6 +56,7 @@ class ModalBeam:
     cutoff: float | None = None
     name: str = ""
 
+    @of_ordinary_size("material, section and length")
     def __post_init__(self) -> None:
         instance("material", self.material, Material)
         instance("section", self.section, (Rectangle, Circle, Section))
@@ -65,11 +67,13 @@ class ModalBeam:
         instance("name", self.name, str)
         if self.cutoff is not None:
             positive("cutoff", self.cutoff)
+            check_first_modes((self._bending(1), self._axial(1)), self.cutoff)
             if self.harmonics[0] < 1:
                 first = at_least(float(self._bending(1)) / (2 * np.pi))
                 raise ValueError(
                     f"cutoff must leave at least one bending mode (first at {first} Hz), got {self.cutoff!r} Hz"
                 )
+        check_mode_count(sum(self.harmonics), self.cutoff)
         check_damping_count(self.damping, sum(self.harmonics))
 
     @property
@@ -148,6 +152,7 @@ class ModalBeam:
 
 
 @lru_cache(maxsize=16)
+@of_ordinary_size("material, section and length")
 def _modes(beam: ModalBeam) -> Modes:
     bending, axial = (np.arange(1, n + 1) for n in beam.harmonics)
     angular = np.concatenate([beam._bending(bending), beam._axial(axial)])

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import at_least, at_most, count, finite, instance, positive, within
+from ..checks import at_least, at_most, brief, count, finite, instance, positive, within
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .modes import Array, BodyPoint, Modes
+from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .plane_stress import PlaneStress, lowest, plane_stress, rigid
 from .sections import Material
 
@@ -113,6 +114,7 @@ class ModalPlate:
     in_plane: bool = False
     in_plane_modes: tuple[int, int] = (6, 6)
 
+    @of_ordinary_size("material, thickness, length and width")
     def __post_init__(self) -> None:
         instance("material", self.material, Material)
         for side in ("thickness", "length", "width"):
@@ -126,6 +128,7 @@ class ModalPlate:
         object.__setattr__(self, "damping", checked_damping(self.damping))
         instance("name", self.name, str)
         if self.cutoff is not None:
+            check_first_modes((2.0 * math.pi * self._frequency(1, 1),), positive("cutoff", self.cutoff))
             self._check_cutoff(positive("cutoff", self.cutoff) * (1.0 + 1e-12))
         check_damping_count(self.damping, sum(self.harmonics))
         if self.line is not None:
@@ -351,7 +354,7 @@ def _pair(
         first, second = values if isinstance(values, (tuple, list)) else ()
         return check(name, first), check(name, second)
     except ValueError:
-        raise ValueError(f"{name} must be {words}, got {values!r}") from None
+        raise ValueError(f"{name} must be {words}, got {brief(values)}") from None
 
 
 def _ends(plate: ModalPlate, line: Line) -> tuple[float, float]:
@@ -372,6 +375,7 @@ def _numbers(plate: ModalPlate) -> Array:
         # Half-waves that one side alone would have at the cut-off.
         waves = math.sqrt(2.0 * plate.cutoff / (math.pi * math.sqrt(plate.rigidity / plate.surface_density)))
         most = (int(waves * plate.length) + 1, int(waves * plate.width) + 1)
+    check_mode_count(math.prod(most), plate.cutoff)
     m, n = (numbers.ravel() for numbers in np.meshgrid(*(np.arange(1, k + 1) for k in most), indexing="ij"))
     frequency = plate._frequency(m, n)
     order = np.argsort(frequency, kind="stable")
@@ -390,6 +394,7 @@ def _in_plane(plate: ModalPlate) -> PlaneStress:
 
 
 @lru_cache(maxsize=16)
+@of_ordinary_size("material, thickness, length and width")
 def _modes(plate: ModalPlate) -> Modes:
     m, n = plate.numbers.T
     # The integral of rho h sin sin over the plate: only odd half-waves move on average.

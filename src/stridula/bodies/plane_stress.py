@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .modes import Array
+from .ordinary import check_mode_count
 from .sections import Material
 
 
@@ -55,6 +56,7 @@ def plane_stress(
     sides, (longitudinal, shear) = np.array([length, width]), speeds(material)
     if cutoff is not None:
         most = (int(2.0 * cutoff * length / shear) + 1, int(2.0 * cutoff * width / shear) + 1)
+    check_mode_count(2 * (most[0] + 1) * (most[1] + 1), cutoff)
     m, n = (numbers.ravel() for numbers in np.meshgrid(*(np.arange(k + 1) for k in most), indexing="ij"))
     # A sheet held along its normals does not move as a whole.
     numbers = np.stack([m, n], axis=1)[1:]

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import choice, instance, positive
+from ..checks import brief, choice, instance, positive
 from .modes import Array, BodyPoint, Modes
 
 POINTS = ("centre",)
@@ -37,7 +37,7 @@ class PointMass:
 
     def __post_init__(self) -> None:
         if positive("mass", self.mass) < SMALLEST_MASS:
-            raise ValueError(f"mass must be at least {SMALLEST_MASS:g}, got {self.mass!r}")
+            raise ValueError(f"mass must be at least {SMALLEST_MASS:g}, got {brief(self.mass)}")
         instance("name", self.name, str)
 
     @property
@@ -79,5 +79,5 @@ class PointMass:
         """Return the modal coordinates of a displacement [m] or a velocity [m/s] along (x, y), shape (2,)."""
         values = np.asarray(vector)
         if values.dtype.kind not in "iuf" or values.shape != (2,) or not np.isfinite(values).all():
-            raise ValueError(f"vector must be two finite numbers, along x and y, got {vector!r}")
+            raise ValueError(f"vector must be two finite numbers, along x and y, got {brief(vector)}")
         return np.sqrt(self.mass) * values

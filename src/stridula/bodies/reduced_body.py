@@ -28,6 +28,7 @@ from .matrix_input import (
     symmetric,
 )
 from .modes import Array, BodyPoint, Modes
+from .ordinary import of_ordinary_size
 from .reduction import Reduction, reduce_body
 
 FILES = ("path", "mass", "stiffness")
@@ -78,6 +79,7 @@ class ReducedBody:
     cutoff: float | None = None
     name: str = ""
 
+    @of_ordinary_size("mass, stiffness, damping and points")
     def __post_init__(self) -> None:
         instance("name", self.name, str)
         if self.cutoff is not None:
@@ -242,6 +244,7 @@ class ReducedBody:
             raise ValueError("held_x must be False for a ReducedBody: it has no driven end, got True")
         return self._reduction.modes
 
+    @of_ordinary_size("points")
     def trace(self, position: str, held_x: bool = False) -> Array:
         """Return the rows that give the displacement (x, y) of a point from the modes, shape (2, modes)."""
         self.check_position(position)

@@ -70,6 +70,7 @@ class Rectangle:
     def __post_init__(self) -> None:
         positive("width", self.width)
         positive("height", self.height)
+        _check_ordinary("width and height", self)
 
     @property
     def area(self) -> float:
@@ -96,6 +97,7 @@ class Circle:
 
     def __post_init__(self) -> None:
         positive("diameter", self.diameter)
+        _check_ordinary("diameter", self)
 
     @property
     def area(self) -> float:
@@ -106,3 +108,13 @@ class Circle:
     def second_moment(self) -> float:
         """Second moment of area [m⁴], ``pi diameter⁴ / 64``."""
         return math.pi * self.diameter**4 / 64.0
+
+
+def _check_ordinary(sides: str, section: Rectangle | Circle) -> None:
+    """Raise ValueError where sides are so small or so large that numbers cannot hold what follows from them."""
+    try:
+        is_ordinary = 0.0 < section.area < math.inf and 0.0 < section.second_moment < math.inf
+    except OverflowError:
+        is_ordinary = False
+    if not is_ordinary:
+        raise ValueError(f"{sides} must be of ordinary size, got {section}")

@@ -116,13 +116,13 @@ def simulate_many(
     if not isinstance(systems, Sequence) or isinstance(systems, str):
         raise ValueError(f"systems must be a list of systems, got {brief(systems)}")
     if reduce is not None and not callable(reduce):
-        raise ValueError(f"reduce must be a function of a record, got {reduce!r}")
+        raise ValueError(f"reduce must be a function of a record, got {brief(reduce)}")
     if workers is not None:
         count("workers", workers)
     if not isinstance(watchers, Sequence):
         raise ValueError(f"watchers must be a list of callables, got {brief(watchers)}")
     if not isinstance(device, str) or device not in DEVICES:
-        raise ValueError(f"device must be one of {', '.join(DEVICES)}, got {device!r}")
+        raise ValueError(f"device must be one of {', '.join(DEVICES)}, got {brief(device)}")
     choice("errors", errors, ("raise", "return"))
     if device == "cuda":
         require_cuda()

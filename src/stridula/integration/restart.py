@@ -29,6 +29,8 @@ from .timing import Timing
 STATEFUL = tuple(law.law for law in LAWS if law.state_units)
 STATE = ("modal", "remainder", "carried", "energies")
 ATTRIBUTES = ("ended", "scenario", "scheme", "step", "steps_per_sample", "last_step", "initial_energy")
+# Beyond it a state overflows in the units of the march.
+LARGEST = 1e100
 OTHER_VERSION = "a record of another version runs again, but cannot be continued"
 
 
@@ -62,7 +64,7 @@ def state_of(
         )
     for name, value in (("scheme", scheme.name), ("step", timing.step), ("steps_per_sample", timing.ratio)):
         if attributes[name] != value:
-            raise ValueError(f"start must have the same {name} as this run, {value!r}, got {attributes[name]!r}")
+            raise ValueError(f"start must have the same {name} as this run, {value!r}, got {brief(attributes[name])}")
     modes, columns = (start[name].shape[-1:] for name in ("state_modal", "state_raw"))
     if modes != (arrays.mode_count,):
         raise ValueError(
@@ -70,6 +72,7 @@ def state_of(
         )
     if columns != (len(probes),):
         raise ValueError(f"start must have the same number of probes, {len(probes)}, got {_count(columns)}")
+    instance("start.scenario", attributes["scenario"], str)
     before, now = (tomllib.loads(text) for text in (attributes["scenario"], scenario_toml(system, probes, {})))
     knows_motion = "state_motion" in start
     _check_frozen(_frozen(before, knows_motion), _frozen(now, knows_motion))
@@ -116,7 +119,7 @@ def _check_state(start: xr.Dataset, arrays: Assembly, timing: Timing, probes: in
                 f"start must have a state_{name} of shape {shape}, as this version keeps it, got {values.shape}: "
                 f"{OTHER_VERSION}"
             )
-        if values.dtype.kind not in "fiu" or not np.isfinite(values).all():
+        if values.dtype.kind not in "fiu" or not (np.abs(values) < LARGEST).all():
             raise ValueError(f"start must have a finite state_{name}, got one that is not")
 
 

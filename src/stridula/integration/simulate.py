@@ -11,6 +11,7 @@ import xarray as xr
 from .._kernels.layout import COLUMNS, ENERGIES
 from ..assembly import Assembly, assemble
 from ..bodies import Track
+from ..bodies.ordinary import of_ordinary_size
 from ..checks import at_least, at_most, brief, instance, positive
 from ..records import Acceleration, Probe
 from ..system import System
@@ -160,6 +161,7 @@ class Asked:
             return _sampled(self.common_step, round(1.0 / (self.sample_rate * self.common_step)), self.duration)
         return choose_timing(arrays.flat, self.scheme, self.duration, self.step, self.sample_rate)
 
+    @of_ordinary_size("system")
     def run(self, arrays: Arrays, start: xr.Dataset | None = None, title: str = "") -> Run:
         """Return the run of a system, ready to march."""
         timing = self.timing(arrays)

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from ..disk import write
+from ..checks import instance
+from ..disk import check_path, write
 
 
 def save(figure: Figure, path: str | Path) -> None:
@@ -20,6 +21,8 @@ def save(figure: Figure, path: str | Path) -> None:
     OSError
         If the file cannot be written.
     """
+    instance("figure", figure, Figure)
+    check_path("path", path)
     kind = Path(path).suffix.lower().removeprefix(".")
     image = io.BytesIO()
     figure.savefig(image, format=kind)

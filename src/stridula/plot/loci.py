@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..bodies.modes import Array
-from ..checks import instance, listed
+from ..checks import brief, instance, listed
 from .colours import LINE, LINES
 
 UNSTABLE = LINES[1]
@@ -47,6 +47,8 @@ def root_loci(loci: xr.Dataset, critical: Sequence[xr.Dataset] = ()) -> Figure:
     lacking = [name for name in ("frequency", "growth_rate", "unstable", "equilibrium") if name not in loci]
     if lacking or loci["equilibrium"].ndim != 1:
         raise ValueError(f"loci must be what root_loci returned, got {listed(map(str, loci.data_vars))}")
+    if not isinstance(critical, Sequence) or not all(map(_is_critical, critical)):
+        raise ValueError(f"critical must be a list of what critical_value returned, got {brief(critical)}")
     key = str(loci["equilibrium"].dims[0])
     figure = Figure(figsize=(8.0, 7.0), layout="constrained", dpi=120)
     above, below = figure.subplots(2, 1, sharex=True)
@@ -65,6 +67,10 @@ def root_loci(loci: xr.Dataset, critical: Sequence[xr.Dataset] = ()) -> Figure:
     present = set(loci["equilibrium"].values)
     _legend(above, [kind for kind in BANDS if kind in present])
     return figure
+
+
+def _is_critical(one: object) -> bool:
+    return isinstance(one, xr.Dataset) and {"value", "frequency"} <= set(one.variables) and "beyond" in one.attrs
 
 
 def _draw_modes(axes: Axes, loci: xr.Dataset, key: str, name: str) -> None:

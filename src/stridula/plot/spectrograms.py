@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from scipy.signal import ShortTimeFFT
 from scipy.signal.windows import hann
 
-from ..analysis.signals import of_one_contact
+from ..analysis.signals import record_of_one
 from ..bodies.modes import Array
 from ..checks import bounds, positive
 from .sounds import Reference, one_signal, reference
@@ -85,7 +85,7 @@ def spectrogram(
     middle.set_ylabel("frequency [kHz]")
     figure.colorbar(drawn, ax=middle, label=f"level [{reference(signal).words}]", pad=0.01)
     if run is not None:
-        _draw_contact(panels[0], panels[2], of_one_contact(run))
+        _draw_contact(panels[0], panels[2], record_of_one(run, "normal_force", "status_share"))
     panels[-1].set_xlim(start, start + (values.size - 1) * interval)
     panels[-1].set_xlabel("time [s]")
     words = title if title is not None else run.attrs.get("title", "") if run is not None else ""

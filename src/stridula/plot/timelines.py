@@ -10,6 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..bodies.modes import Array
+from ..checks import brief, finite, listed
+from ..records.checked import record
 from ..records.variables import STATUS_WORDS
 from .colours import LINES, STATUS_COLOURS
 
@@ -45,13 +47,17 @@ def timeline(
     ValueError
         If a variable is not in the run, or nothing was recorded in the span.
     """
+    record("run", run)
+    if isinstance(variables, str) or not isinstance(variables, Sequence) or not variables:
+        raise ValueError(f"variables must be a list of names, got {brief(variables)}")
     missing = [name for name in variables if name not in run or "time" not in run[name].dims]
     if missing:
-        known = ", ".join(str(name) for name in run.data_vars if "time" in run[name].dims)
-        raise ValueError(f"variables must be recorded over time in the run ({known}), got {missing[0]!r}")
-    shown = run.sel(time=slice(*span)) if span is not None else run
+        known = listed(str(name) for name in run.data_vars if "time" in run[name].dims)
+        raise ValueError(f"variables must be recorded over time in the run ({known}), got {brief(missing[0])}")
+    record("run", run, *variables, *(["status_share"] if "status" in variables else []))
+    shown = run if span is None else run.sel(time=slice(*_ends(span)))
     if shown.sizes["time"] < 2:
-        raise ValueError(f"span must hold at least 2 samples of the run, got {span!r}")
+        raise ValueError(f"span must hold at least 2 samples of the run, got {brief(span)}")
     ribbons = shown.sizes.get("contact", 1)
     heights = [0.15 + 0.3 * ribbons if name == "status" else 1.0 for name in variables]
     figure = Figure(figsize=(9.0, 1.2 + 2.4 * sum(heights)), layout="constrained", dpi=120)
@@ -66,8 +72,15 @@ def timeline(
 
 def overview(run: xr.Dataset) -> Figure:
     """Draw trajectory, forces, status and the first acceleration probe of a run."""
+    record("run", run)
     names = ["contact_position", "normal_force", "tangential_force", "status", "acceleration"]
     return timeline(run, [name for name in names if name in run])
+
+
+def _ends(span: object) -> tuple[float, float]:
+    if not isinstance(span, Sequence) or isinstance(span, str) or len(span) != 2:
+        raise ValueError(f"span must be a start and an end in s, got {brief(span)}")
+    return finite("span[0]", span[0]), finite("span[1]", span[1])
 
 
 def draw_line(axes: Axes, run: xr.Dataset, name: str) -> None:

@@ -10,7 +10,8 @@ import numpy as np
 import xarray as xr
 
 from ..bodies.modes import Array
-from ..checks import instance, listed, non_negative
+from ..checks import instance, listed, non_negative, positive
+from .checked import check_times
 from .export import Column, columns
 from .variables import ENERGY, SOLVE, STATUS, described
 
@@ -95,7 +96,8 @@ def _common(a: xr.Dataset, b: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
             raise ValueError(f"{name} must be a record of simulate, got variables {listed(map(str, record))}")
         if not record.sizes["time"]:
             raise ValueError(f"{name} must have samples to compare, got a record without any")
-        intervals.append(float(record.attrs["sample_interval"]))
+        check_times(name, record["time"])
+        intervals.append(positive(f"{name}.sample_interval", record.attrs["sample_interval"]))
         numbers.append(np.rint(record["time"].values / intervals[-1]).astype(np.int64))
     if abs(intervals[1] - intervals[0]) > 1e-9 * intervals[0]:
         raise ValueError(f"b must have the sample interval of a, {intervals[0]!r} s, got {intervals[1]!r} s")
@@ -142,7 +144,8 @@ def _range(values: Array) -> float:
 
 
 def _rms(values: Array) -> float:
-    return float(np.sqrt(np.nanmean(np.square(values))))
+    largest = _largest(values) or 1.0
+    return largest * float(np.sqrt(np.nanmean(np.square(values / largest))))
 
 
 def _statistic(measure: Any, values: Array) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+from collections.abc import Hashable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,8 +15,9 @@ import scipy.io
 import xarray as xr
 
 from ..bodies.modes import Array
-from ..checks import at_least, instance, listed
-from ..disk import check_writable, write
+from ..checks import at_least, instance
+from ..disk import check_writable, named, write
+from .checked import check_real, record
 
 SUFFIXES = (".csv", ".mat")
 # What MATLAB's version 5 files can hold of one variable, and in one name.
@@ -67,22 +69,24 @@ class Column:
 
 def columns(run: xr.Dataset) -> list[Column]:
     """Return every variable of a record over time, one column for each contact, probe and status."""
-    instance("run", run, xr.Dataset)
-    if "time" not in run.coords:
-        raise ValueError(
-            f"run must be a record with the coordinate time, got the coordinates {listed(map(str, run.coords))}"
-        )
+    record("run", run)
     found = []
     for name, variable in run.data_vars.items():
         if "time" not in variable.dims:
             continue
+        check_real("run", str(name), variable)
         ordered = variable.transpose("time", ...)
         units = str(variable.attrs.get("units", "1"))
         for places in np.ndindex(ordered.shape[1:]):
             chosen = zip(ordered.dims[1:], places, strict=True)
-            labels = tuple(str(run[word].values[k]) if word in run.coords else str(k) for word, k in chosen)
+            labels = tuple(str(run[word].values[k]) if _names(run, word) else str(k) for word, k in chosen)
             found.append(Column(str(name), labels, units, ordered.values[(slice(None), *places)]))
     return found
+
+
+def _names(run: xr.Dataset, dimension: Hashable) -> bool:
+    """Return whether there is a name for each place along a dimension."""
+    return dimension in run.coords and run[dimension].dims == (dimension,)
 
 
 def export(run: xr.Dataset, path: str | Path) -> None:
@@ -110,7 +114,7 @@ def export(run: xr.Dataset, path: str | Path) -> None:
     instance("path", path, (str, Path))
     kind = Path(path).suffix.lower()
     if kind not in SUFFIXES:
-        raise ValueError(f"path must end in {' or '.join(SUFFIXES)}, got {str(path)!r}")
+        raise ValueError(f"path must end in {' or '.join(SUFFIXES)}, got {named(path)}")
     table = columns(run)
     check_writable(path)
     write(path, _csv(run, table) if kind == ".csv" else _mat(run))

@@ -11,8 +11,10 @@ from typing import Any
 import h5py
 import numpy as np
 import xarray as xr
+from h5netcdf.utils import CompatibilityError
 
-from ..disk import check_writable, read, write
+from ..checks import in_one_line, instance
+from ..disk import check_writable, named, read, write
 
 MAGIC = b"\x89HDF\r\n\x1a\n"
 
@@ -32,13 +34,17 @@ def save(run: xr.Dataset, path: str | Path) -> None:
     OSError
         If the file cannot be written; nothing half-written is left under its name.
     """
+    instance("run", run, xr.Dataset)
     check_writable(path)
     plain = run.drop_encoding()
     numbers = [name for name, values in plain.variables.items() if values.dtype.kind in "fi" and values.size]
     encoding = {name: {"zlib": True, "shuffle": True, "complevel": 1} for name in numbers if plain[name].ndim}
     # Built in memory: on a full disk the HDF5 library brings the process down instead of raising.
     with _locks_of_this_process():
-        content = plain.to_netcdf(engine="h5netcdf", encoding=encoding)
+        try:
+            content = plain.to_netcdf(engine="h5netcdf", encoding=encoding)
+        except (TypeError, ValueError, NotImplementedError, CompatibilityError) as error:
+            raise ValueError(f"run must hold what NetCDF can keep, got other things: {in_one_line(error)}") from error
     write(path, content)
 
 
@@ -76,7 +82,7 @@ def scenario_of(path: str | Path) -> tuple[str, str]:
         with _readable(path), h5py.File(path, "r") as file:
             attributes = {name: file.attrs[name] for name in ("title", "scenario") if name in file.attrs}
     if not isinstance(attributes.get("scenario"), str):
-        raise ValueError(f"path must be a record that stridula wrote, got {str(path)!r}")
+        raise ValueError(f"path must be a record that stridula wrote, got {named(path)}")
     title = attributes.get("title")
     return (title if isinstance(title, str) else ""), attributes["scenario"]
 
@@ -102,4 +108,4 @@ def _readable(path: str | Path) -> Iterator[None]:
     try:
         yield
     except (OSError, RuntimeError, KeyError, ValueError) as error:
-        raise ValueError(f"path must be a whole record, got the damaged {str(path)!r}: {error}") from error
+        raise ValueError(f"path must be a whole record, got the damaged {named(path)}: {in_one_line(error)}") from error

@@ -26,9 +26,11 @@ from ..bodies import (
     SampledDamping,
     Section,
 )
-from ..checks import listed, suggestion
+from ..bodies.ordinary import ORDINARY
+from ..checks import brief, listed, suggestion
 from ..connections import Dashpot, Spring
 from ..contact import LAWS, PointContact, RigidTrack
+from ..disk import is_there
 from ..drives import Drive, Force, Gravity, ImposedVelocity, InitialEquilibrium, InitialState, InitialVelocity
 from ..integration import GaussSeidel
 from ..records import Acceleration, Displacement, Probe, Reaction, Velocity
@@ -192,8 +194,8 @@ class Builder:
     def _reduced(self, path: Place, table: Tables) -> Any:
         files = {key: table[key] for key in ("file", "mass", "stiffness", "damping") if isinstance(table.get(key), str)}
         for key, file in files.items():
-            if Path(file).exists() and not Path(file).is_file():
-                self.problems.append(f"{self.words((*path, key))} must be a file, got {file!r}")
+            if is_there(file) and not Path(file).is_file():
+                self.problems.append(f"{self.words((*path, key))} must be a file, got {brief(file)}")
                 return None
         with self._within(*path):
             if "file" in table or {"mass", "stiffness"} & set(files):
@@ -207,6 +209,8 @@ class Builder:
     def _beam(self, path: Place, kind: Callable[..., Any], given: Tables) -> Any:
         table = given | _damping(given)
         section = dict(table.pop("section"))
+        shape: Any = None
+        material: Any = None
         with self._within(*path, "section"):
             shape = SECTIONS[section.pop("shape")](**section)
         with self._within(*path, "material"):
@@ -215,6 +219,7 @@ class Builder:
             return kind(material, shape, **table)
 
     def _plate(self, path: Place, table: Tables) -> Any:
+        material: Any = None
         with self._within(*path, "material"):
             material = Material(**table.pop("material"))
         if table.get("line") is not None:
@@ -249,7 +254,9 @@ class Builder:
         if kind in TRACKS:
             body = self.bodies[table["body"]]
             if not isinstance(body, TRACKS[kind]):
-                self.problems.append(f"{self.words((*path, 'body'))} must be a modal {kind}, got {table['body']!r}")
+                self.problems.append(
+                    f"{self.words((*path, 'body'))} must be a modal {kind}, got {brief(table['body'])}"
+                )
             return body
         for name in ("history", "normal_history"):
             if table.get(name) is not None:
@@ -346,7 +353,7 @@ class Builder:
         except ValueError as error:
             key, words = self.words(path), str(error)
             problem = words.replace("position", key, 1) if words.startswith("position") else ""
-            self.problems.append(problem or f"{key} must be {' or '.join(names)} or a position, got {place!r}")
+            self.problems.append(problem or f"{key} must be {' or '.join(names)} or a position, got {brief(place)}")
         return None
 
     @contextmanager
@@ -358,7 +365,7 @@ class Builder:
         except (OverflowError, ZeroDivisionError):
             self.problems.append(out_of_range(self.words(path)))
         except (ValueError, OSError) as error:
-            if NOT_FINITE in str(error):
+            if overflows(error):
                 self.problems.append(out_of_range(self.words(path)))
                 return
             if len(self.problems) == known and "got None" not in str(error):
@@ -379,6 +386,11 @@ class Builder:
             raise ScenarioError(self.problems)
 
 
+def overflows(error: Exception) -> bool:
+    """Return whether an error says that numbers are too large or too small to go on with."""
+    return NOT_FINITE in str(error) or ORDINARY in str(error)
+
+
 def out_of_range(key: str) -> str:
     """Return the problem of a table whose modes cannot be held in floating-point numbers."""
     return f"{key or 'scenario'} must hold numbers of ordinary size: its modes overflow"
@@ -393,4 +405,4 @@ def _damping(table: Tables) -> Tables:
 
 
 def _unknown(key: str, name: Any, known: Any) -> str:
-    return f"{key} must be one of {listed(known)}, got {name!r}{suggestion(name, list(known))}"
+    return f"{key} must be one of {listed(known)}, got {brief(name)}{suggestion(name, list(known))}"

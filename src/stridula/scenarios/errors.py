@@ -4,27 +4,63 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from difflib import get_close_matches
+from itertools import accumulate
 from typing import Any
 
 from pydantic import ValidationError
 
-from ..checks import suggestion
+from ..checks import LONGEST, listed, suggestion
 from . import outline
 from .outline import Path
 from .schema import GENERAL, PAIR
 
+# Problems that are told one by one; the rest is counted.
+MOST_PROBLEMS = 20
+# Longest text of all of them together, and of one.
+LONGEST_TEXT, LONGEST_LINE = 1800, 500
+# Bodies, contacts, connections or drives of one scenario.
+MOST_TABLES = 1000
+
 
 class ScenarioError(ValueError):
-    """A scenario that cannot be used; every problem found is in `problems`, one line each."""
+    """A scenario that cannot be used; the first 20 problems are in `problems`, one line each, and how many are left.
 
-    def __init__(self, problems: Sequence[str]) -> None:
-        self.problems = tuple(dict.fromkeys(" ".join(problem.split()) for problem in problems))
-        super().__init__("; ".join(self.problems))
+    Parameters
+    ----------
+    problems : sequence of str
+        What is wrong.
+    others : int, optional
+        How many more problems there are that have no words.
+    """
+
+    def __init__(self, problems: Sequence[str], others: int = 0) -> None:
+        lines = tuple(dict.fromkeys(_in_one_line(problem) for problem in problems))
+        others = max(others, 0) + max(0, len(lines) - MOST_PROBLEMS)
+        lines = lines[:MOST_PROBLEMS]
+        self.problems = (*lines, *_counted(others))
+        told = _fitting(lines)
+        super().__init__("; ".join((*told, *_counted(others + len(lines) - len(told)))))
+
+
+def _in_one_line(problem: str) -> str:
+    line = " ".join(problem.split())
+    return line if len(line) <= LONGEST_LINE else f"{line[: LONGEST_LINE - 3]}..."
+
+
+def _counted(others: int) -> tuple[str, ...]:
+    return (f"{others} other problem{'s' if others > 1 else ''}",) if others else ()
+
+
+def _fitting(lines: Sequence[str]) -> Sequence[str]:
+    """Return as many lines as make a text that can be read, one at least."""
+    ends = accumulate(len(line) + 2 for line in lines)
+    return lines[: max(1, sum(end <= LONGEST_TEXT for end in ends))]
 
 
 def explain(error: ValidationError, tables: dict[str, Any], written: dict[str, Any]) -> list[str]:
-    """Return the errors of validated `tables` in words, with the keys as they were `written` before sharing."""
-    return [_line(dict(details), tables, written) for details in error.errors()]
+    """Return the first errors of validated `tables` in words, with the keys as they were `written` before sharing."""
+    details = error.errors(include_url=False)[: MOST_PROBLEMS + 1]
+    return [_line(dict(one), tables, written) for one in details]
 
 
 def wrong_form(tables: dict[str, Any]) -> list[str]:
@@ -46,11 +82,15 @@ def wrong_form(tables: dict[str, Any]) -> list[str]:
             f"{key} must stand in a body, got one at the top, where only beams and plates take it from"
             for key in shared
         ]
+    for key in (*GENERAL, "connections", "drives"):
+        held = tables.get(key)
+        if isinstance(held, (dict, list)) and len(held) > MOST_TABLES:
+            problems.append(f"{key} must hold at most {MOST_TABLES}, got {len(held)}")
     for key in wanted:
         if key not in tables:
             problems.append(f"{key} must be given: {(outline.node_at((key,), tables) or {})['description']}")
         elif key in GENERAL and not tables[key]:
-            problems.append(f"{key} must not be empty, got {tables[key]!r}")
+            problems.append(f"{key} must not be empty, got {shown(tables[key])}")
     return problems
 
 
@@ -64,14 +104,22 @@ def as_written(path: Path, written: dict[str, Any]) -> str:
         if outline.look_up(written, (*body, *shared[:length])) is not None:
             break
         if outline.look_up(written, shared[:length]) is not None:
-            return ".".join(map(str, shared))
-    return ".".join(map(str, path))
+            return _dotted(shared)
+    return _dotted(path)
+
+
+def _dotted(path: Path) -> str:
+    return ".".join(text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..." for text in map(str, path))
 
 
 def shown(value: Any) -> str:
     """Return a value as it goes into a message, cut if it is long."""
-    text = repr(value)
-    return text if len(text) <= 80 else f"{text[:77]}..."
+    try:
+        text = repr(value)
+    except ValueError:
+        # A whole number of 5000 digits has no text.
+        return f"a {type(value).__name__}"
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
 
 
 def _line(error: dict[str, Any], tables: dict[str, Any], written: dict[str, Any]) -> str:
@@ -89,7 +137,7 @@ def _line(error: dict[str, Any], tables: dict[str, Any], written: dict[str, Any]
     if kind == "extra_forbidden":
         known = list(outline.properties(outline.node_at(path[:-1], tables), outline.look_up(tables, path[:-1])))
         return (
-            f"{key} must be one of the known keys {', '.join(known)}, got {path[-1]} = {shown(value)}"
+            f"{key} must be one of the known keys {listed(known)}, got {_dotted(path[-1:])} = {shown(value)}"
             f"{suggestion(path[-1], known) or _elsewhere(path[-1], tables)}"
         )
     if kind == "literal_error":
@@ -103,5 +151,5 @@ def _line(error: dict[str, Any], tables: dict[str, Any], written: dict[str, Any]
 def _elsewhere(name: str | int, tables: dict[str, Any]) -> str:
     """Return the nearest key of any table."""
     places = {str(place[-1]): ".".join(map(str, place)) for place, _ in outline.paths(tables)}
-    near = get_close_matches(str(name), places, n=1, cutoff=0.6)
+    near = get_close_matches(str(name), places, n=1, cutoff=0.6) if len(str(name)) <= LONGEST else []
     return f"; did you mean {places[near[0]]!r}?" if near else ""

@@ -8,8 +8,9 @@ from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from typing import Any
 
+from ..checks import LONGEST, brief, listed
 from . import outline
-from .errors import ScenarioError
+from .errors import MOST_PROBLEMS, ScenarioError
 from .outline import Path
 from .schema import json_schema
 
@@ -35,9 +36,13 @@ def located(tables: dict[str, Any], overrides: Mapping[str, Any]) -> tuple[dict[
     changed = copy.deepcopy(tables)
     places: dict[str, Path] = {}
     problems: list[str] = []
-    for key, value in overrides.items():
+    for number, (key, value) in enumerate(overrides.items()):
+        if len(problems) >= MOST_PROBLEMS - 1:
+            # Each takes a look at the whole outline.
+            problems.append(f"keys must be right before others are looked at, {len(overrides) - number} were not")
+            break
         if key == "base":
-            problems.append(f"base must be written in the file, it cannot be set by key, got {value!r}")
+            problems.append(f"base must be written in the file, it cannot be set by key, got {brief(value)}")
             continue
         value = plain_value(value)
         try:
@@ -71,10 +76,12 @@ def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
     beside = [path for path in ending if isinstance(outline.look_up(tables, path[:-1]), (dict, list))]
     candidates = full or present or beside or ending
     if not candidates:
-        raise ScenarioError([f"key must be one of the scenario's, got {key!r}{_nearest(asked, list(known), tables)}"])
+        raise ScenarioError(
+            [f"key must be one of the scenario's, got {brief(key)}{_nearest(asked, list(known), tables)}"]
+        )
     if len(candidates) > 1:
-        listed = ", ".join(".".join(_text(path)) for path in candidates)
-        raise ScenarioError([f"key must mean one place, got {key!r}, which fits {listed}"])
+        places = listed(".".join(_text(path)) for path in candidates)
+        raise ScenarioError([f"key must mean one place, got {brief(key)}, which fits {places}"])
     path = candidates[0]
     return path if is_table else _only_number(key, path, tables)
 
@@ -88,7 +95,7 @@ def _only_number(key: str, path: Path, tables: dict[str, Any]) -> Path:
     given = [name for name in numbers if outline.look_up(tables, (*path, name)) is not None]
     if len(given or numbers) == 1:
         return (*path, (given or numbers)[0])
-    raise ScenarioError([f"key must mean one value, got {key!r}, a table: set one of its keys {', '.join(below)}"])
+    raise ScenarioError([f"key must mean one value, got {brief(key)}, a table: set one of its keys {listed(below)}"])
 
 
 def _set(tables: dict[str, Any], path: Path, value: Any) -> None:
@@ -142,6 +149,8 @@ def _text(path: Path) -> tuple[str, ...]:
 
 
 def _nearest(asked: tuple[str, ...], known: list[Path], tables: dict[str, Any]) -> str:
+    if len(".".join(asked)) > LONGEST:
+        return ""
     named = _of_named(asked, known, tables)
     if named:
         return f"; did you mean {named!r}?"

@@ -11,12 +11,13 @@ from typing import Any
 import xarray as xr
 from pydantic import ValidationError
 
+from ..checks import by_key
 from ..integration import SCHEMES, CentralDifference, ExactModal, GaussSeidel, simulate
 from ..records import Probe
 from ..records.provenance import body_table
 from ..system import System
-from .build import NOT_FINITE, Builder, out_of_range
-from .errors import ScenarioError, as_written, explain, wrong_form
+from .build import Builder, out_of_range, overflows
+from .errors import MOST_PROBLEMS, ScenarioError, as_written, explain, wrong_form
 from .inheritance import shared_out
 from .keys import overridden
 from .read import names_files, read_tables
@@ -75,7 +76,7 @@ class Scenario:
         try:
             return simulate(self.system, **(own | kwargs))
         except ValueError as error:
-            if NOT_FINITE in str(error):
+            if overflows(error):
                 raise ScenarioError([out_of_range("")]) from error
             word = str(error).partition(" ")[0]
             if word not in own or word in kwargs:
@@ -104,7 +105,7 @@ def load_scenario(name_or_path: str | Path | xr.Dataset, overrides: Mapping[str,
     OSError
         If the file cannot be read.
     """
-    written, problems = overridden(read_tables(name_or_path), overrides or {})
+    written, problems = overridden(read_tables(name_or_path), by_key("overrides", overrides))
     return scenario_of_tables(written, problems)
 
 
@@ -170,7 +171,7 @@ def _checked(written: dict[str, Any], problems: Sequence[str] = ()) -> tuple[Sce
     try:
         checked = ScenarioTable.model_validate(tables)
     except ValidationError as error:
-        raise ScenarioError(found + explain(error, tables, written)) from None
+        raise ScenarioError(found + explain(error, tables, written), error.error_count() - MOST_PROBLEMS - 1) from None
     if found:
         raise ScenarioError(found)
     return checked, Builder(

@@ -67,7 +67,10 @@ def quantity(value: Any, unit: str) -> float:
 def parts(value: Any) -> tuple[float, str] | None:
     """Return the number and the unit of a number or a text such as ``"20 mm"``, None if it is neither."""
     if isinstance(value, Real) and not isinstance(value, bool):
-        return float(value), ""
+        try:
+            return float(value), ""
+        except OverflowError:
+            return math.inf, ""
     match = _NUMBER.fullmatch(value) if isinstance(value, str) else None
     return (float(match[1]), match[2]) if match else None
 

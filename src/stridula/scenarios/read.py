@@ -9,8 +9,8 @@ from typing import Any
 
 import xarray as xr
 
-from ..checks import suggestion
-from ..disk import read
+from ..checks import brief, suggestion
+from ..disk import is_there, named, read
 from ..records.files import MAGIC, scenario_of
 from ..records.packed import is_packed
 from .errors import ScenarioError, shown
@@ -42,11 +42,11 @@ def read_tables(name_or_path: str | Path | xr.Dataset) -> dict[str, Any]:
     if str(name_or_path) in cases:
         return _with_base(_parsed(cases[str(name_or_path)], str(name_or_path)), Path(), ())
     path = Path(name_or_path)
-    if not path.exists():
+    if not is_there(path):
         raise ScenarioError(
             [
-                f"scenario must be a file or one of {', '.join(cases)}, got {str(name_or_path)!r}"
-                f"{suggestion(name_or_path, list(cases))}"
+                f"scenario must be a file or one of {', '.join(cases)}, got {named(name_or_path)}"
+                f"{suggestion(str(name_or_path), list(cases))}"
             ]
         )
     return _with_base(_file_tables(path), path.parent, (path.resolve(),))
@@ -74,11 +74,13 @@ def tables_of_text(text: str, name: str) -> dict[str, Any]:
     base = tables.get("base")
     if base is not None and not (isinstance(base, str) and base in bases):
         near = suggestion(base, list(bases))
-        raise ScenarioError([f"base must be one of {', '.join(bases)} in a text, got {base!r}{near}"])
+        raise ScenarioError([f"base must be one of {', '.join(bases)} in a text, got {brief(base)}{near}"])
     named = tables.get("bodies")
     for body in named.values() if isinstance(named, dict) else ():
         if names_files(body):
-            raise ScenarioError([f"bodies must not name files in a text, got {', '.join(_files_of(body).values())!r}"])
+            raise ScenarioError(
+                [f"bodies must not name files in a text, got {brief(', '.join(_files_of(body).values()))}"]
+            )
     return _with_base(tables, Path(), ())
 
 
@@ -167,9 +169,9 @@ def _with_base(tables: dict[str, Any], folder: Path, above: tuple[Path, ...]) ->
     if isinstance(base, str) and base in bases:
         return merged(_with_base(_parsed(bases[base], base), folder, above), own)
     path = folder / base if isinstance(base, str) else None
-    if path is None or not path.is_file():
+    if path is None or not is_there(path) or not path.is_file():
         allowed = f"base must be a scenario file or one of {', '.join(bases)}"
-        raise ScenarioError([f"{allowed}, got {base!r}{suggestion(base, list(bases))}"])
+        raise ScenarioError([f"{allowed}, got {brief(base)}{suggestion(base, list(bases))}"])
     if path.resolve() in above:
-        raise ScenarioError([f"base must not lead back to itself, got {base!r}"])
+        raise ScenarioError([f"base must not lead back to itself, got {brief(base)}"])
     return merged(_with_base(_file_tables(path), path.parent, (*above, path.resolve())), own)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import Any
 
-from ..checks import suggestion
+from ..checks import brief, suggestion
 from . import outline
 from .errors import ScenarioError, as_written, shown
 from .fields import UNIT_OF_PATTERN
@@ -138,7 +138,7 @@ def varied_keys(tables: dict[str, Any], keys: Sequence[str], sets: Sequence[Sequ
             raise ScenarioError([f"key must be varied once, got {twin!r} and {key!r}, which both mean {full}"])
         is_reduced = path[0] == "bodies" and outline.look_up(changed, (*path[:2], "kind")) == "reduced"
         if is_reduced and path[-1] in READ_ONCE:
-            raise ScenarioError([f"key must not be {full}: matrices are read once for all points, got {key!r}"])
+            raise ScenarioError([f"key must not be {full}: matrices are read once for all points, got {brief(key)}"])
         node = _node(path, changed)
         units = {UNIT_OF_PATTERN[pattern] for pattern in outline.patterns(node) if pattern in UNIT_OF_PATTERN}
         found.append(Varied(key, path, full, units.pop() if len(units) == 1 else None, node))

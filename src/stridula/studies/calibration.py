@@ -16,7 +16,7 @@ import xarray as xr
 
 from ..analysis.regimes import REGIMES
 from ..bodies.modes import Array
-from ..checks import brief, choice, count, instance, listed, non_negative, positive, suggestion
+from ..checks import brief, choice, count, finite, instance, listed, non_negative, positive, suggestion
 from ..linear.equilibrium import HELD, JAMMED, LIFTED_OFF
 from ..linear.structure import SLIDING
 from .measures import MEASURES, Value, value_of
@@ -27,6 +27,7 @@ Point = dict[str, Any]
 Evaluate = Callable[[Sequence[Point]], Sequence[Mapping[str, Value]]]
 # Miss of a target that a failed run, or a measure that is not a number, counts for; others come near it.
 WORST = 10.0
+MOST_GENERATIONS = 100_000
 LARGEST_POPULATION = 10_000
 # What else a calibration says.
 OWN = ("miss", "met", "target", "generation", "parameter", "best_miss", "best_parameters")
@@ -60,10 +61,12 @@ class Target:
     def __post_init__(self) -> None:
         for name in ("low", "high"):
             value = getattr(self, name)
-            if not isinstance(value, (int, float)) or isinstance(value, bool) or math.isnan(value):
-                raise ValueError(f"{name} must be a number, got {value!r}")
+            if not isinstance(value, (int, float)) or isinstance(value, bool) or value != value:
+                raise ValueError(f"{name} must be a number, got {brief(value)}")
+            if isinstance(value, int):
+                finite(name, value)
         if self.low > self.high or (math.isinf(self.low) and math.isinf(self.high)):
-            raise ValueError(f"low and high must be a range with an end, got {self.low!r} and {self.high!r}")
+            raise ValueError(f"low and high must be a range with an end, got {brief(self.low)} and {brief(self.high)}")
         if self.scale is not None:
             positive("scale", self.scale)
         elif self._scale <= 0.0:
@@ -172,8 +175,8 @@ def calibrate(
     searched = ranges_of("ranges", ranges)
     aimed = _targets(targets)
     if count("population", population, low=5) > LARGEST_POPULATION:
-        raise ValueError(f"population must be at most {LARGEST_POPULATION}, got {population!r}")
-    count("generations", generations)
+        raise ValueError(f"population must be at most {LARGEST_POPULATION}, got {brief(population)}")
+    count("generations", generations, high=MOST_GENERATIONS)
     count("seed", seed, low=0)
     non_negative("spread", spread)
     evaluate = source if callable(source) else _sweeping(source, aimed, measures or {}, options)
@@ -207,6 +210,14 @@ class _Failed(Exception):
 
 
 @contextmanager
+def _kept_from_scipy() -> Iterator[None]:
+    try:
+        yield
+    except Exception as error:
+        raise _Failed(error) from None
+
+
+@contextmanager
 def _own_errors() -> Iterator[None]:
     try:
         yield
@@ -220,7 +231,7 @@ def _targets(targets: Any) -> dict[str, Target | str]:
     found: dict[str, Target | str] = {}
     for name, given in targets.items():
         if name in OWN:
-            raise ValueError(f"targets must not be called as what a calibration says, got {name!r}")
+            raise ValueError(f"targets must not be called as what a calibration says, got {brief(name)}")
         if isinstance(given, (Target, str)):
             found[str(name)] = given
         elif isinstance(given, (tuple, list)) and len(given) == 2:
@@ -229,7 +240,7 @@ def _targets(targets: Any) -> dict[str, Target | str]:
             except ValueError as error:
                 raise ValueError(f"targets[{name!r}]: {error}") from None
         else:
-            raise ValueError(f"targets[{name!r}] must be a Target, its two bounds or a word, got {given!r}")
+            raise ValueError(f"targets[{name!r}] must be a Target, its two bounds or a word, got {brief(given)}")
     return found
 
 
@@ -273,12 +284,12 @@ def _check_target(name: str, target: Target | str, functions: Sequence[str]) -> 
     """Raise ValueError if a target is of no measure, or a word where that is a number, or the other way round."""
     known = [*functions, *COLUMNS]
     if name not in COLUMNS:
-        raise ValueError(f"targets must be of {', '.join(known)}, got {name!r}{suggestion(name, known)}")
+        raise ValueError(f"targets must be of {', '.join(known)}, got {brief(name)}{suggestion(name, known)}")
     if isinstance(target, str) and name in WORDS:
         choice(f"target of {name}", target, WORDS[name])
     elif COLUMNS[name].is_text != isinstance(target, str):
         kind = f"one of {', '.join(WORDS[name])}" if name in WORDS else "bounds"
-        raise ValueError(f"target of {name} must be {kind}, got {target!r}")
+        raise ValueError(f"target of {name} must be {kind}, got {brief(target)}")
 
 
 def _first_population(
@@ -338,10 +349,8 @@ class _Search:
     def misses(self, columns: Array) -> Array:
         """Return the sum of squared misses of each set of parameters, shape (parameters, sets) to (sets,)."""
         sets = np.atleast_2d(columns.T)
-        try:
+        with _kept_from_scipy():
             found = self.measured_at([self.point(shares) for shares in sets])
-        except Exception as error:
-            raise _Failed(error) from None
         totals = np.array(
             [sum(miss_of(target, one[name]) ** 2 for name, target in self.targets.items()) for one in found]
         )
@@ -351,7 +360,8 @@ class _Search:
         self.history.append((self.miss, self.shares))
         for watch in self.watchers:
             point = self.point(self.shares)
-            watch(CalibrationProgress(len(self.history) - 1, self.generations, math.sqrt(self.miss), point))
+            with _kept_from_scipy():
+                watch(CalibrationProgress(len(self.history) - 1, self.generations, math.sqrt(self.miss), point))
         if self.miss == 0.0:
             raise _Met
         return totals
@@ -360,14 +370,14 @@ class _Search:
         """Return the measures of each set of parameters, checked."""
         found = self.evaluate(points)
         if not isinstance(found, Sequence) or len(found) != len(points):
-            raise ValueError(f"source must return the measures of each of {len(points)} points, got {found!r}")
+            raise ValueError(f"source must return the measures of each of {len(points)} points, got {brief(found)}")
         for one in found:
             lacking = next((name for name in self.targets if not isinstance(one, Mapping) or name not in one), None)
             if lacking is not None:
-                raise ValueError(f"source must return {lacking!r} for each point, got {one!r}")
+                raise ValueError(f"source must return {lacking!r} for each point, got {brief(one)}")
             clash = next((name for name in one if name in self.ranges or name in OWN), None)
             if clash is not None:
-                raise ValueError(f"measures must not be called as parameters or results, got {clash!r}")
+                raise ValueError(f"measures must not be called as parameters or results, got {brief(clash)}")
         return [{name: value_of(value) for name, value in one.items()} for one in found]
 
     def dataset(self) -> xr.Dataset:

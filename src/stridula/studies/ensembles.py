@@ -15,7 +15,7 @@ import xarray as xr
 from ..analysis import status_share
 from ..bodies import ReducedBody
 from ..bodies.modes import Array
-from ..checks import count, instance, positive, within
+from ..checks import brief, count, instance, positive, within
 from ..contact import RigidTrack
 from ..drives import Drive, ImposedVelocity, InitialEquilibrium, InitialVelocity
 from ..drives import InitialState as State
@@ -23,6 +23,7 @@ from ..integration import simulate_many
 from ..system import System
 
 Measure = Callable[[xr.Dataset], float]
+MOST_RUNS = 100_000
 OWN = ("perturbation", "ended", "message", "run", "bound")
 
 
@@ -82,7 +83,7 @@ def ensemble(
     instance("system", system, System)
     positive("duration", duration)
     named = _checked(measures)
-    count("runs", runs, low=2)
+    count("runs", runs, low=2, high=MOST_RUNS)
     within("perturbation", perturbation, 0.0, 0.1)
     within("confidence", confidence, 0.0, 1.0, ends=False)
     count("seed", seed, low=0)
@@ -90,7 +91,7 @@ def ensemble(
         count("workers", workers)
     for word in ("start", "watchers", "reduce"):
         if word in options:
-            raise ValueError(f"{word} must be left out of an ensemble, which sets its own, got {options[word]!r}")
+            raise ValueError(f"{word} must be left out of an ensemble, which sets its own, got {brief(options[word])}")
     shares = _shares(runs, perturbation, seed)
     systems = [_perturbed(system, float(share)) for share in shares]
     results = _run_all(systems, duration, named, options, workers or os.cpu_count() or 1)
@@ -167,7 +168,7 @@ def _checked(measures: Any) -> dict[str, Measure]:
         raise ValueError("measures must hold at least one function of a record, got none")
     for name, measure in measures.items():
         if not isinstance(name, str) or not name or not callable(measure):
-            raise ValueError(f"measures must be functions of a record by name, got {name!r}: {measure!r}")
+            raise ValueError(f"measures must be functions of a record by name, got {brief(name)}: {brief(measure)}")
     taken = {*OWN, *(f"{name}{end}" for name in measures for end in ("_mean", "_interval"))}
     clash = next((name for name in measures if name in taken), None)
     if clash is not None:

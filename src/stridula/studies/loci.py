@@ -12,7 +12,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ..analysis.stability import sliding_stability
 from ..bodies.modes import Array
-from ..checks import finite, instance, positive
+from ..checks import brief, by_key, finite, instance, positive
 from ..records.provenance import toml
 from ..records.variables import described
 from ..scenarios import load_scenario
@@ -75,7 +75,7 @@ def root_loci(
     """
     modes_of = _modes_of(source, key, units, overrides, options)
     if key in OWN:
-        raise ValueError(f"key must not be called as a result of the loci, got {key!r}: write its full key")
+        raise ValueError(f"key must not be called as a result of the loci, got {brief(key)}: write its full key")
     grid = _rising(values)
     if highest is not None:
         positive("highest", highest)
@@ -146,7 +146,7 @@ def critical_value(
     """
     modes_of = _modes_of(source, key, units, overrides, options)
     if finite("high", high) <= finite("low", low):
-        raise ValueError(f"high must be above low ({low!r}), got {high!r}")
+        raise ValueError(f"high must be above low ({brief(low)}), got {brief(high)}")
     positive("tolerance", tolerance)
     low, high = float(low), float(high)
     with one_thread_each():
@@ -216,7 +216,7 @@ def _origin(source: Source, overrides: Mapping[str, Any] | None) -> dict[str, st
     """Return what a file says of where it comes from; of a function nothing is known."""
     if callable(source):
         return {}
-    tables, _ = overridden(read_tables(source), overrides or {})
+    tables, _ = overridden(read_tables(source), by_key("overrides", overrides))
     words = {"title": str(tables.get("title", "")), "scenario": toml(tables)}
     return words | {"stridula_version": __version__}
 
@@ -227,7 +227,7 @@ def _modes_of(
     """Return what gives the modes at a value."""
     instance("key", key, str)
     instance("units", units, str)
-    given = dict(overrides or {})
+    given = dict(by_key("overrides", overrides))
     if key in given:
         raise ValueError(f"key must be set or varied, got both for {key!r}")
 
@@ -255,7 +255,7 @@ def _rising(values: Sequence[float] | Array) -> Array:
     except (TypeError, ValueError):
         grid = np.empty(0)
     if grid.ndim != 1 or grid.size < 2 or not np.isfinite(grid).all() or (np.diff(grid) <= 0.0).any():
-        raise ValueError(f"values must be at least 2 finite numbers that rise, got {values!r}")
+        raise ValueError(f"values must be at least 2 finite numbers that rise, got {brief(values)}")
     return grid
 
 

@@ -235,7 +235,7 @@ def asked_for(measures: Any) -> Asked:
             functions |= {_own_name(name, function): function for name, function in entry.items()}
         elif not isinstance(entry, str) or entry not in MEASURES:
             known = ", ".join(MEASURES)
-            raise ValueError(f"measure must be one of {known}, got {entry!r}{suggestion(entry, list(MEASURES))}")
+            raise ValueError(f"measure must be one of {known}, got {brief(entry)}{suggestion(entry, list(MEASURES))}")
         elif entry not in names:
             names.append(entry)
     asked = Asked(tuple(names), functions)
@@ -248,7 +248,7 @@ def asked_for(measures: Any) -> Asked:
 
 def _own_name(name: Any, function: Any) -> str:
     if not isinstance(name, str) or not name or "/" in name or not callable(function):
-        raise ValueError(f"measures must be functions of a record by name, got {name!r}: {function!r}")
+        raise ValueError(f"measures must be functions of a record by name, got {brief(name)}: {brief(function)}")
     return name
 
 

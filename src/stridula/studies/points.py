@@ -15,6 +15,7 @@ from ..checks import brief, count, finite, listed
 from ..scenarios.quantities import parts
 
 POINT = "point"
+MOST_POINTS = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -41,11 +42,11 @@ class Range:
     def __post_init__(self) -> None:
         (low, unit), (high, other) = self._end("low"), self._end("high")
         if unit != other:
-            raise ValueError(f"high must be in the unit of low, got {self.low!r} and {self.high!r}")
+            raise ValueError(f"high must be in the unit of low, got {brief(self.low)} and {brief(self.high)}")
         if low >= high:
-            raise ValueError(f"high must be above low ({self.low!r}), got {self.high!r}")
+            raise ValueError(f"high must be above low ({brief(self.low)}), got {brief(self.high)}")
         if self.logarithmic and low <= 0.0:
-            raise ValueError(f"low must be above 0 on a logarithmic range, got {self.low!r}")
+            raise ValueError(f"low must be above 0 on a logarithmic range, got {brief(self.low)}")
 
     @property
     def unit(self) -> str:
@@ -66,7 +67,7 @@ class Range:
         """Return where a value lies in the range, 0 at its low end and 1 at its high one."""
         known = parts(value)
         if known is None or known[1] != self.unit:
-            raise ValueError(f"start must be in the unit of its range ({self.unit or 'SI'}), got {value!r}")
+            raise ValueError(f"start must be in the unit of its range ({self.unit or 'SI'}), got {brief(value)}")
         low, high = self._end("low")[0], self._end("high")[0]
         if self.logarithmic:
             return math.log(known[0] / low) / math.log(high / low) if known[0] > 0.0 else -math.inf
@@ -76,7 +77,7 @@ class Range:
         given = getattr(self, name)
         known = parts(given)
         if known is None:
-            raise ValueError(f"{name} must be a number, with a unit or in SI, got {given!r}")
+            raise ValueError(f"{name} must be a number, with a unit or in SI, got {brief(given)}")
         finite(name, known[0])
         return known
 
@@ -101,13 +102,15 @@ class Grid:
 
     def __post_init__(self) -> None:
         if not isinstance(self.values, Mapping) or not self.values:
-            raise ValueError(f"values must be lists of values by key, got {self.values!r}")
+            raise ValueError(f"values must be lists of values by key, got {brief(self.values)}")
         for key, given in self.values.items():
             if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)):
-                raise ValueError(f"values[{key!r}] must be a list of values, got {given!r}")
+                raise ValueError(f"values[{key!r}] must be a list of values, got {brief(given)}")
             if not len(given):
                 raise ValueError(f"values[{key!r}] must hold at least one value, got none")
         object.__setattr__(self, "values", {key: _plain(key, given) for key, given in self.values.items()})
+        if self.count > MOST_POINTS:
+            raise ValueError(f"values must make at most {MOST_POINTS} points, got {self.count}")
 
     @property
     def count(self) -> int:
@@ -139,7 +142,7 @@ class LatinHypercube:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        count("count", self.count)
+        count("count", self.count, high=MOST_POINTS)
         count("seed", self.seed, low=0)
         object.__setattr__(self, "ranges", ranges_of("ranges", self.ranges))
 
@@ -169,7 +172,7 @@ def ranges_of(name: str, given: Any) -> dict[str, Range]:
         If it is anything else, or a range does not rise.
     """
     if not isinstance(given, Mapping) or not given:
-        raise ValueError(f"{name} must be ranges by key, got {given!r}")
+        raise ValueError(f"{name} must be ranges by key, got {brief(given)}")
     return {str(key): range_of(f"{name}[{key!r}]", one) for key, one in given.items()}
 
 
@@ -191,7 +194,7 @@ def range_of(name: str, given: Any) -> Range:
     if isinstance(given, Range):
         return given
     if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)) or len(given) != 2:
-        raise ValueError(f"{name} must be a Range or its two ends, got {given!r}")
+        raise ValueError(f"{name} must be a Range or its two ends, got {brief(given)}")
     try:
         return Range(*(plain_python(end) for end in given))
     except ValueError as error:
@@ -254,7 +257,7 @@ def _listed(points: Sequence[Mapping[str, Any]]) -> Layout:
         raise ValueError("points must hold at least one point, got none")
     for number, point in enumerate(points):
         if not isinstance(point, Mapping) or not point:
-            raise ValueError(f"points[{number}] must be values by key, got {point!r}")
+            raise ValueError(f"points[{number}] must be values by key, got {brief(point)}")
         if set(point) != set(points[0]):
             raise ValueError(
                 f"points[{number}] must have the keys of points[0], {listed(points[0])}, got {brief(point)}"
@@ -269,11 +272,11 @@ def _listed(points: Sequence[Mapping[str, Any]]) -> Layout:
 def _plain(key: str, given: Sequence[Any]) -> list[Any]:
     """Return values as Python's own, finite where they are numbers."""
     if not isinstance(key, str) or not key.strip():
-        raise ValueError(f"key must be a text, got {key!r}")
+        raise ValueError(f"key must be a text, got {brief(key)}")
     plain = [plain_python(value) for value in given]
     for value in plain:
         if isinstance(value, Real) and not math.isfinite(value):
-            raise ValueError(f"{key} must be finite, got {value!r}")
+            raise ValueError(f"{key} must be finite, got {brief(value)}")
     return plain
 
 

@@ -19,6 +19,7 @@ from .points import Range, range_of
 from .sweeps import sweep
 from .swept import failures, usual_failure
 
+MOST_SAMPLES, MOST_RESAMPLES = 2**16, 100_000
 BOUNDS = ("low", "high")
 # Of fewer samples no interval can be told.
 FEWEST = 8
@@ -76,10 +77,10 @@ def sensitivity(
         If an argument is out of its range, or as in `sweep`.
     """
     named = _distributions(uncertain)
-    if count("samples", samples) & (samples - 1):
-        raise ValueError(f"samples must be a power of 2, got {samples!r}")
+    if count("samples", samples, high=MOST_SAMPLES) & (samples - 1):
+        raise ValueError(f"samples must be a power of 2, got {brief(samples)}")
     count("seed", seed, low=0)
-    count("resamples", resamples)
+    count("resamples", resamples, high=MOST_RESAMPLES)
     within("confidence", confidence, 0.0, 1.0, ends=False)
     shares = _shares(len(named), samples, seed)
     points = [
@@ -109,7 +110,7 @@ def _distributions(uncertain: Any) -> dict[str, Any]:
     for key, given in uncertain.items():
         is_distribution = callable(getattr(given, "ppf", None))
         if is_distribution and not _is_one_number(given):
-            raise ValueError(f"uncertain[{key!r}] must be a frozen distribution of one number, got {given!r}")
+            raise ValueError(f"uncertain[{key!r}] must be a frozen distribution of one number, got {brief(given)}")
         found[str(key)] = given if is_distribution else range_of(f"uncertain[{key!r}]", given)
     return found
 

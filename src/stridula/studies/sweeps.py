@@ -16,7 +16,7 @@ from typing import Any
 
 import xarray as xr
 
-from ..checks import brief, count
+from ..checks import brief, by_key, count
 from ..records.provenance import toml
 from ..scenarios.errors import ScenarioError
 from ..scenarios.keys import located, with_values
@@ -135,7 +135,7 @@ def sweep(
         raise ValueError(f"watchers must be a list of callables, got {brief(watchers)}")
     if client is not None and not callable(getattr(client, "submit", None)):
         raise ValueError(f"client must be a client of dask.distributed, got {brief(client)}")
-    plan = _planned(scenario, points, measures, overrides or {}, duration, sample_rate, probes)
+    plan = _planned(scenario, points, measures, by_key("overrides", overrides), duration, sample_rate, probes)
     store = None if out is None else Parts(out, plan.identity)
     if store is not None and store.finished is not None:
         store.clear()

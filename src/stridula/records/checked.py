@@ -1,0 +1,95 @@
+"""Records and signals as arguments: what a function needs of one is there, and is as `simulate` leaves it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..checks import brief, instance, listed
+from .variables import STATUS_SHARE, STATUS_WORDS
+
+NUMBERS = "fiu"
+# No time of a record comes near [s].
+LATEST = 1e9
+
+
+def record(name: str, value: Any, *needed: str, least: int = 0) -> xr.Dataset:
+    """Return a record of `simulate` if it is one.
+
+    Parameters
+    ----------
+    name : str
+        What the argument is called.
+    value : xarray.Dataset
+        The record.
+    *needed : str
+        Variables that it must have, numbers over ``time``.
+    least : int, optional
+        Fewest samples.
+
+    Raises
+    ------
+    ValueError
+        If it is something else, such as the name of a file, lacks a variable or samples, or its times do not rise.
+    """
+    if not isinstance(value, xr.Dataset):
+        way = ": read a file with load" if isinstance(value, (str, Path)) else ""
+        raise ValueError(f"{name} must be a record of simulate, a Dataset, got {brief(value)}{way}")
+    lacking = [word for word in ("time", *needed) if word not in value.variables]
+    if lacking:
+        raise ValueError(f"{name} must be a record with {listed(lacking)}, got one with {_held(value)}")
+    check_times(name, value["time"])
+    for word in needed:
+        _check_variable(name, word, value[word])
+    if value.sizes["time"] < least:
+        raise ValueError(f"{name} must have at least {least} samples, got {value.sizes['time']}")
+    return value
+
+
+def signal(name: str, value: Any) -> xr.DataArray:
+    """Return a signal over time if it is one: real numbers, whatever other dimensions it has.
+
+    Raises
+    ------
+    ValueError
+        If it is something else, or its times do not rise.
+    """
+    instance(name, value, xr.DataArray)
+    if "time" not in value.dims or "time" not in value.coords:
+        raise ValueError(f"{name} must be over time, got the dimensions {listed(map(str, value.dims))}")
+    check_real(name, str(value.name or "value"), value)
+    check_times(name, value["time"])
+    return value
+
+
+def check_times(name: str, times: xr.DataArray) -> None:
+    """Raise ValueError unless times are finite numbers that rise."""
+    values = times.values
+    if times.dims != ("time",) or values.dtype.kind not in NUMBERS:
+        raise ValueError(
+            f"{name} must have a time of each sample in s, got {times.dtype} over {listed(map(str, times.dims))}"
+        )
+    if not (np.abs(values) < LATEST).all() or (values[1:] <= values[:-1]).any():
+        raise ValueError(f"{name} must have finite times that rise, got others")
+
+
+def check_real(name: str, word: str, variable: xr.DataArray) -> None:
+    """Raise ValueError unless a variable holds real numbers."""
+    if variable.dtype.kind not in NUMBERS + "b":
+        raise ValueError(f"{name} must have a {word} of real numbers, got {variable.dtype}")
+
+
+def _check_variable(name: str, word: str, variable: xr.DataArray) -> None:
+    if variable.dims[:1] != ("time",) or variable.dtype.kind not in NUMBERS:
+        dimensions = listed(map(str, variable.dims))
+        raise ValueError(f"{name} must have a {word} of numbers over time, got {variable.dtype} over {dimensions}")
+    if word == STATUS_SHARE.name and variable.shape[1:][-1:] != (len(STATUS_WORDS),):
+        wanted = ", ".join(STATUS_WORDS)
+        raise ValueError(f"{name} must have a {word} of each of {wanted}, got the shape {variable.shape}")
+
+
+def _held(run: xr.Dataset) -> str:
+    return listed(map(str, run.variables))

@@ -1,0 +1,65 @@
+"""A few hundred inputs of each kind that are wrong on purpose; `python -m tests.fuzz` runs many, with limits."""
+
+from __future__ import annotations
+
+import os
+from itertools import islice
+
+import pytest
+
+from . import __main__ as runner
+from .verdicts import ACCEPTED, REFUSED
+
+# As many as take some seconds; other kinds have FEW.
+SEED, COUNTS, FEW = 0, {"scenarios": 200, "matrices": 400, "records": 100, "doors": 150}, 100
+PARTS = 10
+KINDS = runner.modules()
+
+
+@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("name", list(KINDS))
+def test_what_is_wrong_is_refused_in_one_line(name, part):
+    count = COUNTS.get(name, FEW)
+    for number, given in islice(enumerate(KINDS[name].inputs(SEED, count)), part, None, PARTS):
+        try:
+            assert KINDS[name].check(given) in (ACCEPTED, REFUSED)
+        except BaseException as error:
+            error.add_note(f"python -m tests.fuzz --kind {name} --seed {SEED} --number {number}")
+            raise
+
+
+@pytest.mark.parametrize("name", list(KINDS))
+def test_inputs_come_again(name):
+    first, again = (list(map(repr, KINDS[name].inputs(3, 5))) for _ in range(2))
+    assert first == again != list(map(repr, KINDS[name].inputs(4, 5)))
+    assert first == list(map(repr, KINDS[name].inputs(3, 9)))[:5]
+
+
+class Wrong:
+    """Inputs each of which goes wrong in another way."""
+
+    @staticmethod
+    def inputs(seed, count):
+        return iter(("accepted", "refused", "traceback", "crashed", "hung"))
+
+    @staticmethod
+    def check(given):
+        if given == "traceback":
+            raise KeyError(given)
+        if given == "crashed":
+            os.abort()
+        while given == "hung":
+            pass
+        return given
+
+
+def test_what_goes_wrong_is_counted_and_told(monkeypatch, capsys):
+    monkeypatch.setattr(runner, "LIMIT", 0.5)
+    counts, peak = runner.counted("wrong", Wrong, 7, 5, 2)
+    assert counts == {"accepted": 1, "refused": 1, "traceback": 1, "crashed": 1, "hung": 1}
+    assert 2**20 < peak < 2**33
+    told = capsys.readouterr().out
+    assert "wrong traceback: --kind wrong --seed 7 --number 2: 'traceback'" in told
+    assert "KeyError: 'traceback'" in told
+    assert "wrong crashed: --kind wrong --seed 7 --number 3: 'crashed'" in told
+    assert "wrong hung: --kind wrong --seed 7 --number 4: 'hung'" in told
