@@ -337,6 +337,8 @@ def claims_page() -> str:
     for row in rows:
         unit = "" if row["units"] == "1" else f" {row['units']}"
         measured = "none" if row["measured"] is None else f"{row['measured']:.4g}{unit}"
+        if row.get("interval"):
+            measured += " ({:.4g} to {:.4g})".format(*row["interval"])
         holds = "yes" if row["holds"] else "**no**"
         first = [row["section"], row["claim"], row["printed"], measured, row["tolerance"]]
         cells.append([*map(plain, first), holds, row["basis"]])

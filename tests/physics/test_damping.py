@@ -148,7 +148,7 @@ def test_energy_lost_a_cycle_of_a_forced_mode(form, scheme):
 
 def test_overdamped_modes_of_a_track_in_contact_keep_the_ledger():
     """High modes of a beam under strong material damping are overdamped; contact and energy are as exact as ever."""
-    squeal = st.load_scenario("squeal", {"damping": {"law": "rayleigh", "mass": 0.0, "stiffness": 5e-5}})
+    squeal = st.load_scenario("squeal", {"damping": {"form": "rayleigh", "mass": 0.0, "stiffness": 5e-5}})
     ratios = squeal.system.track.modes().damping
     assert ratios[0] < 0.05
     assert ratios.max() > 2.0
@@ -165,7 +165,7 @@ def test_overdamped_modes_of_a_track_in_contact_keep_the_ledger():
     [
         (lambda: st.RisingDamping(-0.1, 0.0), "ratio must be 0 or above, got -0.1"),
         (lambda: st.RisingDamping(1.0, 0.0), r"ratio must be below 1 \(critical\), got 1.0"),
-        (lambda: st.RisingDamping(0.1, float("nan")), "slope must be finite, got nan"),
+        (lambda: st.RisingDamping(0.1, float("nan")), "rise must be finite, got nan"),
         (lambda: st.SampledDamping([1.0, 1.0], [0.1, 0.1]), r"frequency\[1\] must be above 1.0"),
         (lambda: st.SampledDamping([1.0, 2.0], [0.1]), "ratio must have as many values as frequency"),
         (lambda: st.SampledDamping([], []), "ratio must have as many values as frequency, one or more"),

@@ -106,9 +106,9 @@ CONTROLS = (
         "slider.damping.ratio",
     ),
     Control(
-        "damping.slope", "Beams", "Rise of damping", "%/kHz", 1e-5, 0.0, 10.0, 0.01,
+        "damping.rise", "Beams", "Rise of damping", "%/kHz", 1e-5, 0.0, 10.0, 0.01,
         "How much more damping a mode has for each kilohertz of its frequency.",
-        "slider.damping.slope",
+        "slider.damping.rise",
     ),
     Control(
         "track.length", "Track", "Track length", "mm", 1e-3, 200.0, 2500.0, 1.0,

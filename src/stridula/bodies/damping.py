@@ -17,7 +17,7 @@ from .modes import Array
 class DampingLaw(Protocol):
     """How the damping of a mode follows from its frequency; ratios may reach 1 and more, modes are overdamped then."""
 
-    law: ClassVar[str]
+    form: ClassVar[str]
 
     def rates(self, angular_frequency: Array) -> Array:
         """Return ``2 zeta w`` [1/s] for modes of angular frequency w [rad/s], zero for rigid ones."""
@@ -45,7 +45,7 @@ class Rayleigh:
 
     mass: float
     stiffness: float
-    law: ClassVar[str] = "rayleigh"
+    form: ClassVar[str] = "rayleigh"
 
     def __post_init__(self) -> None:
         non_negative("mass", self.mass)
@@ -58,16 +58,16 @@ class Rayleigh:
 
 @dataclass(frozen=True)
 class RisingDamping:
-    """Damping whose ratio rises with the frequency f of a mode: ``ratio + slope f``.
+    """Damping whose ratio rises with the frequency f of a mode: ``ratio + rise f``.
 
-    A material with a loss factor that does not depend on frequency, ``2 ratio``, and a viscous part, slope
+    A material with a loss factor that does not depend on frequency, ``2 ratio``, and a viscous part, a rise
     ``pi beta`` of a Kelvin-Voigt material.
 
     Parameters
     ----------
     ratio : float
         Damping ratio at low frequencies [1].
-    slope : float
+    rise : float
         Rise of the ratio with frequency [1/Hz].
 
     Raises
@@ -77,17 +77,17 @@ class RisingDamping:
     """
 
     ratio: float
-    slope: float
-    law: ClassVar[str] = "rising"
+    rise: float
+    form: ClassVar[str] = "rising"
 
     def __post_init__(self) -> None:
         ratio("ratio", self.ratio)
-        non_negative("slope", self.slope)
+        non_negative("rise", self.rise)
 
     def rates(self, angular_frequency: Array) -> Array:
         """Return ``2 zeta w`` [1/s]."""
         frequency = angular_frequency / (2.0 * np.pi)
-        return np.asarray(2.0 * angular_frequency * (self.ratio + self.slope * frequency))
+        return np.asarray(2.0 * angular_frequency * (self.ratio + self.rise * frequency))
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class SampledDamping:
 
     frequency: Sequence[float]
     ratio: Sequence[float]
-    law: ClassVar[str] = "sampled"
+    form: ClassVar[str] = "sampled"
 
     def __post_init__(self) -> None:
         frequencies = _each("frequency", self.frequency, non_negative)

@@ -147,7 +147,7 @@ def _value(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {name: _value(entry) for name, entry in value.items()}
     if is_dataclass(value) and not isinstance(value, type):
-        return ({"law": value.law} if isinstance(value, DampingLaw) else {}) | _plain(value)
+        return ({"form": value.form} if isinstance(value, DampingLaw) else {}) | _plain(value)
     if isinstance(value, bool):
         return value
     if isinstance(value, Integral):

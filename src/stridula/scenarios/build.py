@@ -39,7 +39,7 @@ from .errors import ScenarioError
 from .quantities import quantity
 
 SECTIONS: dict[str, Callable[..., Any]] = {"rectangle": Rectangle, "circle": Circle, "general": Section}
-DAMPINGS: dict[str, Callable[..., Any]] = {law.law: law for law in (Rayleigh, RisingDamping, SampledDamping)}
+DAMPINGS: dict[str, Callable[..., Any]] = {law.form: law for law in (Rayleigh, RisingDamping, SampledDamping)}
 HISTORIES: dict[str, Callable[..., Any]] = {
     "constant": histories.Constant,
     "ramp": histories.Ramp,
@@ -401,7 +401,7 @@ def _damping(table: Tables) -> Tables:
     given = table.get("damping")
     if not isinstance(given, dict):
         return {}
-    return {"damping": DAMPINGS[given["law"]](**{key: value for key, value in given.items() if key != "law"})}
+    return {"damping": DAMPINGS[given["form"]](**{key: value for key, value in given.items() if key != "form"})}
 
 
 def _unknown(key: str, name: Any, known: Any) -> str:

@@ -149,22 +149,22 @@ class OneOrEach(_Kind):
 class DampingTable(_Kind):
     """A law of damping: its name and its parameters."""
 
-    laws: ClassVar[dict[str, Any]] = {
-        Rayleigh.law: (
+    forms: ClassVar[dict[str, Any]] = {
+        Rayleigh.form: (
             Rayleigh,
             {
                 "mass": (Quantity("1/s", least=0.0), "share of the mass matrix [1/s]"),
                 "stiffness": (Quantity("s", least=0.0), "share of the stiffness matrix [s]"),
             },
         ),
-        RisingDamping.law: (
+        RisingDamping.form: (
             RisingDamping,
             {
                 "ratio": (Quantity("1", least=0.0, below=1.0), "damping ratio at low frequencies"),
-                "slope": (Quantity("1/Hz", least=0.0), "rise of the damping ratio with the frequency of a mode [1/Hz]"),
+                "rise": (Quantity("1/Hz", least=0.0), "rise of the damping ratio with the frequency of a mode [1/Hz]"),
             },
         ),
-        SampledDamping.law: (
+        SampledDamping.form: (
             SampledDamping,
             {
                 "frequency": (OneOrEach(Quantity("Hz", least=0.0)), "frequencies at which the ratio is given [Hz]"),
@@ -174,12 +174,12 @@ class DampingTable(_Kind):
     }
 
     def read(self, value: Any) -> Any:
-        law = value.get("law", Rayleigh.law)
-        if law not in self.laws:
-            raise ValueError(f"must be of a law that is one of {', '.join(self.laws)}")
-        build, parameters = self.laws[law]
-        if value.keys() - {"law"} != parameters.keys():
-            raise ValueError(f"must have, under the law {law}, {' and '.join(parameters)}")
+        form = value.get("form", Rayleigh.form)
+        if form not in self.forms:
+            raise ValueError(f"must be of a form that is one of {', '.join(self.forms)}")
+        build, parameters = self.forms[form]
+        if value.keys() - {"form"} != parameters.keys():
+            raise ValueError(f"must have, in the form {form}, {' and '.join(parameters)}")
         given = {}
         for key, (kind, _) in parameters.items():
             try:
@@ -189,15 +189,15 @@ class DampingTable(_Kind):
         try:
             build(**given)
         except ValueError as error:
-            raise ValueError(f"must be a law in order: {error}") from None
-        return {"law": law, **given}
+            raise ValueError(f"must be in order: {error}") from None
+        return {"form": form, **given}
 
     def json_schema(self) -> dict[str, Any]:
         laws = []
-        for law, (_, parameters) in self.laws.items():
+        for form, (_, parameters) in self.forms.items():
             keys = {key: kind.json_schema() | {"description": words} for key, (kind, words) in parameters.items()}
-            name = {"const": law, "description": f"law of damping: {', '.join(self.laws)}"}
-            laws.append({"type": "object", "properties": {"law": name, **keys}, "additionalProperties": False})
+            name = {"const": form, "description": f"form of damping: {', '.join(self.forms)}"}
+            laws.append({"type": "object", "properties": {"form": name, **keys}, "additionalProperties": False})
         return {"anyOf": laws}
 
 

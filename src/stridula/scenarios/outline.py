@@ -10,7 +10,7 @@ from .schema import json_schema
 Node = dict[str, Any]
 Path = tuple[str | int, ...]
 SHARED = ("material", "section", "damping", "cutoff")
-TAGS = ("shape", "law", "kind", "quantity")
+TAGS = ("shape", "law", "kind", "form", "quantity")
 BEAMS = ("finite-element beam", "modal beam")
 PLATES = ("modal plate",)
 

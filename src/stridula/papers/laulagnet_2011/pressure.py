@@ -86,9 +86,16 @@ def rise(runs: Runs) -> float:
     return known[-1].median / known[0].median if known else float("nan")
 
 
+def rise_without_a_fall(runs: Runs) -> float:
+    """Return `rise`, NaN where the frequency falls by more than its resolution on the way."""
+    return rise(runs) if largest_fall(runs) <= 1.0 else float("nan")
+
+
 def ladder_words(runs: Runs) -> str:
-    """Return the median frequency under each load, in words."""
-    return ", ".join(f"{one.load:g} N: {one.median:.0f} Hz" for one in relaxations(runs))
+    """Return the median frequency under each load and the largest fall, in words."""
+    return f"largest fall {largest_fall(runs):.3g} resolutions; " + ", ".join(
+        f"{one.load:g} N: {one.median:.0f} Hz" for one in relaxations(runs)
+    )
 
 
 def _known(runs: Runs) -> list[Relaxations]:

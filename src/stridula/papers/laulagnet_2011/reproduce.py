@@ -81,6 +81,8 @@ def claims_table(rows: Sequence[dict[str, Any]]) -> str:
         printed = row["printed"].replace("|", "\\|")
         unit = "" if row["units"] == "1" else f" {row['units']}"
         measured = "none" if row["measured"] is None else f"{row['measured']:.4g}{unit}"
+        if row.get("interval"):
+            measured += " ({:.4g} to {:.4g})".format(*row["interval"])
         holds = "yes" if row["holds"] else "**no**"
         lines.append(
             f"| {row['section']} | {claim} | {printed} | {measured} | {row['tolerance']} | {holds} | {row['basis']} |"
