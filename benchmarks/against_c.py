@@ -50,7 +50,7 @@ class Pair:
     def __init__(self, given: st.System, compiled: ctypes.CDLL) -> None:
         probe = st.Acceleration(given.track.centre, "y")
         self.arrays = assemble(given, (probe,))
-        self.step = 0.2 * SCHEME.limit(self.arrays.angular_frequency, self.arrays.damping)
+        self.step = 0.2 * SCHEME.limit(self.arrays.angular_frequency, self.arrays.damping_rate)
         self.blocks = blocks_of(self.arrays, SCHEME, self.step)
         self.state = state_at_start(self.arrays, SCHEME, self.step, self.blocks, st.GaussSeidel())
         self.compiled = compiled

@@ -115,7 +115,7 @@ class Case:
 def limit_of(system: st.System) -> float:
     """Return the longest step [s] of a system."""
     arrays = assemble(system, [])
-    return SCHEME.limit(arrays.angular_frequency, arrays.damping)
+    return SCHEME.limit(arrays.angular_frequency, arrays.damping_rate)
 
 
 def case_of(system: st.System, step: float, steps: int = 1) -> Case:

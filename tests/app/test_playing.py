@@ -55,6 +55,7 @@ def test_every_control_turns_something_of_some_case(hello, talk):
     seen: dict[str, object] = {}
     for preset in hello["presets"]:
         seen |= talk.scene(preset["name"])["values"]
+    seen |= talk.scene("squeal", {"damping": 0.01})["values"]
     for choice in hello["choices"]:
         for kind, begins in choice["begins"].items():
             seen |= talk.scene("squeal", {choice["key"]: kind} | begins)["values"]

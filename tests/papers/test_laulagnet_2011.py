@@ -153,5 +153,5 @@ def test_reproduce_writes_figures_records_and_claims(tmp_path, monkeypatch):
     rows = laulagnet_2011.reproduce(tmp_path / "paper")
     names = {path.name for path in (tmp_path / "paper").iterdir()}
     cases = {f"{case}{kind}" for case in CASES for kind in (".nc", ".png", ".wav", "-sound.png")}
-    assert names == cases | {"figure-02.png", "figure-03.png", "claims.json", "claims.md"}
+    assert names == cases | {"figure-02.png", "figure-03.png", "frequency-over-load.png", "claims.json", "claims.md"}
     assert json.loads((tmp_path / "paper" / "claims.json").read_text()) == rows

@@ -168,7 +168,7 @@ def test_a_root_that_is_made_to_move_faster_does_not_take_its_body_along_at_once
         {"slider__elements": 12},
         {"slider__root_support": "free"},
         {"contact__gap": 1e-5},
-        {"contact__at": 1.2},
+        {"contact__at": 1.6},
     ],
 )
 def test_what_cannot_go_on_starts_anew(changes):

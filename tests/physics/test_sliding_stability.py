@@ -73,6 +73,9 @@ def dragged(friction: float, at: float = 0.31484):
     words = {
         "drives": [{"kind": "imposed velocity", "velocity": 0.1, "normal_load": 0.002}],
         "damping": 0.0096,
+        "section": {"shape": "rectangle", "width": 0.01944, "height": 0.008624},
+        "slider.length": 0.5354,
+        "track.length": 1.36,
         "contact": {"at": at, "gap": 0.0, "friction": {"law": "coulomb", "coefficient": friction}},
     }
     return st.load_scenario("strong-pressure", words).system

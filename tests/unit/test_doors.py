@@ -174,7 +174,7 @@ def test_a_sparse_matrix_that_points_beyond_itself_ends_no_process(tmp_path):
     [
         (
             {"track.length": 1e20},
-            r"^cutoff must leave at most 50000 modes, got 15000.0 Hz, below which there are 3.29709e\+21$",
+            r"^cutoff must leave at most 50000 modes, got 15000.0 Hz, below which there are 2.66575e\+21$",
         ),
         ({"track.length": 1e11}, "cutoff must leave at most 50000 modes"),
         ({"track.length": 1e5}, "cutoff must leave at most 50000 modes"),

@@ -144,13 +144,13 @@ def test_what_is_no_root_loci_is_told():
 
 
 def test_figure_shows_modes_bands_and_critical_values():
-    loci = st.root_loci("weak-pressure", "friction", np.linspace(0.6, 2.0, 8), highest=2e3)
-    critical = [st.critical_value("weak-pressure", "friction", 0.6, 0.8)]
+    loci = st.root_loci("weak-pressure", "friction", np.linspace(0.6, 2.0, 8), highest=4e3)
+    critical = [st.critical_value("weak-pressure", "friction", 0.6, 1.0)]
     figure = plot.root_loci(loci, critical)
     above, below = figure.axes
     assert below.get_xlabel() == "friction"
     assert above.get_ylabel() == "frequency [Hz]"
     assert [text.get_text() for text in above.get_legend().get_texts()] == ["decays", "grows", "jammed"]
-    assert any("0.63" in text.get_text() for text in above.texts)
+    assert any("0.877" in text.get_text() for text in above.texts)
     # The loci themselves, thin and thick, then one line for each critical value.
     assert len(above.lines) >= 2 * loci.sizes["mode"] + 1

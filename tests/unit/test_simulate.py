@@ -569,7 +569,7 @@ def pulled(history: st.Constant | st.Sampled, velocity: float = 0.01) -> st.Syst
 def test_a_run_goes_on_at_another_velocity_from_where_the_tip_is(scheme):
     """As a run whose velocity changes on the way, over one step."""
     words = {"scheme": scheme, "step": 2.5e-6, "sample_rate": 100e3}
-    half = 0.05
+    half = 0.04
     first = st.simulate(pulled(st.Constant()), half, **words)
     second = st.simulate(pulled(st.Constant(), 0.02), 0.002, start=first, **words)
     times = [0.0, half, half + 2.5e-6, 1.0]
