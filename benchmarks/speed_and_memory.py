@@ -1,4 +1,4 @@
-"""Speed and memory of the squeal case with 60 + 40 + 20 modes at 1 µs, over their bars.
+"""Speed and memory of the squeal case with 60 + 40 + 20 modes at 0.8 µs, over their bars.
 
 Memory is taken first: a process counts what the one that made it held then.
 """
@@ -14,7 +14,7 @@ import stridula as st
 from ratios import FORM, REPEATS, Ratio, over, seconds, show, sized
 from stridula.scenarios import load_scenario
 
-TITLE = "squeal with 122 modes at 1 us"
+TITLE = "squeal with 122 modes at 0.8 us"
 LONGEST_WALL_TIME = 0.6
 LARGEST_MEMORY = 400e6
 DURATION = sized(1.0, 0.01)

@@ -33,8 +33,8 @@ def refinements() -> dict[str, dict[str, float]]:
 
 
 def converging() -> list[Claim]:
-    """Return the claims whose measures are averaged: all but the ladders of friction."""
-    return [claim for claim in CLAIMS if not claim.claim.startswith("onset")]
+    """Return the claims whose measures are averaged: all but the ladders of friction and of load."""
+    return [claim for claim in CLAIMS if not claim.claim.startswith(("onset", "10 to 200 N"))]
 
 
 def one_start(arguments: tuple[str, int]) -> tuple[str, list[float]]:
