@@ -545,7 +545,7 @@ EXPECTED = {
 }
 
 
-# Of the strongest tone that landings leave; of relaxations, near the paper's 2.5 kHz; of the theory's cycle on the belt.
+# Of the tone that landings leave; of relaxations, near the paper's 2.5 kHz; of the theory's cycle on the belt.
 FREQUENCY = {"squeal": (320.0, 335.0), "strong-pressure": (2650.0, 2750.0), "belt": (0.273, 0.274)}
 # Under strong pressure the tone of the relaxations carries some half of the audible power: squeal or judder by little.
 LEAST_CONFIDENCE = {"strong-pressure": 0.5}
