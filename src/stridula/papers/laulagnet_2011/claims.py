@@ -488,7 +488,6 @@ CLAIMS = (
         *near(900.0, 0.1),
         "Hz",
         SQUEAL_HEARD,
-        fitted=False,
         detail=_ranks("squeal", SQUEAL_HEARD),
     ),
     Claim(
@@ -498,7 +497,6 @@ CLAIMS = (
         *near(2500.0, 0.1),
         "Hz",
         RELAXATIONS_HEARD,
-        fitted=False,
         detail=_ranks("strong-pressure", RELAXATIONS_HEARD),
     ),
     Claim(
