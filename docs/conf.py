@@ -331,16 +331,14 @@ def reproduce_paper() -> None:
 
 def claims_page() -> str:
     """Return the table of claims and what lies behind some of them."""
+    from stridula.papers.laulagnet_2011.reproduce import measured
+
     rows = json.loads((PAPER / "claims.json").read_text(encoding="utf-8"))
     held = sum(row["holds"] for row in rows)
     cells = []
     for row in rows:
-        unit = "" if row["units"] == "1" else f" {row['units']}"
-        measured = "none" if row["measured"] is None else f"{row['measured']:.4g}{unit}"
-        if row.get("interval"):
-            measured += " ({:.4g} to {:.4g})".format(*row["interval"])
         holds = "yes" if row["holds"] else "**no**"
-        first = [row["section"], row["claim"], row["printed"], measured, row["tolerance"]]
+        first = [row["section"], row["claim"], row["printed"], measured(row), row["tolerance"]]
         cells.append([*map(plain, first), holds, row["basis"]])
     head = ["section", "claim", "printed", "measured", "holds when", "holds", "basis"]
     words = [f"{row['section']} {row['claim']}: {row['detail']}" for row in rows if "detail" in row]

@@ -72,7 +72,9 @@ def pressure_figure(runs: Runs) -> Figure:
     bounds = np.array([median_over_starts(one.frequency)[1] or (np.nan, np.nan) for one in known])
     at = [one.load for one in known]
     axes.vlines(at, *bounds.T, color=LINES[0])
-    axes.plot(at, medians, "-", color=LINES[0], marker="_", markersize=10, label="median of 8 starts, its interval")
+    axes.plot(
+        at, medians, "-", color=LINES[0], marker="_", markersize=10, label=f"median of {STARTS} starts, its interval"
+    )
     for frequency, growth, name in growing_modes(runs):
         axes.axhline(frequency, color="0.4", linewidth=0.8, linestyle="--")
         words = f"{frequency:.0f} Hz, grows at {growth:.0f} 1/s: {name}"

@@ -66,6 +66,15 @@ def closing_line(rows: Sequence[dict[str, Any]]) -> str:
     return f"{line}; not: {'; '.join(missed)}" if missed else line
 
 
+def measured(row: dict[str, Any]) -> str:
+    """Return the value of a row with its unit and, where it is a median over starts, its interval."""
+    if row["measured"] is None:
+        return "none"
+    unit = "" if row["units"] == "1" else f" {row['units']}"
+    words = f"{row['measured']:.4g}{unit}"
+    return "{} ({:.4g} to {:.4g})".format(words, *row["interval"]) if row.get("interval") else words
+
+
 def claims_table(rows: Sequence[dict[str, Any]]) -> str:
     """Return the claims as a Markdown page."""
     lines = [
@@ -79,13 +88,8 @@ def claims_table(rows: Sequence[dict[str, Any]]) -> str:
     for row in rows:
         claim = row["claim"].replace("|", "\\|")
         printed = row["printed"].replace("|", "\\|")
-        unit = "" if row["units"] == "1" else f" {row['units']}"
-        measured = "none" if row["measured"] is None else f"{row['measured']:.4g}{unit}"
-        if row.get("interval"):
-            measured += " ({:.4g} to {:.4g})".format(*row["interval"])
         holds = "yes" if row["holds"] else "**no**"
-        lines.append(
-            f"| {row['section']} | {claim} | {printed} | {measured} | {row['tolerance']} | {holds} | {row['basis']} |"
-        )
+        cells = [row["section"], claim, printed, measured(row), row["tolerance"], holds, row["basis"]]
+        lines.append(f"| {' | '.join(cells)} |")
     details = [f"- {row['section']} {row['claim']}: {row['detail']}" for row in rows if "detail" in row]
     return "\n".join([*lines, "", *details, ""])

@@ -44,7 +44,6 @@ class Runs:
     report: Callable[[str], None] = lambda name: None
     _records: dict[str, xr.Dataset] = field(default_factory=dict, repr=False)
     _sounds: dict[str, xr.DataArray] = field(default_factory=dict, repr=False)
-    _onsets: dict[str, dict[float, str]] = field(default_factory=dict, repr=False)
     _made: dict[str, Any] = field(default_factory=dict, repr=False)
 
     def scenario(self, case: str, **overrides: Any) -> Scenario:
@@ -75,13 +74,14 @@ class Runs:
 
     def ladder(self, case: str) -> dict[float, str]:
         """Return how a case ends at each coefficient of friction of `LADDER`: sliding, stuck or vibrating."""
-        if case not in self._onsets:
-            self._onsets[case] = {}
-            for friction in LADDER:
-                self.report(f"{case} at friction {friction:g}")
-                run = self.scenario(case, coefficient=float(friction)).simulate()
-                self._onsets[case][float(friction)] = ending(run)
-        return self._onsets[case]
+        found: dict[float, str] = self.once(
+            f"{case} over friction", lambda: {float(friction): self._ends(case, float(friction)) for friction in LADDER}
+        )
+        return found
+
+    def _ends(self, case: str, friction: float) -> str:
+        self.report(f"{case} at friction {friction:g}")
+        return ending(self.scenario(case, coefficient=friction).simulate())
 
     def once(self, name: str, make: Callable[[], Any]) -> Any:
         """Return what `make` returns, made when it is first asked for by this name."""
