@@ -25,7 +25,7 @@ from ratios import WARM_UP, Ratio, must_agree, show, sized
 from stridula._kernels import layout as at
 from stridula.assembly import assemble
 from stridula.integration.blocks import blocks_of
-from stridula.integration.marches import Imposed, SimpleMarch
+from stridula.integration.marches import Imposed, March
 from stridula.integration.packing import aligned
 from stridula.integration.start import state_at_start
 from systems import REGIMES, SCHEME, SIZES, beams
@@ -57,7 +57,7 @@ class Pair:
 
     def ours(self) -> tuple[Callable[[], None], Callable[[], Result]]:
         """Return the march of the package, and what it gives."""
-        march = SimpleMarch([self.blocks], [deepcopy(self.state)], self.step, RATIO)
+        march = March([self.blocks], [deepcopy(self.state)], self.step, RATIO)
         imposed = Imposed(np.array([[1.0, 0.0, 0.0, 0.0]]), np.zeros((1, 1, at.MOTIONS)))
         chunks = []
 
@@ -78,7 +78,7 @@ class Pair:
         rows = apart({
             "b": block[at.B], "r": block[at.R], "l": block[at.LOAD], "half_l": block[at.HALF_OVER_LOAD],
             "loss": block[at.HALF_LOSS] * block[at.HALF_OVER_LOAD], "tip_x": one.fixed[1], "tip_y": one.fixed[0],
-            "load": self.blocks.modes.loads[0], "probe": self.blocks.probes.row[0, bending:axial],
+            "load": self.blocks.modes.loads[0], "probe": self.blocks.probes.rows[0, bending:axial],
             "q": state.modal[at.Q], "d": state.modal[at.D], "dn": np.zeros(end), "s": np.zeros(end), "c": np.zeros(end),
         })  # fmt: skip
         arrays = rows | {
@@ -90,6 +90,7 @@ class Pair:
         }
         numbers = {
             "mu": one.contact.friction.coefficient,
+            "amplitude": one.contact.track.amplitude,
             "fixed_nn": w[at.NORMAL, at.NORMAL],
             "w_nt": w[at.NORMAL, at.TANGENTIAL],
             "fixed_tt": w[at.TANGENTIAL, at.TANGENTIAL],

@@ -40,7 +40,7 @@ from stridula._kernels.vectors import LANES
 from stridula.assembly import assemble
 from stridula.integration.blocks import Blocks, blocks_of
 from stridula.integration.cuda_march import CudaMarch, require_cuda
-from stridula.integration.marches import Imposed, SimpleMarch, imposed_on
+from stridula.integration.marches import Imposed, March, imposed_on
 from stridula.integration.start import state_at_start
 from systems import FORCES, TOLERANCE, Case, squeal
 
@@ -91,7 +91,7 @@ def cases(frictions: Iterable[float], angles: Iterable[float], step: float) -> I
         arrays = assemble(squeal(angle, 1.0), [])
         blocks = blocks_of(arrays, scheme, step)
         state = state_at_start(arrays, scheme, step, blocks, st.GaussSeidel())
-        whole = imposed_on(arrays, blocks.heard, 0, 1, step)
+        whole = imposed_on(arrays, blocks.used, 0, 1, step)
         imposed = Imposed(whole.signals[:1], whole.motion[:1])
         for friction in frictions:
             laws = blocks.contacts.laws.copy()
@@ -133,7 +133,7 @@ def go(march, some, samples: int) -> float:
 def agree(some: list[Case], at: Timing) -> None:
     """Stop where some runs are not the same on the card and on the processor, before chaos parts them."""
     few, sides = some[:LANES], []
-    for kind in (CudaMarch, SimpleMarch):
+    for kind in (CudaMarch, March):
         march = march_of(kind, few, at)
         chunks = march.advance([one.imposed for one in few], SAMPLES_ALIKE)
         sides.append(([state.modal for state in march.states], [chunk.contacts[..., FORCES] for chunk in chunks]))
@@ -145,8 +145,8 @@ def on_the_processor(at: Timing) -> float:
     """Return one-second runs per second on all cores, eight side by side on each."""
     cores = os.cpu_count() or 1
     groups = list(batched(first(RUNS_OF_THE_PROCESSOR * cores, at.step), LANES))
-    marches = [march_of(SimpleMarch, group, at) for group in groups]
-    go(march_of(SimpleMarch, groups[0], at), groups[0], 1)
+    marches = [march_of(March, group, at) for group in groups]
+    go(march_of(March, groups[0], at), groups[0], 1)
     began = time.perf_counter()
     with ThreadPoolExecutor(cores) as pool:
         list(pool.map(go, marches, groups, [at.samples] * len(groups)))

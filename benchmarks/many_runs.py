@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import stridula as st
 from ratios import Ratio, must_agree, over, seconds, show, sized
 from stridula._kernels.vectors import LANES
-from stridula.integration.marches import Chunk, SimpleMarch
+from stridula.integration.marches import Chunk, March
 from systems import FORCES, GIVEN, RUNS, SIZES, TOLERANCE, beams, case_of, limit_of, marching, same_start, squeals
 
 TITLE = "many runs: throughput over that of single runs in sequence"
@@ -41,7 +41,7 @@ def of_the_march(modes: int) -> list[float]:
     step = 0.2 * limit_of(system)
     some = [case_of(system, step)] * LANES
     single, vector = (
-        SimpleMarch([one.blocks for one in group], [one.state for one in group], step, RATIO)
+        March([one.blocks for one in group], [one.state for one in group], step, RATIO)
         for group in (some[:1], some)
     )
     one, together = marching(single, some[:1], SAMPLES), marching(vector, some, SAMPLES)

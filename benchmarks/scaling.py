@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import stridula as st
 from ratios import Ratio, over, seconds, show, sized
-from stridula.integration.marches import GeneralMarch, SimpleMarch
+from stridula.integration.marches import March
 from systems import FEET, GIVEN, RUNS, SIZES, beams, case_of, limit_of, marching, pad, same_start, squeals
 
 TITLE = "scaling"
@@ -62,7 +62,7 @@ def stepping(system: st.System) -> Callable[[], object]:
     """Return what marches a system of one contact."""
     step = 0.2 * limit_of(system)
     case = case_of(system, step)
-    return marching(SimpleMarch([case.blocks], [case.state], step, RATIO), [case], SAMPLES)
+    return marching(March([case.blocks], [case.state], step, RATIO), [case], SAMPLES)
 
 
 def stepping_generally(system: st.System) -> Callable[[], object]:

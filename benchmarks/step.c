@@ -57,7 +57,7 @@ static double work_of_load(int modes, const double *restrict load, const double 
 }
 
 void march(long steps, int slider, int bending, int axial, double mu, double fixed_nn, double w_nt, double fixed_tt,
-           const double *restrict constants, const double *restrict b, const double *restrict r,
+           double amplitude,            const double *restrict constants, const double *restrict b, const double *restrict r,
            const double *restrict l, const double *restrict half_l, const double *restrict loss,
            const double *restrict tip_x, const double *restrict tip_y, const double *restrict load,
            const double *restrict probe, double *restrict q, double *restrict d, double *restrict dn,
@@ -65,7 +65,7 @@ void march(long steps, int slider, int bending, int axial, double mu, double fix
            double *restrict columns, double *restrict raw)
 {
     const int track = slider + bending, most = bending > axial ? bending : axial;
-    const double wavenumber = constants[WAVENUMBER], amplitude = constants[AMPLITUDE];
+    const double wavenumber = constants[ALONG];
     double material = carried[MATERIAL], anchor = carried[ANCHOR];
     double place = carried[ABSCISSA], before = carried[ABSCISSA_BEFORE], last_slip = carried[LAST_SLIP];
     double normal = carried[LAST_NORMAL], tangential = carried[LAST_TANGENTIAL];

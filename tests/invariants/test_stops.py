@@ -12,7 +12,7 @@ import stridula as st
 from stridula._kernels import layout
 from stridula.integration import blocks as blocks_module
 from stridula.integration import together as together_module
-from stridula.integration.marches import SimpleMarch
+from stridula.integration.marches import March
 from stridula.integration.stops import CAUSE, ENDED, WHAT, energy_created
 
 BOTH = pytest.mark.parametrize("scheme", SCHEMES, ids=SCHEME_NAMES)
@@ -141,13 +141,13 @@ def test_energy_from_nowhere(make, fault, scheme, monkeypatch):
 @BOTH
 def test_a_state_that_something_else_wrote_to(scheme, monkeypatch):
     """A position moved by a part in ten thousand between two chunks of a march."""
-    advance = SimpleMarch.advance
+    advance = March.advance
 
     def stray(march, *arguments):
-        march.rows[0, 0] *= 1.0 + 1e-4
+        march.modes.rows[0, 0] *= 1.0 + 1e-4
         return advance(march, *arguments)
 
-    monkeypatch.setattr(SimpleMarch, "advance", stray)
+    monkeypatch.setattr(March, "advance", stray)
     monkeypatch.setattr(together_module, "STEPS_PER_CHUNK", 100)
     check(stopped(oscillator(), scheme=scheme), "energy created", (0, 1000))
 
@@ -157,14 +157,14 @@ def test_energy_from_nowhere_keeps_the_samples_before(monkeypatch):
     system = oscillator(history=st.Harmonic(20.0), size=1.0)
     words = {"step": STEP, "sample_rate": 1e4, "probes": [st.Velocity(MASS.centre, "x")]}
     whole = st.simulate(system, 0.2, **words)
-    advance = SimpleMarch.advance
+    advance = March.advance
 
     def wrong(*arguments):
         (chunk,) = advance(*arguments)
         chunk.energies[700:, layout.DRIVE_WORK] += 1.0
         return [chunk]
 
-    monkeypatch.setattr(SimpleMarch, "advance", wrong)
+    monkeypatch.setattr(March, "advance", wrong)
     stop = stopped(system, probes=words["probes"])
     check(stop, "energy created", (700, 700))
     for name in ("normal_force", "tangential_force", "kinetic_and_elastic", "velocity"):

@@ -15,7 +15,7 @@ from stridula._kernels import layout as at
 from stridula.assembly import assemble
 from stridula.integration.blocks import blocks_of
 from stridula.integration.cuda_march import CudaMarch
-from stridula.integration.marches import SimpleMarch, imposed_on
+from stridula.integration.marches import March, imposed_on
 from stridula.integration.start import state_at_start
 
 STEP, RATIO = 5e-6, 3
@@ -79,7 +79,7 @@ class Prepared:
         self.state = state_at_start(self.arrays, scheme, STEP, self.blocks, st.GaussSeidel())
 
     def imposed(self, first: int, samples: int):
-        return imposed_on(self.arrays, self.blocks.heard, first * RATIO, samples * RATIO, STEP)
+        return imposed_on(self.arrays, self.blocks.used, first * RATIO, samples * RATIO, STEP)
 
 
 def marched(kind, prepared) -> list[dict[str, np.ndarray]]:
@@ -136,7 +136,7 @@ def compare(systems) -> dict[str, object]:
     """Return the largest differences kind by kind, the least from the run beside it, and how each run ended."""
     prepared = [Prepared(system) for system in systems]
     together = marched(CudaMarch, prepared)
-    alone = [marched(SimpleMarch, [one])[0] for one in prepared]
+    alone = [marched(March, [one])[0] for one in prepared]
     beside = alone[1:] + alone[:1]
     return {
         "differences": {

@@ -7,7 +7,7 @@ import os
 import subprocess
 import sys
 
-KERNELS = {"march.march", "one_contact.march_run", "one_contact.march_runs"}
+KERNELS = {"march.march_run", "march.march_runs"}
 
 
 def counts(cache, *words):

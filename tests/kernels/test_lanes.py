@@ -23,8 +23,9 @@ from stridula._kernels.lanes import (
     with_lane,
     write,
 )
-from stridula._kernels.traces import NUMBER, set_harmonics
+from stridula._kernels.block_rows import NUMBER, WAVE_ROWS
 from stridula._kernels.vectors import LANES
+from stridula._kernels.waves import set_multiples
 
 RANDOM = np.random.default_rng(7)
 A, B, C = RANDOM.normal(size=(3, LANES))
@@ -97,13 +98,13 @@ def test_as_plain_python_everything_is_a_number():
 
 
 @numba.njit
-def harmonics_of_one_run(theta, count, rows):
-    set_harmonics(theta, count, rows, 0, 0, 0)
+def multiples_of_one_run(theta, from_zero, count, rows):
+    set_multiples(theta, from_zero, count, rows, 0, 0, 0)
 
 
 @numba.njit
-def harmonics_of_eight_runs(thetas, count, rows):
-    set_harmonics(read(thetas, 0, 0, spread(0.0)), count, rows, 0, 0, 0)
+def multiples_of_eight_runs(thetas, from_zero, count, rows):
+    set_multiples(read(thetas, 0, 0, spread(0.0)), from_zero, count, rows, 0, 0, 0)
 
 
 @numba.njit
@@ -113,22 +114,25 @@ def copied(rows, out):
 
 
 @pytest.mark.parametrize("theta", [1e-9, 1e-3, 0.7, np.pi / 2, 3.0, np.pi - 1e-9])
-def test_harmonics_of_one_run(theta):
-    blocks = 13
-    rows = np.zeros((blocks, NUMBER + 1, LANES))
-    rows[:, NUMBER] = np.arange(1, blocks * LANES + 1).reshape(blocks, LANES)
-    harmonics_of_one_run(theta, blocks, rows)
-    k = np.arange(1, blocks * LANES + 1)
+@pytest.mark.parametrize("first", [0, 1])
+def test_multiples_of_one_run(theta, first):
+    """sin(k theta): a turn by eight adds one eps, np.sin's own argument is rounded by k theta eps / 2."""
+    blocks = 51
+    k = first + np.arange(blocks * LANES)
+    rows = np.zeros((blocks, WAVE_ROWS, LANES))
+    rows[:, NUMBER] = k.reshape(blocks, LANES)
+    multiples_of_one_run(theta, 1 - first, blocks, rows)
     np.testing.assert_allclose(rows[:, 0].ravel(), np.sin(k * theta), atol=4e-16 * k.size, rtol=0)
     np.testing.assert_allclose(rows[:, 1].ravel(), np.cos(k * theta), atol=4e-16 * k.size, rtol=0)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 25, 100])
-def test_harmonics_of_eight_runs(count):
+@pytest.mark.parametrize("first", [0, 1])
+def test_multiples_of_eight_runs(count, first):
     thetas = np.linspace(1e-6, np.pi - 1e-6, LANES)[None]
-    rows = np.zeros((count, NUMBER + 1, LANES))
-    harmonics_of_eight_runs(thetas, count, rows)
-    angles = np.arange(1, count + 1)[:, None] * thetas
+    rows = np.zeros((count, WAVE_ROWS, LANES))
+    multiples_of_eight_runs(thetas, 1 - first, count, rows)
+    angles = (first + np.arange(count))[:, None] * thetas
     np.testing.assert_allclose(rows[:, 0], np.sin(angles), atol=4e-16 * (count + 1), rtol=0)
     np.testing.assert_allclose(rows[:, 1], np.cos(angles), atol=4e-16 * (count + 1), rtol=0)
     # Nothing beyond the blocks asked for, and of a block nothing but the two rows.

@@ -1,4 +1,4 @@
-"""The compiled march against its slow twin, step by step, and the sines by doubling.
+"""The compiled march against its slow twin, step by step.
 
 Both follow the same equations by different arithmetic: increments against two positions, closed contact solve against
 trial of every state. The two-position form with ``1 - a + b`` computed by cancellation has a relative error of
@@ -19,8 +19,7 @@ from physics.cases import CASES, SCHEMES, STEP, every_step
 import stridula as st
 from kernels import twin
 from stridula._kernels import layout
-from stridula._kernels.march import stored_energy
-from stridula._kernels.traces import harmonics
+from stridula.integration.blocks import Recurrence
 
 STEPS = 1500
 BOTH = [pytest.param(SCHEMES[0], twin.central, id="central"), pytest.param(SCHEMES[1], twin.exact, id="exact")]
@@ -118,20 +117,8 @@ def test_stored_energy_is_the_energy_of_an_oscillation():
         energies = []
         for t in np.linspace(0.0, 3e-3, 7):
             now, before = (amplitude * np.sin(angular * s) for s in (t, t - step))
-            energies.append(stored_energy(block, np.zeros((layout.MATRICES, 0, 0)), np.array([now, now - before])))
+            modes = Recurrence(block, np.zeros((layout.MATRICES, 0, 0)), np.zeros((0, 1)), np.zeros((0, 1)))
+            energies.append(modes.stored_energy(np.array([now, now - before])))
         np.testing.assert_allclose(energies, energies[0], rtol=1e-9)
         # It is that times cos²(wh/2), which differs from 1 by (wh)²/4.
         assert energies[0] == pytest.approx(0.5 * (angular[0] * amplitude) ** 2, rel=tolerance)
-
-
-@pytest.mark.parametrize("theta", [1e-9, 0.1, np.pi / 4, np.pi / 2, 2.0, np.pi - 1e-6])
-@pytest.mark.parametrize("count", [1, 2, 3, 40, 127, 400])
-def test_harmonics_by_doubling(count, theta):
-    """sin(k theta): each doubling at most doubles the error and adds one eps, so k eps in all; np.sin's own argument
-    k theta is rounded by k theta eps / 2, which is up to pi/2 times that."""
-    sines, cosines = np.full(2 * count, np.nan), np.full(2 * count, np.nan)
-    harmonics(theta, count, sines, cosines)
-    k = np.arange(1, count + 1)
-    bound = 4.0 * k * np.finfo(float).eps
-    assert np.all(np.abs(sines[:count] - np.sin(k * theta)) <= bound)
-    assert np.all(np.abs(cosines[:count] - np.cos(k * theta)) <= bound)

@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import stridula as st
-from stridula._kernels import contact, friction, gauss_seidel
+from stridula._kernels import bookkeeping, contact, contacts, direct, faces, friction, solves
 from stridula.verification import instabilities
 from stridula.verification.instabilities import exponents
 
@@ -257,7 +257,7 @@ def test_kernels_of_the_contact_do_not_inherit_leave_to_reassociate():
     """numba hands fast arithmetic of a caller on to functions that say nothing of it."""
     functions = [
         value
-        for module in (contact, friction, gauss_seidel)
+        for module in (bookkeeping, contact, contacts, direct, faces, friction, solves)
         for value in vars(module).values()
         if hasattr(value, "targetoptions") and value.py_func.__module__ == module.__name__
     ]

@@ -30,7 +30,7 @@ import stridula as st
 from stridula.assembly import assemble
 from stridula.integration import together as together_module
 from stridula.integration.decimation import Decimator
-from stridula.integration.marches import GeneralMarch, SimpleMarch
+from stridula.integration.marches import March
 
 BOTH = pytest.mark.parametrize("scheme", SCHEMES, ids=SCHEME_NAMES)
 
@@ -275,7 +275,7 @@ def test_ctrl_c_during_the_march_leaves_state_and_record_together(monkeypatch, c
     system = CASES["squeal"]()
     words = {"step": STEP, "sample_rate": 50e3, "probes": probed(system)}
     whole = st.simulate(system, 0.4, **words)
-    advance, calls = SimpleMarch.advance, []
+    advance, calls = March.advance, []
 
     def struck(*arguments):
         result = advance(*arguments)
@@ -284,10 +284,10 @@ def test_ctrl_c_during_the_march_leaves_state_and_record_together(monkeypatch, c
             ctrl_c()
         return result
 
-    monkeypatch.setattr(SimpleMarch, "advance", struck)
+    monkeypatch.setattr(March, "advance", struck)
     with pytest.raises(st.Interrupted) as caught:
         st.simulate(system, 0.4, **words)
-    monkeypatch.setattr(SimpleMarch, "advance", advance)
+    monkeypatch.setattr(March, "advance", advance)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     first = caught.value.record
     second = st.simulate(system, 0.4 - first.sizes["time"] * first.attrs["sample_interval"], start=first, **words)
@@ -553,8 +553,8 @@ def test_a_march_that_had_to_be_compiled_first_is_the_same(name, monkeypatch):
             return self.kernel(*arguments)
 
     monkeypatch.setattr(together_module, "Dispatcher", Cold)
-    for kind in (SimpleMarch, GeneralMarch):
-        monkeypatch.setattr(kind, "kernel", property(lambda march, warm=kind.kernel: Cold(warm.fget(march))))
+    warm_kernel = March.kernel
+    monkeypatch.setattr(March, "kernel", property(lambda march: Cold(warm_kernel.fget(march))))
     first = case.simulate()
     assert first.attrs["compile_time"] > 0.0 == warm.attrs["compile_time"]
     assert_same([first], warm)

@@ -1,4 +1,4 @@
-"""The march on a graphics card: the very source of `one_contact`, one run per thread.
+"""The march on a graphics card: the very source of `march`, one run per thread.
 
 Everything is a number there: the plain functions of `lanes` are what they say. Runs side by side lie so in memory, and
 threads read whole lines of it. Double precision; products and sums are fused as the compiler for the card sees fit.
@@ -8,7 +8,7 @@ from types import FunctionType
 
 from numba import cuda
 
-from .one_contact import steps
+from .march import march
 
 _PACKAGE = __name__.rpartition(".")[0]
 
@@ -36,12 +36,12 @@ def _is_ours(thing):
     return isinstance(getattr(thing, "py_func", thing), FunctionType) and thing.__module__.startswith(_PACKAGE)
 
 
-_steps = on_card(steps)
+_march = on_card(march)
 
 
 @cuda.jit
-def march_each(runs, blocks, arguments):
+def march_each(runs, arguments):
     """March `runs` runs, one in each thread."""
     run = cuda.grid(1)
     if run < runs:
-        _steps(0.0, run, runs, blocks, *arguments)
+        _march(0.0, run, runs, *arguments)

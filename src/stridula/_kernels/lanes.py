@@ -22,6 +22,16 @@ def store(rows, k, row, run, value):
     rows[k, row, run] = value
 
 
+def entry(rows, k, row, run, like):
+    """Return number `k` of a row that goes over all blocks, for each run."""
+    return rows[k, row, run]
+
+
+def set_entry(rows, k, row, run, value):
+    """Put number `k` into a row that goes over all blocks, for each run."""
+    rows[k, row, run] = value
+
+
 def read(array, row, column, like):
     """Return what belongs to a run, or to each of several, from a row of `array`."""
     return array[row, column]
@@ -30,6 +40,16 @@ def read(array, row, column, like):
 def write(array, row, column, value):
     """Put what belongs to a run, or to each of several, into a row of `array`."""
     array[row, column] = value
+
+
+def held(array, row, run, like):
+    """Return what belongs to a run, or to each of several, from a row of an array that has nothing but one for each."""
+    return array[row, run]
+
+
+def hold(array, row, run, value):
+    """Put what belongs to a run, or to each of several, into a row of an array that has nothing but one for each."""
+    array[row, run] = value
 
 
 def spread(value):
@@ -97,6 +117,45 @@ def _for_numbers(function, accepts):
 
 def _is_number(*kinds):
     return all(isinstance(kind, (types.Number, types.Boolean)) for kind in kinds)
+
+
+# One run has its numbers in blocks as wide as a vector.
+WIDTH, SHIFT = 8, 3
+
+
+@overload(entry)
+def _entry(rows, k, row, run, like):
+    if not _is_number(like):
+        return lambda rows, k, row, run, like: load(rows, k, row, run)
+    return lambda rows, k, row, run, like: rows[k >> SHIFT, row, k & (WIDTH - 1)]
+
+
+@overload(set_entry)
+def _set_entry(rows, k, row, run, value):
+    if not _is_number(value):
+        return lambda rows, k, row, run, value: store(rows, k, row, run, value)
+
+    def implementation(rows, k, row, run, value):
+        rows[k >> SHIFT, row, k & (WIDTH - 1)] = value
+
+    return implementation
+
+
+@overload(held)
+def _held(array, row, run, like):
+    # Alone, a run has what belongs to it in a row of its own.
+    return (lambda array, row, run, like: array[row]) if _is_number(like) else None
+
+
+@overload(hold)
+def _hold(array, row, run, value):
+    if not _is_number(value):
+        return None
+
+    def implementation(array, row, run, value):
+        array[row] = value
+
+    return implementation
 
 
 _for_numbers(read, lambda array, row, column, like: _is_number(like))

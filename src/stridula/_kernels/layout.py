@@ -14,28 +14,21 @@ Q, D = range(2)
 # Rows of a contact: relative displacement of the tip against the fixed part of the track, along normal and tangent.
 NORMAL, TANGENTIAL = range(2)
 
-# Spans of the modes that a contact sees: fixed rows; bending and axial modes of a track that the tip moves along, on a
-# plate those in its plane. Then how many half-waves these have along the track, on a plate along its two sides; along
-# the second none on a beam.
-FIXED, FIXED_END, BENDING, BENDING_END, AXIAL, AXIAL_END, WAVES, CROSS_WAVES = range(8)
-SPANS = 8
-
-# Rows of the half-waves of each mode of a plate along its two sides: the place of their sine and cosine. That of one
-# half-wave is 0, that of none the last, at twice the number of all modes.
-ALONG, ACROSS = range(2)
-
-# Rows of what products of sines and cosines, along one side times across, give of a mode in the plane of a plate: of
-# its motion along the line, then of the slope of that.
-SINE_COSINE, COSINE_SINE, BOTH_COSINES, BOTH_SINES = range(4)
+# Spans of blocks of modes that a contact sees: first block, the one after the last, kind, whether their modes are made
+# of two waves, whether of cosines.
+BEGIN, END, KIND, TWO_WAVES, COSINES = range(5)
+SPAN = 5
+# Kinds of span: rows are constant; waves of a path along the normal and along the tangent.
+CONSTANT, PATH_NORMAL, PATH_TANGENTIAL = range(3)
 
 # Motion imposed on a contact: of the tip and of the track along the tangent, of the gap.
 TIP_MOTION, TRACK_MOTION, GAP_MOTION = range(3)
 MOTIONS = 3
 
-# Constants of a contact. On a track that the tip moves along: its ends; phase of a half-wave at abscissa zero and its
-# rate along the track, on a plate of both sides; amplitude of a mode.
-START, GAP, LAW, LOW, HIGH, PHASE, WAVENUMBER, CROSS_PHASE, CROSS_WAVENUMBER, AMPLITUDE = range(10)
-CONTACT_CONSTANTS = 10
+# Constants of a contact: where it starts, its gap, the ends of its path, rate along the path and value at abscissa zero
+# of the two angles whose sines the modes of the path are, ratio at rest of the law of friction, and whether there is a path.
+START, GAP, LOW, HIGH, ALONG, ALONG_PHASE, ACROSS, ACROSS_PHASE, AT_REST = range(9)
+CONTACT_CONSTANTS = 9
 
 # Laws of friction, and the parameters of each, the state of a new contact last.
 COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, LUGRE, AGING, SLIP = range(7)
@@ -59,6 +52,38 @@ LAW_PARAMETERS = 8
     CLOSED_SHARE,
 ) = range(12)
 CARRIED = 12
+
+# What a contact is in a step: gap, slip and abscissa, without its forces, then with them; forces, status, whether it is
+# jammed; while the contacts are solved together whether it may touch, has broken away, has been let go.
+(
+    FREE_GAP,
+    FREE_SLIP,
+    PLACE,
+    NEW_GAP,
+    NEW_SLIP,
+    NORMAL_NOW,
+    TANGENTIAL_NOW,
+    STATUS_NOW,
+    JAMMED_NOW,
+    MAY_TOUCH,
+    BROKE,
+    LET_GO,
+) = range(12)
+IN_STEP = 12
+
+# Sums over the steps of a sample, of each contact, and where it was at its beginning.
+(
+    NORMALS,
+    TANGENTIALS,
+    STUCK,
+    SLID,
+    JAMS,
+    TOUCHDOWNS,
+    STUCK_STEPS,
+    SLID_STEPS,
+    FIRST_MATERIAL,
+) = range(9)
+SUMS = 9
 
 # Columns of the energy record, one row a sample; all but the stored energy are carried from step to step.
 STORED, DRIVE_WORK, CONTACT_WORK, FRICTION_LOSS, CONVECTION_WORK, DAMPING_LOSS, ITERATIONS, UNSOLVED = range(8)

@@ -1,440 +1,457 @@
-"""The march of increments for any number of contacts and coupled modes: trial, contacts, correction, ledger, record."""
+"""The march in time: of one run, or of several side by side, with any number of contacts.
+
+The numbers of its parts are those of the steps in `docs/model.rst`.
+"""
 
 import math
+from typing import NamedTuple
 
 import numba
 import numpy as np
 
 from . import layout as at
-from .contact import SEPARATED, SLIDING, STICKING, closed_share, landed_share, stuck_share, velocity_at
-from .friction import next_state, set_valued
-from .gauss_seidel import displacement, own_compliance, solve_all, strayed
-from .traces import FASTMATH, harmonics
+from .block_rows import CONTACTS, DISPLACEMENT, SINE
+from .bookkeeping import add, driven_work, keep_forces, keep_motion, keep_place, share_states
+from .contacts import solve_all, start_from_last
+from .coupled import energy_of_coupled
+from .faces import own_compliance
+from .friction import set_valued
+from .lanes import anywhere, choose, entry, everywhere, held, hold, magnitude, read, spread, write
+from .modes import OPTIONS, set_load, stored_energy, work_of_unit_load
+from .recording import begin_sample, height_of, keep_probes, record_contact, record_energies, remember_probes
+from .solves import carried_by, forces_of_one, strayed
+from .trying import complete_many, complete_one, gap_of, place_after, soften, try_many, try_one
+from .vectors import LANES
 
 # Error of the contact forces, relative to the largest, beyond which none can be believed.
 UNBELIEVABLE = 1e-3
+# What became of a run: samples completed, what ended it.
+COMPLETED, ENDED = range(2)
 
 
-@numba.njit(cache=True, fastmath=FASTMATH, nogil=True)
-def stored_energy(block, matrices, state):
-    """Return the energy half a step ago, ``[(1+b)/2 d² + r q[n] q[n-1]] / (2 l)`` summed over the modes."""
-    energy = 0.0
-    coupled = matrices.shape[1]
-    for k in range(coupled):
-        kinetic = elastic = 0.0
-        for j in range(coupled):
-            kinetic += matrices[at.KINETIC, k, j] * state[at.D, j]
-            elastic += matrices[at.ELASTIC, k, j] * (state[at.Q, j] - state[at.D, j])
-        energy += kinetic * state[at.D, k] + elastic * state[at.Q, k]
-    for k in range(state.shape[1]):
-        q, d = state[at.Q, k], state[at.D, k]
-        energy += ((1.0 - block[at.HALF_LOSS, k]) * d * d + block[at.R, k] * q * (q - d)) * block[at.HALF_OVER_LOAD, k]
-    return energy
+class Sizes(NamedTuple):
+    """How much there is of what.
 
-
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def set_load(loads, signals, n, load):
-    """Put the sum of the load increments, each times its signal at step `n`, into `load`."""
-    for k in range(load.size):
-        load[k] = signals[n, 0] * loads[0, k]
-    for j in range(1, loads.shape[0]):
-        for k in range(load.size):
-            load[k] += signals[n, j] * loads[j, k]
-
-
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def trial_increments(block, matrices, state, load, new, position):
-    """Put increments and positions at the end of the step without contact force into `new` and `position`."""
-    for k in range(new.size):
-        increment = block[at.B, k] * state[at.D, k] - block[at.R, k] * state[at.Q, k] + load[k]
-        new[k] = increment
-        position[k] = state[at.Q, k] + increment
-    for k in range(matrices.shape[1]):
-        for j in range(matrices.shape[1]):
-            new[k] += matrices[at.KEPT, k, j] * state[at.D, j] - matrices[at.STIFFNESS, k, j] * state[at.Q, j]
-        position[k] = state[at.Q, k] + new[k]
-
-
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def along(rows, i, side, vector, first, last):
-    """Return the displacement along a row of contact `i` over a span."""
-    total = 0.0
-    for k in range(first, last):
-        total += rows[i, side, k] * vector[k]
-    return total
-
-
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def set_harmonics(contacts, spans, i, place, rows, waves, slopes):
-    """Put minus the trace of a beam at abscissa `place`, and its slope, into the harmonic spans of contact `i`."""
-    sines, cosines = waves[0], waves[1]
-    first, first_axial = spans[i, at.BENDING], spans[i, at.AXIAL]
-    wavenumber, amplitude = contacts[i, at.WAVENUMBER], contacts[i, at.AMPLITUDE]
-    count = np.int64(spans[i, at.WAVES])
-    harmonics(contacts[i, at.PHASE] + wavenumber * place, count, sines, cosines)
-    for k in range(first, spans[i, at.BENDING_END]):
-        rows[i, at.NORMAL, k] = -amplitude * sines[k - first]
-    for k in range(first_axial, spans[i, at.AXIAL_END]):
-        rows[i, at.TANGENTIAL, k] = -amplitude * sines[k - first_axial]
-    for k in range(count):
-        slopes[i, k] = -amplitude * wavenumber * (k + 1.0) * cosines[k]
-
-
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def set_products(contacts, spans, half_waves, shares, i, place, rows, waves, slopes):
-    """Put minus the trace of a plate at abscissa `place` of its line, and its slope, into the span of contact `i`."""
-    sines, cosines, cross_sines, cross_cosines = waves[0], waves[1], waves[2], waves[3]
-    first, amplitude = spans[i, at.BENDING], contacts[i, at.AMPLITUDE]
-    rate, cross_rate = contacts[i, at.WAVENUMBER], contacts[i, at.CROSS_WAVENUMBER]
-    harmonics(contacts[i, at.PHASE] + rate * place, np.int64(spans[i, at.WAVES]), sines, cosines)
-    phase = contacts[i, at.CROSS_PHASE] + cross_rate * place
-    harmonics(phase, np.int64(spans[i, at.CROSS_WAVES]), cross_sines, cross_cosines)
-    for k in range(first, spans[i, at.BENDING_END]):
-        m, n = half_waves[at.ALONG, k], half_waves[at.ACROSS, k]
-        rows[i, at.NORMAL, k] = -amplitude * sines[m] * cross_sines[n]
-        turn = rate * (m + 1.0) * cosines[m] * cross_sines[n] + cross_rate * (n + 1.0) * sines[m] * cross_cosines[n]
-        slopes[i, k - first] = -amplitude * turn
-    for k in range(spans[i, at.AXIAL], spans[i, at.AXIAL_END]):
-        m, n = half_waves[at.ALONG, k], half_waves[at.ACROSS, k]
-        sine, cosine, cross_sine, cross_cosine = sines[m], cosines[m], cross_sines[n], cross_cosines[n]
-        moved = shares[at.SINE_COSINE, k] * sine * cross_cosine + shares[at.COSINE_SINE, k] * cosine * cross_sine
-        rows[i, at.TANGENTIAL, k] = -moved
-        turn = shares[at.BOTH_COSINES, k] * cosine * cross_cosine + shares[at.BOTH_SINES, k] * sine * cross_sine
-        slopes[i, k - first] = -turn
-
-
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def set_compliance(block, matrices, rows, response, compliance):
-    """Put the relative displacements of all contacts for unit forces on each into `compliance`.
-
-    It is symmetric but where stiffness and damping of coupled modes do not commute.
+    Attributes
+    ----------
+    blocks, coupled : int
+        Blocks of modes, those of coupled modes, which come first.
+    per_block : int
+        Numbers of a run in a block.
+    contacts, faces : int
+        Contacts, blocks of their forces.
+    loads : int
+        Unit loads.
+    paths, coupled_paths : bool
+        Whether a contact is on a path, and on one whose modes are coupled.
     """
-    coupled = matrices.shape[1] > 0
-    for i in range(rows.shape[0]):
-        for side in range(2):
-            for k in range(response.size):
-                response[k] = block[at.LOAD, k] * rows[i, side, k]
-            for k in range(matrices.shape[1]):
-                for j in range(matrices.shape[1]):
-                    response[k] += matrices[at.MOBILITY, k, j] * rows[i, side, j]
-            for j in range(rows.shape[0] if coupled else i + 1):
-                for other in range(2):
-                    value = along(rows, j, other, response, 0, response.size)
-                    compliance[2 * j + other, 2 * i + side] = value
-                    if not coupled:
-                        compliance[2 * i + side, 2 * j + other] = value
+
+    blocks: int
+    coupled: int
+    per_block: int
+    contacts: int
+    faces: int
+    loads: int
+    paths: bool
+    coupled_paths: bool
 
 
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def add_push(spans, rows, i, normal, tangential, push):
-    """Add the modal forces of contact `i` to `push`."""
-    for k in range(spans[i, at.FIXED], spans[i, at.FIXED_END]):
-        push[k] += rows[i, at.NORMAL, k] * normal - rows[i, at.TANGENTIAL, k] * tangential
-    for k in range(spans[i, at.BENDING], spans[i, at.BENDING_END]):
-        push[k] += rows[i, at.NORMAL, k] * normal
-    for k in range(spans[i, at.AXIAL], spans[i, at.AXIAL_END]):
-        push[k] -= rows[i, at.TANGENTIAL, k] * tangential
+class Timing(NamedTuple):
+    """Steps of a sample, their length [s], and how contacts are solved: tolerance and most sweeps."""
+
+    steps_per_sample: int
+    step: float
+    tolerance: float
+    sweeps: int
 
 
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def correct(block, matrices, state, push, new):
-    """Add what the contact forces do to the increments; return their work."""
-    for k in range(matrices.shape[1]):
-        for j in range(matrices.shape[1]):
-            new[k] += matrices[at.MOBILITY, k, j] * push[j]
-    exchanged = 0.0
-    for k in range(new.size):
-        new[k] += block[at.LOAD, k] * push[k]
-        exchanged += push[k] * (new[k] + state[at.D, k])
-    return 0.5 * exchanged
+class Modes(NamedTuple):
+    """Rows of all modes, ``(blocks, rows, lanes)``, matrices of coupled ones, work of each load when it last changed."""
+
+    rows: np.ndarray
+    matrices: np.ndarray
+    given: np.ndarray
 
 
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def work_of_loads_and_damping(block, matrices, state, load, new):
-    """Return what the loads give and what damping takes in a step."""
-    coupled = matrices.shape[1]
-    given = lost = 0.0
-    for k in range(new.size):
-        both = new[k] + state[at.D, k]
-        given += load[k] * both * block[at.HALF_OVER_LOAD, k]
-        lost += block[at.HALF_LOSS, k] * both * both * block[at.HALF_OVER_LOAD, k]
-    for k in range(coupled):
-        impulse = loss = 0.0
-        for j in range(coupled):
-            impulse += matrices[at.IMPULSE, k, j] * load[j]
-            loss += matrices[at.LOSS, k, j] * (new[j] + state[at.D, j]) - matrices[at.TURN, k, j] * state[at.D, j]
-        given += impulse * (new[k] + state[at.D, k])
-        lost += loss * (new[k] + state[at.D, k])
-    return given, lost
+class Paths(NamedTuple):
+    """The modes that each contact sees, and the waves of those that it moves along.
 
-
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def convecting_force(spans, i, slopes, normal, tangential, state, new):
-    """Return the force along the track that its slopes make of the forces of contact `i`."""
-    first, first_axial = spans[i, at.BENDING], spans[i, at.AXIAL]
-    # Both kinds of modes of a beam share their slopes.
-    first_stretched = first if spans[i, at.CROSS_WAVES] > 0 else first_axial
-    bend = stretch = 0.0
-    for k in range(first, spans[i, at.BENDING_END]):
-        bend += slopes[i, k - first] * (state[at.Q, k] + new[k])
-    for k in range(first_axial, spans[i, at.AXIAL_END]):
-        stretch += slopes[i, k - first_stretched] * (state[at.Q, k] + new[k])
-    return tangential * stretch - normal * bend
-
-
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def closed_before(carried, i, status, gap, w):
-    """Return the share of the last step in which contact `i` was closed; `status` and `gap` are those of this step."""
-    closed = carried[i, at.CLOSED_SHARE]
-    normal, tangential = carried[i, at.LAST_NORMAL], carried[i, at.LAST_TANGENTIAL]
-    if status != SEPARATED or int(carried[i, at.STATUS]) == SEPARATED or normal <= 0.0:
-        return closed
-    return max(0.0, closed - 1.0 + closed_share(normal, tangential, gap, w[2 * i, 2 * i], w[2 * i, 2 * i + 1]))
-
-
-@numba.njit(cache=True, fastmath=FASTMATH, inline="always")
-def keep_probes(rows, kinds, direct, shares, state, new, signals, n, forces, raw):
-    """Put the values of the probes at step `n` into ``raw[n]``."""
-    for p in range(rows.shape[0]):
-        value = 0.0
-        for i in range(forces.shape[0]):
-            value += shares[p, i, 0] * forces[i, 0] + shares[p, i, 1] * forces[i, 1]
-        for j in range(signals.shape[1]):
-            value += direct[p, j] * signals[n, j]
-        for k in range(kinds[p, at.DISPLACEMENT, 0], kinds[p, at.DISPLACEMENT, 1]):
-            value += rows[p, at.DISPLACEMENT, k] * state[at.Q, k]
-        for k in range(kinds[p, at.VELOCITY, 0], kinds[p, at.VELOCITY, 1]):
-            value += rows[p, at.VELOCITY, k] * (new[k] + state[at.D, k])
-        for k in range(kinds[p, at.ACCELERATION, 0], kinds[p, at.ACCELERATION, 1]):
-            value += rows[p, at.ACCELERATION, k] * (new[k] - state[at.D, k])
-        raw[n, p] = value
-
-
-@numba.njit(cache=True, fastmath=FASTMATH, nogil=True)
-def march(
-    steps_per_sample,
-    step,
-    tolerance,
-    sweeps,
-    block,
-    matrices,
-    contacts,
-    laws,
-    spans,
-    half_waves,
-    shares,
-    rows,
-    compliance,
-    state,
-    carried,
-    energies,
-    loads,
-    signals,
-    motion,
-    probe_rows,
-    probe_kinds,
-    probe_direct,
-    probe_shares,
-    energy_record,
-    record,
-    raw,
-):
-    """March through ``record.shape[0]`` samples and return (samples completed, what ended the march).
-
-    `loads` has a row of load increments for each of the first signals, `signals` a row of amplitudes a step, `motion`
-    the motions imposed on each contact at every step, the one before and the one after. `half_waves` are those of
-    the modes of plates, `shares` what their products give of those in the plane. `rows` are the contacts' traces, their
-    harmonic spans filled here; `compliance` is that of the fixed parts. `state`, `carried` and `energies` are updated
-    in place; `energy_record` and `record` get a row a sample, `raw` the probes at every step.
+    Attributes
+    ----------
+    waves : ndarray, shape (blocks, rows, lanes)
+        Sines and cosines at each contact.
+    sets, pairs : ndarray of int
+        Which waves each contact has, and which of them are sums and differences.
+    wave_of : ndarray of int, shape (blocks of modes,)
+        The wave of a block, from the first of a contact on.
+    spans, first_span : ndarray of int
+        Spans of blocks; those of contact i from ``first_span[i]`` to ``first_span[i + 1]``, constant ones first.
+    path_of : ndarray of int, shape (contacts,)
+        The first block of the path of a contact, -1 for none.
     """
-    n_modes, n_contacts = block.shape[1], contacts.shape[0]
-    n_harmonic = 0
-    for i in range(n_contacts):
-        n_harmonic += spans[i, at.BENDING_END] > spans[i, at.BENDING]
-    waves, slopes = np.zeros((4, 2 * n_modes + 1)), np.zeros((n_contacts, n_modes))
-    waves[1, 2 * n_modes] = waves[3, 2 * n_modes] = 1.0
-    load, new, position = np.zeros(n_modes), np.empty(n_modes), np.empty(n_modes)
-    push, work = np.empty(n_modes), np.empty(n_modes)
-    gaps, slips, places = np.empty(n_contacts), np.empty(n_contacts), np.empty(n_contacts)
-    forces, statuses = np.zeros((n_contacts, 2)), np.zeros(n_contacts, dtype=np.int64)
-    jammed = np.zeros(n_contacts, dtype=np.bool_)
-    w = compliance.copy()
-    sums, steps_in = np.zeros((n_contacts, at.COLUMNS)), np.zeros((n_contacts, 3), dtype=np.int64)
-    first_material = np.empty(n_contacts)
-    drive, contact = energies[at.DRIVE_WORK], energies[at.CONTACT_WORK]
-    friction, convection = energies[at.FRICTION_LOSS], energies[at.CONVECTION_WORK]
-    damping = energies[at.DAMPING_LOSS]
 
-    n = 0
-    for sample in range(record.shape[0]):
-        sums[:], steps_in[:] = 0.0, 0
-        most_sweeps = unsolved = 0
-        for i in range(n_contacts):
-            first_material[i] = carried[i, at.MATERIAL]
-        for _ in range(steps_per_sample):
-            changed = n == 0
-            for j in range(loads.shape[0]):
-                changed = changed or signals[n, j] != signals[n - 1, j]
-            if changed and loads.shape[0]:
-                set_load(loads, signals, n, load)
-            trial_increments(block, matrices, state, load, new, position)
+    waves: np.ndarray
+    sets: np.ndarray
+    pairs: np.ndarray
+    wave_of: np.ndarray
+    spans: np.ndarray
+    first_span: np.ndarray
+    path_of: np.ndarray
 
-            for i in range(n_contacts):
-                first, last = spans[i, at.FIXED], spans[i, at.FIXED_END]
-                gap = (
-                    contacts[i, at.GAP]
-                    + motion[n + 2, i, at.GAP_MOTION]
-                    + along(rows, i, at.NORMAL, position, first, last)
-                )
-                place = (
-                    contacts[i, at.START]
-                    + motion[n + 2, i, at.TIP_MOTION]
-                    + along(rows, i, at.TANGENTIAL, position, first, last)
-                )
-                material = place - motion[n + 2, i, at.TRACK_MOTION]
-                bending, bending_end = spans[i, at.BENDING], spans[i, at.BENDING_END]
-                if bending_end > bending:
-                    low, high = contacts[i, at.LOW], contacts[i, at.HIGH]
-                    if not low < place < high:
-                        # A tip does not cross the whole track in one step: that is a march that diverges.
-                        crossed = abs(place - carried[i, at.ABSCISSA]) < high - low
-                        return sample, (at.OFF_TRACK if crossed else at.NOT_FINITE)
-                    if spans[i, at.CROSS_WAVES] > 0:
-                        set_products(contacts, spans, half_waves, shares, i, place, rows, waves, slopes)
-                    else:
-                        set_harmonics(contacts, spans, i, place, rows, waves, slopes)
-                    gap += along(rows, i, at.NORMAL, position, bending, bending_end)
-                    material += along(rows, i, at.TANGENTIAL, position, spans[i, at.AXIAL], spans[i, at.AXIAL_END])
-                gaps[i], slips[i], places[i] = gap, material - carried[i, at.MATERIAL], place
 
-            touching = opening = False
-            for i in range(n_contacts):
-                touching = touching or gaps[i] < 0.0
-                opening = opening or int(carried[i, at.STATUS]) != SEPARATED
-            if n_harmonic and (touching or opening):
-                set_compliance(block, matrices, rows, work, w)
-            if touching:
-                for i in range(n_contacts):
-                    forces[i, 0], forces[i, 1] = 0.0, 0.0
-                made, error = solve_all(
-                    gaps, slips, w, contacts, laws, carried, step, tolerance, sweeps, forces, statuses, jammed
+class Contacts(NamedTuple):
+    """Laws of friction, constants, compliances and what the contacts are in a step.
+
+    Attributes
+    ----------
+    codes, laws : ndarray, shapes (contacts,), (contacts runs, parameters)
+        Law of each contact and its parameters in each run.
+    constants, fixed : ndarray, a column a run
+        Constants of each contact; compliance of the only one on constant rows.
+    faces, scratch : ndarray, shape (blocks, rows, lanes)
+        Forces, displacements and compliances of all contacts; a linear system.
+    now, sums : ndarray, a column a run
+        What each contact is in a step; sums over a sample.
+    """
+
+    codes: np.ndarray
+    laws: np.ndarray
+    constants: np.ndarray
+    fixed: np.ndarray
+    faces: np.ndarray
+    scratch: np.ndarray
+    now: np.ndarray
+    sums: np.ndarray
+
+
+class Carried(NamedTuple):
+    """What is carried from step to step, a column a run: of contacts, at their end if they have ended, of energies."""
+
+    carried: np.ndarray
+    at_end: np.ndarray
+    energies: np.ndarray
+
+
+class Imposed(NamedTuple):
+    """Amplitudes of the loads and what else is imposed; motions of contacts, from a step before; a row a step, or one."""
+
+    signals: np.ndarray
+    motion: np.ndarray
+
+
+class Probes(NamedTuple):
+    """Kinds of probes, blocks they see, shares of signals and contact forces, values at the last step."""
+
+    kinds: np.ndarray
+    spans: np.ndarray
+    direct: np.ndarray
+    shares: np.ndarray
+    last: np.ndarray
+
+
+class Records(NamedTuple):
+    """A row a sample for energies and contacts, a row a step for the probes; what became of each run."""
+
+    energies: np.ndarray
+    contacts: np.ndarray
+    raw: np.ndarray
+    stops: np.ndarray
+
+
+@numba.njit(**OPTIONS)
+def differ(signals, n, loads, run, runs, zero):
+    """Return whether a load at step `n` is another than at the step before."""
+    if n == 0 or n >= signals.shape[0]:
+        return n == 0
+    for j in range(loads):
+        column = j * runs + run
+        if anywhere(magnitude(read(signals, n, column, zero) - read(signals, n - 1, column, zero)) > 0.0):
+            return True
+    return False
+
+
+@numba.njit(**OPTIONS)
+def credit_loads(modes, sizes, energies, signals, n, first, run, runs, zero):
+    """Add what the loads have given up to step `n` since their amplitudes changed, and begin anew."""
+    for j in range(sizes.loads):
+        work = work_of_unit_load(modes.rows, first + sizes.loads + j, sizes.blocks, run, zero)
+        if n > 0:
+            factor = read(signals, n - 1 if signals.shape[0] > 1 else 0, j * runs + run, zero)
+            add(energies, at.DRIVE_WORK, run, factor * (work - held(modes.given, j, run, zero)), zero)
+        hold(modes.given, j, run, work)
+
+
+@numba.njit(**OPTIONS)
+def leave(ended, completed, leaves, why, sample, state, run, zero):
+    """Return what ended runs and how many samples they have, where some leave now; keep what their contacts are."""
+    newly = choose(ended > 0.0, zero, leaves) > 0.5
+    for row in range(state.carried.shape[0]):
+        kept = choose(newly, held(state.carried, row, run, zero), held(state.at_end, row, run, zero))
+        hold(state.at_end, row, run, kept)
+    return choose(newly, why, ended), choose(newly, zero + sample, completed)
+
+
+@numba.njit(**OPTIONS)
+def beyond_ends(i, place, contacts, state, run, zero):
+    """Return where contact `i` is beyond the ends of its path, and why: by its motion, or by one that diverges."""
+    base = i * at.CONTACT_CONSTANTS
+    low, high = held(contacts.constants, base + at.LOW, run, zero), held(contacts.constants, base + at.HIGH, run, zero)
+    leaves = choose(choose(place > low, high - place, zero) > 0.0, zero, 1.0)
+    if not anywhere(leaves > 0.5):
+        return leaves, leaves
+    # A tip does not cross the whole track in one step: that is a march that diverges.
+    within = magnitude(place - held(state.carried, i * at.CARRIED + at.ABSCISSA, run, zero)) < high - low
+    return leaves, choose(within, zero + at.OFF_TRACK, zero + at.NOT_FINITE)
+
+
+@numba.njit(**OPTIONS)
+def any_beyond_ends(sizes, paths, contacts, state, run, zero):
+    """Return where any contact is beyond the ends of its path, and why."""
+    leaves, why = zero, zero
+    for i in range(sizes.contacts):
+        if paths.path_of[i] >= 0:
+            place = held(contacts.now, i * at.IN_STEP + at.PLACE, run, zero)
+            here, because = beyond_ends(i, place, contacts, state, run, zero)
+            leaves, why = choose(here > 0.5, here, leaves), choose(here > 0.5, because, why)
+    return leaves, why
+
+
+@numba.njit(**OPTIONS)
+def solve_single(free, contacts, carried, w, timing, run, zero):
+    """Return normal and tangential force, status and whether it is jammed of the only contact."""
+    _, gap, slip = free
+    if not anywhere(gap < 0.0):
+        return zero, zero, zero, zero
+    law, at_rest = contacts.codes[0], held(contacts.constants, at.AT_REST, run, zero)
+    away, before = strayed(carried, 0, run, zero), carried_by(carried, 0, run, zero)
+    return forces_of_one(gap, slip, away, w, law, contacts.laws, run, at_rest, before, zero, timing.step, zero)
+
+
+@numba.njit(**OPTIONS)
+def solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero):
+    """Put forces, status, gap and slip of all contacts; return the error of the forces."""
+    now, faces, count = contacts.now, contacts.faces, sizes.contacts
+    touching, closed = zero, zero
+    for i in range(count):
+        touching = choose(held(now, i * at.IN_STEP + at.FREE_GAP, run, zero) < 0.0, 1.0, touching)
+        closed = choose(held(state.carried, i * at.CARRIED + at.STATUS, run, zero) > 0.5, 1.0, closed)
+    if sizes.paths and (anywhere(touching > 0.5) or anywhere(closed > 0.5)):
+        soften(modes, paths, contacts, sizes, run, zero)
+    start_from_last(contacts, state.carried, touching, sizes, run, zero)
+    made, error = zero, zero
+    if anywhere(touching > 0.5):
+        made, error = solve_all(contacts, state.carried, touching, sizes, timing, run, runs, zero)
+    most = held(state.energies, at.ITERATIONS, run, zero)
+    hold(state.energies, at.ITERATIONS, run, choose(made > most, made, most))
+    add(state.energies, at.UNSOLVED, run, choose(error <= timing.tolerance, zero, 1.0), zero)
+    for i in range(count):
+        here, w = i * at.IN_STEP, own_compliance(faces, i, run, zero)
+        normal, tangential = held(now, here + at.NORMAL_NOW, run, zero), held(now, here + at.TANGENTIAL_NOW, run, zero)
+        gap, slip = entry(faces, 2 * i, DISPLACEMENT, run, zero), entry(faces, 2 * i + 1, DISPLACEMENT, run, zero)
+        hold(now, here + at.NEW_GAP, run, gap)
+        hold(now, here + at.NEW_SLIP, run, slip)
+        # From here on without the forces of this contact alone.
+        hold(now, here + at.FREE_GAP, run, gap - w[0] * normal + w[1] * tangential)
+        hold(now, here + at.FREE_SLIP, run, slip - w[2] * normal + w[3] * tangential)
+    return error
+
+
+@numba.njit(**OPTIONS)
+def keep_unsolved(contacts, state, sizes, unsolved, run, zero):
+    """Carry the forces that were not found, for the message that says so."""
+    for i in range(sizes.contacts):
+        here, base = i * at.IN_STEP, i * at.CARRIED
+        for row, found in (
+            (at.LAST_NORMAL, at.NORMAL_NOW),
+            (at.LAST_TANGENTIAL, at.TANGENTIAL_NOW),
+            (at.STATUS, at.STATUS_NOW),
+        ):
+            value = held(contacts.now, here + found, run, zero)
+            kept = choose(unsolved > 0.5, value, held(state.carried, base + row, run, zero))
+            hold(state.carried, base + row, run, kept)
+
+
+@numba.njit(**OPTIONS)
+def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, runs, zero):
+    """Do the bookkeeping of contact `i` in step `n`, but for where it is.
+
+    `touch` are normal and tangential force, status and whether it is jammed, `moved` gap and slip without these forces,
+    then with them.
+    """
+    law, carried, sums = contacts.codes[i], state.carried, contacts.sums
+    before = carried_by(carried, i, run, zero)
+    if not set_valued(law) or anywhere(touch[2] + before[0] > 0.5):
+        away = strayed(carried, i, run, zero)
+        at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero)
+        closed = share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, run, zero)
+        if imposed.motion.shape[0] > 1:
+            driven = driven_work(i, touch, imposed.motion, n, run, runs, zero)
+            add(state.energies, at.CONTACT_WORK, run, -driven, zero)
+            add(state.energies, at.DRIVE_WORK, run, driven, zero)
+        number = i * runs + run
+        lost = keep_forces(
+            i, touch, moved, before, carried, sums, closed, law, contacts.laws, number, timing.step, run, zero
+        )
+        add(state.energies, at.FRICTION_LOSS, run, lost, zero)
+    keep_motion(i, moved, before, carried, run, zero)
+
+
+@numba.njit(**OPTIONS)
+def keep_books_of(i, contacts, state, imposed, timing, n, run, runs, zero):
+    """Do the bookkeeping of contact `i` among several."""
+    now, here = contacts.now, i * at.IN_STEP
+    touch = (
+        held(now, here + at.NORMAL_NOW, run, zero),
+        held(now, here + at.TANGENTIAL_NOW, run, zero),
+        held(now, here + at.STATUS_NOW, run, zero),
+        held(now, here + at.JAMMED_NOW, run, zero),
+    )
+    moved = (
+        held(now, here + at.FREE_GAP, run, zero),
+        held(now, here + at.FREE_SLIP, run, zero),
+        held(now, here + at.NEW_GAP, run, zero),
+        held(now, here + at.NEW_SLIP, run, zero),
+    )
+    w = own_compliance(contacts.faces, i, run, zero)
+    keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, runs, zero)
+
+
+@numba.njit(**OPTIONS)
+def credit(energies, work, lost, convected, run, zero):
+    """Add what a step of the modes came to: work of the contacts, what damping took, work of slopes carried along."""
+    add(energies, at.CONTACT_WORK, run, work, zero)
+    add(energies, at.DAMPING_LOSS, run, lost, zero)
+    add(energies, at.CONVECTION_WORK, run, convected, zero)
+
+
+@numba.njit(**OPTIONS)
+def energy_of(modes, sizes, run, zero):
+    """Return the energy half a step ago."""
+    places = sizes.coupled * sizes.per_block
+    coupled = energy_of_coupled(modes.rows, modes.matrices, sizes.coupled, places, run, zero)
+    return coupled + stored_energy(modes.rows, sizes.coupled, sizes.blocks, run, zero)
+
+
+@numba.njit(**(OPTIONS | {"nogil": True, "forceinline": False}))
+def march(zero, run, runs, sizes, timing, modes, paths, contacts, state, imposed, probes, records):
+    """March through ``records.energies.shape[0]`` samples, or until no run goes on.
+
+    What belongs to a run has a column for each run; where there are several numbers of a kind, they come in groups of
+    columns. `zero` is of the kind that numbers of a run have: a number, or a vector of several runs; `run` is the first
+    of these runs, `runs` how many columns there are.
+    """
+    count, energies, motion = sizes.contacts, state.energies, imposed.motion
+    single, moving = count == 1 and sizes.coupled == 0, motion.shape[0] > 1
+    first_load = CONTACTS + 2 * count
+    first_probe = first_load + 2 * sizes.loads
+    remember_probes(modes.rows, first_probe, probes.kinds, probes.spans, probes.last, run, zero)
+    advance, ended, completed = zero, zero, zero
+    n, pending, sine, touch = 0, False, SINE, (zero, zero, zero, zero)
+    for sample in range(records.energies.shape[0]):
+        begin_sample(contacts.sums, state.carried, count, run, zero)
+        hold(energies, at.ITERATIONS, run, zero)
+        hold(energies, at.UNSOLVED, run, zero)
+        for i in range(timing.steps_per_sample):
+            if differ(imposed.signals, n, sizes.loads, run, runs, zero):
+                credit_loads(modes, sizes, energies, imposed.signals, n, first_load, run, runs, zero)
+                for j in range(sizes.loads):
+                    factor = read(imposed.signals, n, j * runs + run, zero)
+                    set_load(modes.rows, j, first_load + j, sizes.blocks, run, factor)
+            after = n + 2 if moving else 0
+            leaves, why, w, free = zero, zero, (zero, zero, zero, zero), (zero, zero, zero)
+            if single:
+                free, w_nn, w_tt, done = try_one(
+                    modes, paths, contacts, state, imposed, after, touch, pending, sine, run, runs, zero
                 )
-                most_sweeps = max(most_sweeps, made)
-                unsolved += not error <= tolerance
-                if not error <= UNBELIEVABLE:
-                    for i in range(n_contacts):
-                        carried[i, at.LAST_NORMAL], carried[i, at.LAST_TANGENTIAL] = forces[i, 0], forces[i, 1]
-                        carried[i, at.STATUS] = statuses[i]
-                    return sample, at.CONTACT_UNSOLVED
+                sine = 2 - sine
+                # A run that has ended is not looked at again.
+                free = (free[0], choose(ended > 0.0, zero, free[1]), free[2])
+                w_nt = held(contacts.fixed, 1, run, zero)
+                w = (w_nn, w_nt, w_nt, choose(ended > 0.0, 1.0, w_tt))
+                if pending:
+                    credit(energies, done[0], done[1], done[2] * advance, run, zero)
+                    keep_probes(modes.rows, first_probe, probes, imposed, contacts.now, 1, n - 1, run, runs, records.raw, zero)
+                if sizes.paths:
+                    leaves, why = beyond_ends(0, free[0], contacts, state, run, zero)
+                touch = solve_single(free, contacts, state.carried, w, timing, run, zero)
             else:
-                for i in range(n_contacts):
-                    forces[i, 0], forces[i, 1], statuses[i] = 0.0, 0.0, SEPARATED
-
-            if touching:
-                for k in range(n_modes):
-                    push[k] = 0.0
-                for i in range(n_contacts):
-                    if statuses[i] != SEPARATED:
-                        add_push(spans, rows, i, forces[i, 0], forces[i, 1], push)
-                contact += correct(block, matrices, state, push, new)
-            given, lost = work_of_loads_and_damping(block, matrices, state, load, new)
-            drive += given
-            damping += lost
-
-            for i in range(n_contacts):
-                normal, tangential = forces[i, 0], forces[i, 1]
-                gap, slip, place = gaps[i], slips[i], places[i]
-                if touching:
-                    for j in range(n_contacts):
-                        gap += displacement(w, 2 * i, j, forces)
-                        slip += displacement(w, 2 * i + 1, j, forces)
-                    place = contacts[i, at.START] + motion[n + 2, i, at.TIP_MOTION]
-                    for k in range(spans[i, at.FIXED], spans[i, at.FIXED_END]):
-                        place += rows[i, at.TANGENTIAL, k] * (state[at.Q, k] + new[k])
-                before = carried[i, at.MATERIAL]
-                material = before + slip
-                status, was = statuses[i], int(carried[i, at.STATUS])
-                closed = closed_before(carried, i, status, gap, w)
-                sums[i, at.SEPARATED] += 1.0 - closed
-                held = closed if was == STICKING else 0.0
-                if was == STICKING and status == SLIDING and set_valued(int(contacts[i, at.LAW])):
-                    own = own_compliance(w, i)
-                    alone = gap - displacement(w, 2 * i, i, forces), slip - displacement(w, 2 * i + 1, i, forces)
-                    last = carried[i, at.LAST_NORMAL], carried[i, at.LAST_TANGENTIAL]
-                    held *= stuck_share(last[0], last[1], alone[0], alone[1] + strayed(carried, i), own, laws[i, 0])
-                sums[i, at.STICKING] += held
-                sums[i, at.SLIDING] += closed - held
-                steps_in[i, status] += 1
-                closed = 0.0
-                if status != SEPARATED:
-                    closed = 1.0
-                    if was == SEPARATED:
-                        sums[i, at.LANDINGS] += 1
-                        closed = landed_share(carried[i, at.LAST_GAP], gap - displacement(w, 2 * i, i, forces))
-                    if status == STICKING:
-                        sums[i, at.JAMMED] += jammed[i]
-                        if was != STICKING:
-                            carried[i, at.ANCHOR] = before
-                    tip = 0.5 * (motion[n + 2, i, at.TIP_MOTION] - motion[n, i, at.TIP_MOTION])
-                    track = 0.5 * (motion[n + 2, i, at.TRACK_MOTION] - motion[n, i, at.TRACK_MOTION])
-                    lift = 0.5 * (motion[n + 2, i, at.GAP_MOTION] - motion[n, i, at.GAP_MOTION])
-                    driven = tangential * (tip - track) - normal * lift
-                    contact -= driven
-                    drive += driven
-                    # In a step in which the slip turns round, its mean force and the slip have opposite signs.
-                    given_back = not set_valued(int(contacts[i, at.LAW]))
-                    friction += tangential * slip if given_back else abs(tangential * slip)
-                    if spans[i, at.BENDING_END] > spans[i, at.BENDING]:
-                        slope = convecting_force(spans, i, slopes, normal, tangential, state, new)
-                        convection += slope * 0.5 * (place - carried[i, at.ABSCISSA_BEFORE])
-                    sums[i, at.NORMAL_FORCE] += normal
-                    sums[i, at.TANGENTIAL_FORCE] += tangential
-                law = int(contacts[i, at.LAW])
-                if not set_valued(law):
-                    if status == SEPARATED:
-                        carried[i, at.FRICTION_STATE] = laws[i, at.LAW_PARAMETERS - 1]
-                    else:
-                        slips_before = status, carried[i, at.LAST_SLIP], carried[i, at.EARLIER_SLIP]
-                        velocity = velocity_at(slip, slips_before, step)
-                        old = carried[i, at.FRICTION_STATE]
-                        carried[i, at.FRICTION_STATE] = next_state(law, laws, i, old, velocity, step)
-                carried[i, at.STATUS], carried[i, at.MATERIAL] = status, material
-                carried[i, at.EARLIER_SLIP], carried[i, at.LAST_SLIP] = carried[i, at.LAST_SLIP], slip
-                carried[i, at.LAST_GAP], carried[i, at.CLOSED_SHARE] = gap, closed
-                carried[i, at.ABSCISSA_BEFORE], carried[i, at.ABSCISSA] = carried[i, at.ABSCISSA], place
-                carried[i, at.LAST_NORMAL], carried[i, at.LAST_TANGENTIAL] = normal, tangential
-                gaps[i] = gap
-
-            keep_probes(probe_rows, probe_kinds, probe_direct, probe_shares, state, new, signals, n, forces, raw)
-            for k in range(n_modes):
-                state[at.D, k] = new[k]
-                state[at.Q, k] += new[k]
-            n += 1
-
-        stored = stored_energy(block, matrices, state)
-        if not math.isfinite(stored):
-            return sample, at.NOT_FINITE
-        energies[at.STORED], energies[at.DRIVE_WORK], energies[at.CONTACT_WORK] = stored, drive, contact
-        energies[at.FRICTION_LOSS], energies[at.CONVECTION_WORK] = friction, convection
-        energies[at.DAMPING_LOSS] = damping
-        energies[at.ITERATIONS], energies[at.UNSOLVED] = most_sweeps, unsolved
-        for k in range(at.ENERGIES):
-            energy_record[sample, k] = energies[k]
-        for i in range(n_contacts):
-            for column in range(at.SLIDING + 1):
-                record[sample, i, column] = sums[i, column] / steps_per_sample
-            record[sample, i, at.CONTACT_POSITION] = carried[i, at.ABSCISSA]
-            height = contacts[i, at.GAP] + motion[n + 1, i, at.GAP_MOTION]
-            for k in range(spans[i, at.FIXED], spans[i, at.FIXED_END]):
-                height += rows[i, at.NORMAL, k] * state[at.Q, k]
-            record[sample, i, at.CONTACT_HEIGHT] = height
-            record[sample, i, at.CONTACT_GAP] = gaps[i]
-            record[sample, i, at.SLIP_VELOCITY] = (carried[i, at.MATERIAL] - first_material[i]) / (
-                steps_per_sample * step
+                try_many(modes, paths, contacts, state, imposed, sizes, after, ended, run, runs, zero)
+                if sizes.paths:
+                    leaves, why = any_beyond_ends(sizes, paths, contacts, state, run, zero)
+                error = solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero)
+                unsolved = choose(leaves > 0.5, zero, choose(error <= UNBELIEVABLE, zero, 1.0))
+                if anywhere(unsolved > 0.5):
+                    keep_unsolved(contacts, state, sizes, choose(ended > 0.0, zero, unsolved), run, zero)
+                    why = choose(unsolved > 0.5, zero + at.CONTACT_UNSOLVED, why)
+                    leaves = choose(unsolved > 0.5, 1.0, leaves)
+            if anywhere(leaves > 0.5):
+                ended, completed = leave(ended, completed, leaves, why, sample, state, run, zero)
+                if everywhere(ended > 0.0):
+                    break
+            if single:
+                normal, tangential = touch[0], touch[1]
+                gap, slip = free[1] + w[0] * normal - w[1] * tangential, free[2] + w[2] * normal - w[3] * tangential
+                place = free[0] + w[1] * normal - held(contacts.fixed, 2, run, zero) * tangential
+                moved = (free[1], free[2], gap, slip)
+                keep_books(0, w, touch, moved, contacts, state, imposed, timing, n, run, runs, zero)
+                hold(contacts.now, at.NORMAL_NOW, run, normal)
+                hold(contacts.now, at.TANGENTIAL_NOW, run, tangential)
+                advance = keep_place(0, state.carried, place, run, zero)
+                n += 1
+                pending = i + 1 < timing.steps_per_sample and not differ(imposed.signals, n, sizes.loads, run, runs, zero)
+                if not pending:
+                    done = complete_one(modes, paths, touch, sine, run, zero)
+                    credit(energies, done[0], done[1], done[2] * advance, run, zero)
+            else:
+                work, lost = complete_many(modes, paths, contacts, sizes, run, zero)
+                credit(energies, work, lost, zero, run, zero)
+                for j in range(count):
+                    keep_books_of(j, contacts, state, imposed, timing, n, run, runs, zero)
+                    place, slope = place_after(j, modes, paths, contacts, imposed, after, run, runs, zero)
+                    way = keep_place(j, state.carried, place, run, zero)
+                    add(energies, at.CONVECTION_WORK, run, slope * way, zero)
+                n += 1
+            if not pending:
+                keep_probes(modes.rows, first_probe, probes, imposed, contacts.now, count, n - 1, run, runs, records.raw, zero)
+        if everywhere(ended > 0.0):
+            break
+        credit_loads(modes, sizes, energies, imposed.signals, n, first_load, run, runs, zero)
+        stored = energy_of(modes, sizes, run, zero)
+        hold(energies, at.STORED, run, stored)
+        size = choose(ended > 0.0, zero, magnitude(stored))
+        if not everywhere(size < math.inf):
+            leaves = choose(size < math.inf, zero, 1.0)
+            ended, completed = leave(ended, completed, leaves, zero + at.NOT_FINITE, sample, state, run, zero)
+            if everywhere(ended > 0.0):
+                break
+        record_energies(energies, records.energies, sample, run, runs, zero)
+        for i in range(count):
+            height = gap_of(i, contacts.constants, motion, n + 1 if moving else 0, run, runs, zero)
+            height += height_of(modes.rows, i, paths.spans, paths.first_span[i], paths.first_span[i + 1], run, zero)
+            record_contact(
+                i, contacts.sums, state.carried, height, timing.steps_per_sample, timing.step, records.contacts, sample, run, runs, zero
             )
-            record[sample, i, at.JAMMED] = sums[i, at.JAMMED]
-            record[sample, i, at.LANDINGS] = sums[i, at.LANDINGS]
-            record[sample, i, at.LAW_STATE] = carried[i, at.FRICTION_STATE]
-            # Of equal numbers of steps the later state wins.
-            record[sample, i, at.DOMINANT] = 2 - np.argmax(steps_in[i, ::-1])
-    return record.shape[0], at.FINISHED
+    write(records.stops, COMPLETED, run, choose(ended > 0.0, completed, zero + records.energies.shape[0]))
+    write(records.stops, ENDED, run, ended)
+    for row in range(state.carried.shape[0]):
+        last = choose(ended > 0.0, held(state.at_end, row, run, zero), held(state.carried, row, run, zero))
+        hold(state.carried, row, run, last)
+    hold(energies, at.STORED, run, energy_of(modes, sizes, run, zero))
+
+
+@numba.njit(cache=True, nogil=True, _nrt=False)
+def march_run(*arguments):
+    """March one run."""
+    march(0.0, 0, 1, *arguments)
+
+
+@numba.njit(cache=True, nogil=True, _nrt=False)
+def march_runs(*arguments):
+    """March `LANES` runs side by side."""
+    march(spread(0.0), 0, LANES, *arguments)
+
+
+def march_one_by_one(runs, *arguments):
+    """March runs one after the other in plain Python, where nothing is compiled."""
+    for run in range(runs):
+        march(0.0, run, runs, *arguments)

@@ -4,15 +4,16 @@ import numba
 from numba.extending import overload
 
 from . import layout as at
-from .contact import solve_contact, turn_round
-from .friction import next_state, set_valued
-from .lanes import choose, lane, magnitude, spread, with_lane
+from .contact import SLIDING, STICKING, solve_contact, turn_round
+from .friction import STRICT, next_state, set_valued
+from .lanes import anywhere, choose, everywhere, held, lane, magnitude, spread, with_lane
+from .modes import OPTIONS
 from .vectors import LANES, VECTOR
 
 
-def solve(gap, slip, strayed, w, law, laws, run, before, step):
+def solve(gap, slip, strayed, w, law, laws, run, before, let_go, step):
     """Return normal force, tangential force, status and whether it is jammed, all as numbers of runs."""
-    return solve_one_run(gap, slip, strayed, w, law, laws, run, before, step)
+    return solve_one_run(gap, slip, strayed, w, law, laws, run, before, let_go, step)
 
 
 def next_states(law, laws, run, status, state, velocity, step):
@@ -20,7 +21,7 @@ def next_states(law, laws, run, status, state, velocity, step):
     return next_state_of_run(law, laws, run, status, state, velocity, step)
 
 
-@numba.njit(cache=True, inline="always")
+@numba.njit(inline="always", **STRICT)
 def coulomb(gap, slip, w, mu):
     """Do `solve` under Coulomb's law without branches; `slip` is how far the tip is from where sticking would hold it.
 
@@ -45,7 +46,7 @@ def coulomb(gap, slip, w, mu):
     )
 
 
-@numba.njit(cache=True, inline="always")
+@numba.njit(inline="always", **STRICT)
 def turned_round(gap, slip, last_slip, w, mu, normal, tangential, status):
     """Return forces and status under Coulomb's law where the slip comes to an end within the step, else as given.
 
@@ -57,14 +58,14 @@ def turned_round(gap, slip, last_slip, w, mu, normal, tangential, status):
     return normal, tangential, choose(turns, choose(slides, 2.0, 1.0), status)
 
 
-@numba.njit(cache=True)
-def solve_one_run(gap, slip, strayed, w, law, laws, run, before, step):
+@numba.njit(**STRICT)
+def solve_one_run(gap, slip, strayed, w, law, laws, run, before, let_go, step):
     """Do `solve` for one run."""
-    normal, tangential, new, jammed = solve_contact(gap, slip, strayed, w, law, laws, run, before, False, step)
+    normal, tangential, new, jammed = solve_contact(gap, slip, strayed, w, law, laws, run, before, let_go > 0.5, step)
     return normal, tangential, float(new), 1.0 if jammed else 0.0
 
 
-@numba.njit(cache=True)
+@numba.njit(**STRICT)
 def next_state_of_run(law, laws, run, status, state, velocity, step):
     """Do `next_states` for one run."""
     if set_valued(law):
@@ -74,8 +75,8 @@ def next_state_of_run(law, laws, run, status, state, velocity, step):
     return next_state(law, laws, run, state, velocity, step)
 
 
-@numba.njit(cache=True)
-def solve_runs(gap, slip, strayed, w, law, laws, run, before, step):
+@numba.njit(**STRICT)
+def solve_runs(gap, slip, strayed, w, law, laws, run, before, let_go, step):
     """Do `solve` for vectors of runs."""
     normal, tangential, new, jammed = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     status, last_slip, earlier_slip, state, last_normal, last_tangential = before
@@ -96,6 +97,7 @@ def solve_runs(gap, slip, strayed, w, law, laws, run, before, step):
                 lane(last_normal, i),
                 lane(last_tangential, i),
             ),
+            lane(let_go, i),
             step,
         )
         normal, tangential = with_lane(normal, i, one[0]), with_lane(tangential, i, one[1])
@@ -103,7 +105,7 @@ def solve_runs(gap, slip, strayed, w, law, laws, run, before, step):
     return normal, tangential, new, jammed
 
 
-@numba.njit(cache=True)
+@numba.njit(**STRICT)
 def next_states_of_runs(law, laws, run, status, state, velocity, step):
     """Do `next_states` for vectors of runs."""
     if set_valued(law):
@@ -115,11 +117,11 @@ def next_states_of_runs(law, laws, run, status, state, velocity, step):
 
 
 @overload(solve)
-def _overload_solve(gap, slip, strayed, w, law, laws, run, before, step):
+def _overload_solve(gap, slip, strayed, w, law, laws, run, before, let_go, step):
     chosen = solve_runs if gap is VECTOR else solve_one_run
 
-    def implementation(gap, slip, strayed, w, law, laws, run, before, step):
-        return chosen(gap, slip, strayed, w, law, laws, run, before, step)
+    def implementation(gap, slip, strayed, w, law, laws, run, before, let_go, step):
+        return chosen(gap, slip, strayed, w, law, laws, run, before, let_go, step)
 
     return implementation
 
@@ -132,3 +134,39 @@ def _overload_next_states(law, laws, run, status, state, velocity, step):
         return chosen(law, laws, run, status, state, velocity, step)
 
     return implementation
+
+
+@numba.njit(**OPTIONS)
+def carried_by(carried, i, run, zero):
+    """Return status, slips of the last two steps, internal state and forces of contact `i`."""
+    base = i * at.CARRIED
+    return (
+        held(carried, base + at.STATUS, run, zero),
+        held(carried, base + at.LAST_SLIP, run, zero),
+        held(carried, base + at.EARLIER_SLIP, run, zero),
+        held(carried, base + at.FRICTION_STATE, run, zero),
+        held(carried, base + at.LAST_NORMAL, run, zero),
+        held(carried, base + at.LAST_TANGENTIAL, run, zero),
+    )
+
+
+@numba.njit(**OPTIONS)
+def strayed(carried, i, run, zero):
+    """Return how far contact `i` is from the anchor of its stick."""
+    base = i * at.CARRIED
+    stuck = magnitude(held(carried, base + at.STATUS, run, zero) - STICKING) < 0.5
+    away = held(carried, base + at.MATERIAL, run, zero) - held(carried, base + at.ANCHOR, run, zero)
+    return choose(stuck, away, zero)
+
+
+@numba.njit(**OPTIONS)
+def forces_of_one(gap, slip, away, w, law, laws, number, at_rest, before, let_go, step, zero):
+    """Return normal force, tangential force, status and whether it is jammed of one contact."""
+    if law == at.COULOMB and everywhere(w[3] > 0.0):
+        normal, tangential, status, jammed = coulomb(gap, slip + away, w, at_rest)
+        slid = choose(before[0] > SLIDING - 0.5, before[1], zero)
+        on = choose(status > SLIDING - 0.5, tangential * slid, zero) > 0.0
+        if anywhere(choose(on, zero, choose(gap < 0.0, magnitude(slid), zero)) > 0.0):
+            normal, tangential, status = turned_round(gap, slip, slid, w, at_rest, normal, tangential, status)
+        return normal, tangential, status, jammed
+    return solve(gap, slip, away, w, law, laws, number, before, let_go, step)

@@ -12,7 +12,7 @@ from numba.extending import lower_builtin, register_model, type_callable
 
 from . import lanes
 
-LANES = 8
+LANES = lanes.WIDTH
 
 _DOUBLES = ir.VectorType(ir.DoubleType(), LANES)
 _BITS = ir.VectorType(ir.IntType(1), LANES)
@@ -69,7 +69,7 @@ def _vectors(context, builder, signature, args):
     return found
 
 
-def _address(context, builder, signature, args):
+def _address(context, builder, signature, args, rows_are_vectors=False):
     """Return where a vector starts in an array whose last axis lies side by side, from the indices of all axes."""
     kind = signature.args[0]
     array = context.make_array(kind)(context, builder, args[0])
@@ -77,6 +77,8 @@ def _address(context, builder, signature, args):
     if kind.ndim == 3:
         # Rows of a block are vectors: known to the compiler, their distance saves a register for each.
         strides[1], args = ir.IntType(64)(8 * LANES), [*args[:3], ir.IntType(64)(0)]
+    if rows_are_vectors:
+        strides[0], args = ir.IntType(64)(8 * LANES), [*args[:2], ir.IntType(64)(0)]
     offset = ir.IntType(64)(0)
     for stride, index, kind in zip(strides, args[1:], signature.args[1:], strict=False):
         offset = builder.add(offset, builder.mul(stride, context.cast(builder, index, kind, types.int64)))
@@ -99,6 +101,21 @@ def _load(context, builder, signature, args):
 @_lower(lanes.write, types.Array, types.Integer, types.Integer, Vector)
 def _store(context, builder, signature, args):
     builder.store(args[-1], _address(context, builder, signature, args), align=8)
+    return context.get_dummy_value()
+
+
+_type(lanes.held, lambda array, row, run, like: VECTOR if like is VECTOR else None)
+_type(lanes.hold, lambda array, row, run, value: types.void if value is VECTOR else None)
+
+
+@_lower(lanes.held, types.Array, types.Integer, types.Integer, Vector)
+def _held(context, builder, signature, args):
+    return builder.load(_address(context, builder, signature, args, True), align=8)
+
+
+@_lower(lanes.hold, types.Array, types.Integer, types.Integer, Vector)
+def _hold(context, builder, signature, args):
+    builder.store(args[-1], _address(context, builder, signature, args, True), align=8)
     return context.get_dummy_value()
 
 
@@ -132,10 +149,25 @@ def _call(name, count):
 
 _type(lanes.whole, lambda value: VECTOR if value is VECTOR else None)
 _type(lanes.magnitude, lambda value: VECTOR if value is VECTOR else None)
-_type(lanes.fused, lambda a, b, c: VECTOR if VECTOR in (a, b, c) else None)
+
+
+def _fused(a, b, c):
+    """Return the type of a product and a sum: of vectors, or of numbers."""
+    if VECTOR in (a, b, c):
+        return VECTOR
+    return types.float64 if all(isinstance(kind, types.Float) for kind in (a, b, c)) else None
+
+
+_type(lanes.fused, _fused)
 _lower(lanes.whole, Vector)(_call("llvm.floor", 1))
 _lower(lanes.magnitude, Vector)(_call("llvm.fabs", 1))
 _lower(lanes.fused, types.Any, types.Any, types.Any)(_call("llvm.fmuladd", 3))
+
+
+@_lower(lanes.fused, types.Float, types.Float, types.Float)
+def _fused_numbers(context, builder, signature, args):
+    kind = ir.FunctionType(ir.DoubleType(), [ir.DoubleType()] * 3)
+    return builder.call(cgutils.get_or_insert_function(builder.module, kind, "llvm.fmuladd.f64"), args)
 
 
 def _over_lanes(predicate, bits):

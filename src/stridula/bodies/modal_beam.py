@@ -12,6 +12,7 @@ from ..checks import at_least, count, instance, positive, within
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .modes import Array, BodyPoint, Modes
 from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
+from .paths import Path, along_one_angle
 from .sections import Circle, Material, Rectangle, Section
 
 
@@ -131,6 +132,11 @@ class ModalBeam:
         rows[1, :bending] = self.amplitude * np.sin(np.arange(1, bending + 1) * np.pi * position / self.length)
         rows[0, bending:] = self.amplitude * np.sin(np.arange(1, axial + 1) * np.pi * position / self.length)
         return rows
+
+    def path(self) -> Path:
+        """Return the line along which others slide: its axis."""
+        bending, axial = (along_one_angle(np.arange(1, count + 1), self.amplitude) for count in self.harmonics)
+        return Path(self.ends, np.array([np.pi / self.length, 0.0]), np.zeros(2), bending, axial)
 
     def trace_slope(self, position: float) -> Array:
         """Return the derivative of `trace` along the beam [1/m], shape (2, modes)."""

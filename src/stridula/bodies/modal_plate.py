@@ -14,6 +14,7 @@ from ..checks import at_least, at_most, brief, count, finite, instance, positive
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .modes import Array, BodyPoint, Modes
 from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
+from .paths import Path, Waves, along_one_angle
 from .plane_stress import PlaneStress, lowest, plane_stress, rigid
 from .sections import Material
 
@@ -278,6 +279,27 @@ class ModalPlate:
         rows[1, :bending] = self.shapes(x, y)
         rows[0, bending:] = np.array(self.track_line.tangent) @ self.in_plane_shapes(x, y)
         return rows
+
+    def path(self) -> Path:
+        """Return the line along which others slide.
+
+        ``sin a sin b = [cos(a - b) - cos(a + b)] / 2``, and so for the products of displacements in the plane. On a line
+        along a side the angle across it stays: one sine is left.
+        """
+        (x, y), direction = self.track_line.origin, np.array(self.track_line.tangent)
+        sides = np.array([self.length, self.width])
+        rate, phase = np.pi / sides * direction, np.pi / sides * [x, y]
+        numbers, in_plane, (u, v) = self.numbers, self.in_plane_numbers, self.in_plane_shares[:2]
+        for side in (0, 1):
+            if rate[1 - side] == 0.0:
+                across, there = phase[1 - side], (rate[[side, 1 - side]], phase[[side, 1 - side]])
+                bending = along_one_angle(numbers[:, side], self.amplitude * np.sin(numbers[:, 1 - side] * across))
+                moved = (u, v)[side] * np.cos(in_plane[:, 1 - side] * across)
+                return Path(self.ends, *there, bending, along_one_angle(in_plane[:, side], moved))
+        bending = Waves(numbers, 0.5 * self.amplitude * np.tile([-1.0, 1.0], (len(numbers), 1)), cosines=True)
+        moved = 0.5 * np.stack([u + v, u - v], axis=1)
+        moved[in_plane[:, 1] == 0] = np.stack([u, np.zeros_like(u)], axis=1)[in_plane[:, 1] == 0]
+        return Path(self.ends, rate, phase, bending, Waves(in_plane, moved))
 
     def trace_slope(self, position: Any) -> Array:
         """Return the derivative of `trace` along the line [1/m], shape (2, modes)."""

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from .._kernels import layout as at
-from ..assembly import Assembly
-from ..bodies import ModalPlate, Track
+from ..assembly import Assembly, ContactRows
 from ..bodies.modes import Array
+from ..bodies.paths import Path
 from ..contact import (
     Coulomb,
     ExponentialWeakening,
@@ -35,11 +36,19 @@ class Recurrence:
         Coefficients of coupled modes.
     loads : ndarray, shape (loads, modes)
         Load increments for unit signals.
+    forces : ndarray, shape (loads, modes)
+        Modal forces for unit signals.
     """
 
     block: Array
     matrices: Array
     loads: Array
+    forces: Array
+
+    @property
+    def coupled(self) -> int:
+        """Number of coupled modes, which come first."""
+        return int(self.matrices.shape[1])
 
     def mobility(self, rows: Array) -> Array:
         """Return the displacement of every mode at the end of a step for unit forces on rows, shape (..., modes)."""
@@ -54,6 +63,17 @@ class Recurrence:
         moved = self.block[at.B] * increment - self.block[at.R] * position
         moved[:size] = self.matrices[at.KEPT] @ increment[:size] - self.matrices[at.STIFFNESS] @ position[:size]
         return np.asarray(moved)
+
+    def stored_energy(self, modal: Array) -> float:
+        """Return the energy [J] half a step ago of positions and increments, shape (2, modes).
+
+        It is ``[(1+b)/2 d² + r q[n] q[n-1]] / (2 l)`` of every mode that is not coupled.
+        """
+        (q, d), block, size = modal, self.block, self.coupled
+        alone = ((1.0 - block[at.HALF_LOSS]) * d * d + block[at.R] * q * (q - d)) * block[at.HALF_OVER_LOAD]
+        q, d = q[:size], d[:size]
+        together = d @ self.matrices[at.KINETIC] @ d + q @ self.matrices[at.ELASTIC] @ (q - d)
+        return float(alone.sum() + together)
 
     def energy_of_loads(self) -> float:
         """Return the energy [J] that all unit loads give to modes at rest in one step."""
@@ -92,11 +112,28 @@ def recurrence(arrays: Assembly, scheme: Scheme, step: float) -> Recurrence:
         matrices[at.KINETIC], matrices[at.LOSS] = kinetic / 4.0, lost / 4.0
         matrices[at.TURN] = (turned - turned.T) / 4.0
         loads[:, :size] = arrays.loads[:, :size] @ c.load.T
-    return Recurrence(block, matrices, loads)
+    return Recurrence(block, matrices, loads, arrays.loads)
 
 
 def _symmetric(matrix: Array) -> Array:
     return np.asarray(0.5 * (matrix + matrix.T))
+
+
+@dataclass(frozen=True)
+class PathModes:
+    """The modes of a body along whose path a contact moves.
+
+    Attributes
+    ----------
+    path : Path
+        What they look like along it.
+    normal, tangential : slice
+        Those that move it along its normal and along its tangent.
+    """
+
+    path: Path
+    normal: slice
+    tangential: slice
 
 
 @dataclass(frozen=True)
@@ -107,70 +144,57 @@ class ContactBlocks:
     ----------
     constants : ndarray, shape (contacts, constants)
         Numbers of each contact.
+    codes : ndarray of int, shape (contacts,)
+        Its law of friction.
     laws : ndarray, shape (contacts, parameters)
         Parameters of its law of friction.
-    spans : ndarray, shape (contacts, spans)
-        Spans of modes that each contact sees.
-    half_waves : ndarray, shape (2, modes)
-        Where the sines of the modes of plates lie, by their half-waves along the two sides.
-    shares : ndarray, shape (4, modes)
-        What products of sines and cosines give of the modes in the plane of plates.
     rows : ndarray, shape (contacts, 2, modes)
-        Rows along normal and tangent; harmonic spans are filled by the march.
+        Constant rows along normal and tangent.
     compliance : ndarray, shape (2 contacts, 2 contacts)
-        Relative displacements [m] of the fixed rows for unit forces on each.
+        Relative displacements [m] of the constant rows for unit forces on each.
+    paths : tuple of PathModes or None
+        What each contact moves along.
     """
 
     constants: Array
+    codes: Array
     laws: Array
-    spans: Array
-    half_waves: Array
-    shares: Array
     rows: Array
     compliance: Array
+    paths: tuple[PathModes | None, ...]
 
 
 def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
     """Return the contacts as the march reads them."""
     count = len(arrays.contacts)
     constants, laws = np.zeros((count, at.CONTACT_CONSTANTS)), np.zeros((count, at.LAW_PARAMETERS))
-    # Unsigned, so that the march need not look for indices below zero.
-    spans = np.zeros((count, at.SPANS), dtype=np.uint64)
+    codes = np.zeros(count, dtype=np.int64)
     rows = np.array([contact.fixed for contact in arrays.contacts])
-    half_waves, shares = np.zeros((2, arrays.mode_count), dtype=np.uint64), np.zeros((4, arrays.mode_count))
-    for i, one in enumerate(arrays.contacts):
-        used = np.flatnonzero(one.fixed.any(axis=0))
-        fixed = (used[0], used[-1] + 1) if used.size else (0, 0)
-        spans[i, : at.WAVES] = (*fixed, *one.bending, *one.axial)
+    paths = tuple(_path_modes(one) for one in arrays.contacts)
+    for i, (one, along) in enumerate(zip(arrays.contacts, paths, strict=True)):
         constants[i, [at.START, at.GAP]] = one.contact.at, one.contact.gap
-        if isinstance(one.contact.track, Track):
-            constants[i, at.LOW :], spans[i, at.WAVES :] = _waves(one.contact.track)
-        if isinstance(one.contact.track, ModalPlate):
-            plate, in_plane = one.contact.track, slice(*one.axial)
-            half_waves[:, slice(*one.bending)] = plate.numbers.T - 1
-            numbers = plate.in_plane_numbers.T
-            half_waves[:, in_plane] = np.where(numbers == 0, 2 * arrays.mode_count, numbers - 1)
-            shares[:, in_plane] = plate.in_plane_shares
-        constants[i, at.LAW], parameters = _law(one.contact.friction)
+        if along is not None:
+            path = along.path
+            angles = np.stack([path.rate, path.phase], axis=1).ravel()
+            constants[i, at.LOW : at.AT_REST] = (*path.ends, *angles)
+        codes[i], parameters = _law(one.contact.friction)
         laws[i, : len(parameters)] = parameters
-        if not one.fixed[0].any() and one.bending[0] == one.bending[1]:
+        constants[i, at.AT_REST] = laws[i, 0]
+        if not one.fixed[0].any() and along is None:
             raise ValueError(
                 f"contact {one.contact.name or i + 1} must be between bodies of which one moves along its normal, "
                 "got a tip that does not"
             )
     flat = rows.reshape(2 * count, -1)
     compliance = np.ascontiguousarray(flat @ modes.mobility(flat).T)
-    return ContactBlocks(constants, laws, spans, half_waves, shares, rows, compliance)
+    return ContactBlocks(constants, codes, laws, rows, compliance, paths)
 
 
-def _waves(track: Track) -> tuple[tuple[float, ...], tuple[int, int]]:
-    """Return the constants of a track that the tip moves along, and how many half-waves its modes have."""
-    if not isinstance(track, ModalPlate):
-        return (*track.ends, 0.0, np.pi / track.length, 0.0, 0.0, track.amplitude), (max(track.harmonics), 0)
-    (x, y), (cosine, sine) = track.track_line.origin, track.track_line.tangent
-    along, across = np.pi / track.length, np.pi / track.width
-    most = np.concatenate([track.numbers, track.in_plane_numbers]).max(axis=0)
-    return (*track.ends, along * x, along * cosine, across * y, across * sine, track.amplitude), (most[0], most[1])
+def _path_modes(one: ContactRows) -> PathModes | None:
+    if one.bending == one.axial:
+        return None
+    track: Any = one.contact.track
+    return PathModes(track.path(), slice(*one.bending), slice(*one.axial))
 
 
 def _law(law: FrictionLaw) -> tuple[int, tuple[float, ...]]:
@@ -200,10 +224,8 @@ class ProbeBlocks:
     ----------
     kinds : ndarray, shape (probes,)
         Whether each sees positions, centred velocities or second differences.
-    rows : ndarray, shape (probes, 3, modes)
-        Rows on positions, sums and differences of increments, all but that of its kind zero.
-    spans : ndarray, shape (probes, 3, 2)
-        Modes that each row sees.
+    rows : ndarray, shape (probes, modes)
+        Rows on positions, sums or differences of increments.
     direct : ndarray, shape (probes, signals)
         Shares of the signals.
     contact : ndarray, shape (probes, contacts, 2)
@@ -212,33 +234,21 @@ class ProbeBlocks:
 
     kinds: Array
     rows: Array
-    spans: Array
     direct: Array
     contact: Array
-
-    @property
-    def row(self) -> Array:
-        """The row of each probe, shape (probes, modes)."""
-        return np.asarray(self.rows.sum(axis=1))
 
 
 def probe_blocks(arrays: Assembly, step: float) -> ProbeBlocks:
     """Return the probes as the march reads them."""
     count = len(arrays.probes)
-    rows = np.zeros((count, 3, arrays.mode_count))
-    spans = np.zeros((count, 3, 2), dtype=np.uint64)
-    direct = np.zeros((count, len(arrays.signals)))
-    contact = np.zeros((count, len(arrays.contacts), 2))
+    rows, kinds = np.zeros((count, arrays.mode_count)), np.zeros(count, dtype=np.int64)
+    direct, contact = np.zeros((count, len(arrays.signals))), np.zeros((count, len(arrays.contacts), 2))
     scale = np.array([1.0, 0.5 / step, 1.0 / step**2])
     for p, probe in enumerate(arrays.probes):
-        rows[p] = probe.rows * scale[:, None]
+        kinds[p] = np.argmax(probe.rows.any(axis=1))
+        rows[p] = probe.rows[kinds[p]] * scale[kinds[p]]
         direct[p], contact[p] = probe.direct, probe.contact
-        for kind in range(3):
-            used = np.flatnonzero(rows[p, kind])
-            if used.size:
-                spans[p, kind] = used[0], used[-1] + 1
-    kinds = np.argmax(rows.any(axis=2), axis=1).astype(np.int64)
-    return ProbeBlocks(kinds, rows, spans, direct, contact)
+    return ProbeBlocks(kinds, rows, direct, contact)
 
 
 @dataclass(frozen=True)
@@ -259,15 +269,9 @@ class Blocks:
     contacts: ContactBlocks
     probes: ProbeBlocks
 
-    @property
-    def is_simple(self) -> bool:
-        """Whether there is one contact, between bodies of uncoupled modes, and not on a plate."""
-        on_a_plate = self.contacts.spans[:, at.CROSS_WAVES].any()
-        return len(self.contacts.constants) == 1 and not self.modes.matrices.size and not on_a_plate
-
     @cached_property
-    def heard(self) -> tuple[int, ...]:
-        """Signals that a load or a probe takes; the others need not be known."""
+    def used(self) -> tuple[int, ...]:
+        """Signals that a load or a probe uses; the others stay zero."""
         taken = np.flatnonzero(self.probes.direct.any(axis=0))
         return tuple(sorted({*range(len(self.modes.loads)), *(int(j) for j in taken)}))
 

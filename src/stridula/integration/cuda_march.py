@@ -9,10 +9,12 @@ from typing import Any
 
 from numba.core import config
 
+from .._kernels.march import Imposed, Records
 from ..bodies.modes import Array
 from ..records.state import State
 from .blocks import Blocks
-from .marches import SimpleMarch
+from .contact_solve import GaussSeidel
+from .marches import March
 
 # A thread holds some two hundred registers: with more of them in a block, fewer blocks fit a multiprocessor.
 THREADS_PER_BLOCK = 64
@@ -41,8 +43,8 @@ def _missing() -> str:
     return f"CUDA to work: {error}"
 
 
-class CudaMarch(SimpleMarch):
-    """One contact between bodies of uncoupled modes: any number of runs of the same kind, each a thread on a GPU.
+class CudaMarch(March):
+    """Any number of runs of the same kind, each a thread on a GPU.
 
     What the march reads and carries stays on the card between chunks.
     """
@@ -53,20 +55,21 @@ class CudaMarch(SimpleMarch):
         states: Sequence[State],
         step: float,
         ratio: int,
+        solve: GaussSeidel | None = None,
         threads_per_block: int = THREADS_PER_BLOCK,
     ) -> None:
         require_cuda()
         from numba import cuda
 
-        super().__init__(blocks, states, step, ratio)
+        super().__init__(blocks, states, step, ratio, solve)
         self.cuda, self.threads_per_block = cuda, threads_per_block
-        self.known = [cuda.to_device(array) for array in (self.laws, self.numbers)]
-        self.carried_on = [
-            cuda.to_device(array) for array in (self.rows, self.carried, self.energies, self.work_of_loads)
-        ]
-        self.seen = tuple(cuda.to_device(array) for array in self.probes)
+        self.there = [self._moved(part) for part in (self.modes, self.paths, self.contacts, self.carried, self.probes)]
 
-    def _layout(self) -> tuple[int, int, int]:
+    def _moved(self, part: Any) -> Any:
+        """Return a tuple of arrays on the card."""
+        return type(part)(*(self.cuda.to_device(array) for array in part))
+
+    def _arrangement(self) -> tuple[int, int, int]:
         return self.given, 1, self.given
 
     @property
@@ -77,14 +80,15 @@ class CudaMarch(SimpleMarch):
     @property
     def states(self) -> list[State]:
         """Where each run is."""
-        self.rows, self.carried, self.energies = (array.copy_to_host() for array in self.carried_on[:3])
+        modes, _, _, carried, _ = self.there
+        self.modes = self.modes._replace(rows=modes.rows.copy_to_host())
+        self.carried = type(carried)(*(array.copy_to_host() for array in carried))
         return super().states
 
     def copy(self) -> CudaMarch:
         """Return another march that is where this one is."""
         twin = copy(self)
-        twin.carried_on = [self._twin_of(array) for array in self.carried_on]
-        twin.seen = (*self.seen[:-1], self._twin_of(self.seen[-1]))
+        twin.there = [type(part)(*(self._twin_of(array) for array in part)) for part in self.there]
         return twin
 
     def _twin_of(self, array: Array) -> Array:
@@ -95,22 +99,13 @@ class CudaMarch(SimpleMarch):
         twin.copy_to_device(array)
         return twin
 
-    def _march(self, signals: Array, motion: Array, *outputs: Array) -> None:
+    def _march(self, imposed: Imposed, records: Records) -> None:
         from .._kernels.cuda import march_each
 
-        signals, motion, *filled = (self.cuda.to_device(array) for array in (signals, motion, *outputs))
-        arguments = (
-            self.ratio,
-            self.step,
-            self.law,
-            *self.known,
-            *self.carried_on,
-            signals,
-            motion,
-            self.seen,
-            *filled,
-        )
+        imposed, filled = self._moved(imposed), self._moved(records)
+        modes, paths, contacts, carried, probes = self.there
+        arguments = (self.layout.sizes, self.timing, modes, paths, contacts, carried, imposed, probes, filled)
         grid = -(-self.runs // self.threads_per_block)
-        march_each[grid, self.threads_per_block](self.runs, self.places.blocks, arguments)
-        for array, output in zip(filled, outputs, strict=True):
+        march_each[grid, self.threads_per_block](self.runs, arguments)
+        for array, output in zip(filled, records, strict=True):
             array.copy_to_host(output)

@@ -11,7 +11,6 @@ import numpy as np
 
 from .._kernels import layout as at
 from .._kernels.contact import SEPARATED
-from .._kernels.march import stored_energy
 from ..assembly import Assembly, Signal, assemble, with_travel
 from ..bodies import Track
 from ..bodies.modes import Array
@@ -25,7 +24,7 @@ from .carry_over import Before
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
 from .equilibrium_start import in_equilibrium
-from .marches import Impositions, March, march_of
+from .marches import Impositions, March
 from .run import CONTACT_COLUMN, ENERGY_COLUMN
 from .schemes import ExactModal, Scheme
 from .simulate import choose_timing
@@ -254,10 +253,10 @@ class LiveMarch:
     def _go(self, state: State) -> None:
         """March on from a state."""
         state.energies[:] = 0.0
-        state.energies[at.STORED] = stored_energy(self._blocks.modes.block, self._blocks.modes.matrices, state.modal)
+        state.energies[at.STORED] = self._blocks.modes.stored_energy(state.modal)
         stored = float(state.energies[at.STORED])
         self._belief = Belief(self.system, self._arrays, self._blocks, state.energies, stored)
-        self._march = march_of(self._blocks, state, self.step, self.ratio, GaussSeidel())
+        self._march = March([self._blocks], [state], self.step, self.ratio)
 
     def _low_passed(self, raw: Array, samples: int) -> Array:
         """Return as many samples of the probes as of the rest: while they wait for the low-pass, the first or zero."""

@@ -15,13 +15,13 @@ import xarray as xr
 
 from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
-from ..bodies import ModalPlate
+from ..assembly import ContactRows
 from ..checks import brief, choice, count
 from ..records import Probe
 from ..system import System
 from .contact_solve import GaussSeidel
 from .cuda_march import CudaMarch, require_cuda
-from .marches import March, SimpleMarch, march_of
+from .marches import March
 from .run import Run
 from .schemes import Scheme
 from .simulate import Arrays, Asked
@@ -35,7 +35,7 @@ MOST_MODES = 120
 FEWEST_RUNS = 4
 # Runs at a time on a card: their records go through its memory and ours.
 MOST_ON_A_CARD = 16_384
-DEVICES: dict[str, type[SimpleMarch]] = {"cpu": SimpleMarch, "cuda": CudaMarch}
+DEVICES: dict[str, type[March]] = {"cpu": March, "cuda": CudaMarch}
 
 
 def simulate_many(
@@ -184,14 +184,24 @@ def _groups(arrays: Mapping[int, Arrays], device: str = "cpu") -> list[list[int]
 def _kind(arrays: Arrays, most_modes: int | None) -> Hashable | None:
     """Return what runs that march side by side share, None for a run that marches alone."""
     flat = arrays.flat
-    if len(flat.contacts) > 1 or flat.coupled or (most_modes and flat.mode_count > most_modes):
+    if most_modes and flat.mode_count + flat.coupled**2 > most_modes:
         return None
-    (one,) = flat.contacts
-    if isinstance(one.contact.track, ModalPlate):
-        return None
-    law = type(one.contact.friction), getattr(one.contact.friction, "evolution", None)
+    contacts = tuple((one.bending, one.axial, _waves(one), _law(one)) for one in flat.contacts)
     probes = tuple(type(probe) for probe in arrays.probes)
-    return flat.mode_count, one.bending, one.axial, law, len(flat.loads), probes
+    return flat.mode_count, flat.coupled, contacts, len(flat.loads), probes
+
+
+def _law(one: ContactRows) -> Hashable:
+    law = one.contact.friction
+    return type(law), getattr(law, "evolution", None)
+
+
+def _waves(one: ContactRows) -> Hashable:
+    """Return which waves the modes of a path are."""
+    if one.bending == one.axial:
+        return None
+    path = one.contact.track.path()
+    return tuple((waves.multiples.tobytes(), waves.cosines) for waves in (path.normal, path.tangential))
 
 
 class _Cancelled(Exception):
@@ -208,7 +218,7 @@ class _Together:
         record: Callable[[Run], xr.Dataset],
         reduce: Callable[[xr.Dataset], Any] | None,
         watchers: Sequence[Watcher],
-        side_by_side: type[SimpleMarch],
+        side_by_side: type[March],
         title: str,
         results: _Results,
     ) -> None:
@@ -251,11 +261,9 @@ class _Together:
                 self.results.found[number] = record if self.reduce is None else self.reduce(record)
 
     def _march_of(self, runs: Sequence[Run]) -> March:
-        timing, first = runs[0].timing, runs[0]
-        if len(runs) == 1 and (self.side_by_side is SimpleMarch or not first.blocks.is_simple):
-            return march_of(first.blocks, first.state, timing.step, timing.ratio, self.asked.solve)
+        timing = runs[0].timing
         blocks, states = [run.blocks for run in runs], [run.state for run in runs]
-        return self.side_by_side(blocks, states, timing.step, timing.ratio)
+        return self.side_by_side(blocks, states, timing.step, timing.ratio, self.asked.solve)
 
     def _watch(self, runs: Sequence[Run]) -> Watcher:
         """Return what tells the watchers how far all runs are, and stops a group when another one has failed."""

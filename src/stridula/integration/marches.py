@@ -1,4 +1,4 @@
-"""The march of a system, chunk by chunk: by the kernel that its contacts and modes ask for."""
+"""The march of systems, chunk by chunk."""
 
 from __future__ import annotations
 
@@ -6,29 +6,37 @@ from collections.abc import Callable, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
-from numba.core import config
 
 from .._kernels import layout as at
-from .._kernels.march import march
-from .._kernels.one_contact import march_one_by_one, march_run, march_runs
+from .._kernels.block_rows import CONTACTS
+from .._kernels.march import (
+    Carried,
+    Contacts,
+    Modes,
+    Paths,
+    Probes,
+    Records,
+    Timing,
+    march_one_by_one,
+    march_run,
+    march_runs,
+)
+from .._kernels.march import Imposed as ImposedOnRuns
 from .._kernels.vectors import LANES
 from ..assembly import Assembly
 from ..bodies.modes import Array
 from ..records.state import State
-from .blocks import Blocks
+from .blocks import Blocks, ContactBlocks, ProbeBlocks
 from .contact_solve import GaussSeidel
-from .packing import aligned, numbers_of, pack, places, rows_of, side_by_side
-
-# Whether numba has been told to compile nothing.
-PLAIN = bool(config.DISABLE_JIT)  # type: ignore[attr-defined]
+from .packing import PLAIN, aligned, columns, compliance_in_blocks, layout_of, matrices_of, pack, rows_of, scale_of, side_by_side, waves_of
 
 
 @dataclass(frozen=True)
 class Imposed:
-    """What is imposed on a chunk of steps; one row of each serves the march of one contact where nothing varies.
+    """What is imposed on a chunk of steps, in one row of each where nothing varies.
 
     Attributes
     ----------
@@ -42,11 +50,11 @@ class Imposed:
     motion: Array
 
 
-def imposed_on(arrays: Assembly, heard: Sequence[int], first: int, steps: int, step: float) -> Imposed:
-    """Return what is imposed on `steps` steps from number `first` on; signals that are not heard are left zero."""
+def imposed_on(arrays: Assembly, used: Sequence[int], first: int, steps: int, step: float) -> Imposed:
+    """Return what is imposed on `steps` steps from number `first` on; signals that are not used stay zero."""
     times = np.arange(first - 1, first + steps + 1) * step
     signals = np.zeros((steps, len(arrays.signals)))
-    for j in heard:
+    for j in used:
         signals[:, j] = arrays.signals[j](times[1:-1], step)
     return Imposed(signals, arrays.motion(times, step))
 
@@ -65,16 +73,16 @@ class Impositions:
     """
 
     def __init__(self, arrays: Assembly, blocks: Blocks, step: float) -> None:
-        self.arrays, self.heard, self.step = arrays, blocks.heard, step
-        self.is_steady = blocks.is_simple and arrays.prescribed.is_steady
+        self.arrays, self.used, self.step = arrays, blocks.used, step
+        self.is_steady = arrays.prescribed.is_steady
 
     def on(self, first: int, steps: int) -> Imposed:
         """Return what is imposed on `steps` steps from number `first` on, in one row where nothing varies."""
-        return self._steady if self.is_steady else imposed_on(self.arrays, self.heard, first, steps, self.step)
+        return self._steady if self.is_steady else imposed_on(self.arrays, self.used, first, steps, self.step)
 
     @cached_property
     def _steady(self) -> Imposed:
-        imposed = imposed_on(self.arrays, self.heard, 0, 1, self.step)
+        imposed = imposed_on(self.arrays, self.used, 0, 1, self.step)
         return Imposed(imposed.signals, imposed.motion[:1])
 
 
@@ -101,126 +109,60 @@ class Chunk:
     ended: int
 
 
-class March(Protocol):
-    """A system on the march."""
+class March:
+    """Runs on the march: one, or several of the same kind side by side.
 
-    @property
-    def kernel(self) -> Any:
-        """What marches: a function of numba, or anything else where nothing is compiled for the processor."""
-        ...
+    Runs of the same kind have the same modes in number, contacts on paths of the same waves, laws of friction, drives and
+    probes.
 
-    @property
-    def states(self) -> list[State]:
-        """Where each run is."""
-        ...
-
-    def advance(self, imposed: Sequence[Imposed], samples: int) -> list[Chunk]:
-        """March `samples` samples on and return what each run left, to be read before the next call."""
-        ...
-
-    def copy(self) -> March:
-        """Return another march that is where this one is."""
-        ...
-
-
-def march_of(blocks: Blocks, state: State, step: float, ratio: int, solve: GaussSeidel) -> March:
-    """Return the march of one system, `ratio` steps of length `step` [s] a sample."""
-    if blocks.is_simple:
-        return SimpleMarch([blocks], [state], step, ratio)
-    return GeneralMarch(blocks, state, step, ratio, solve)
-
-
-class GeneralMarch:
-    """Any number of contacts, modes coupled or not."""
-
-    def __init__(self, blocks: Blocks, state: State, step: float, ratio: int, solve: GaussSeidel) -> None:
-        self.blocks, self.state, self.step, self.ratio, self.solve = blocks, state, step, ratio, solve
-
-    @property
-    def kernel(self) -> Any:
-        """What marches."""
-        return march
-
-    @property
-    def states(self) -> list[State]:
-        """Where the run is."""
-        return [self.state]
-
-    def copy(self) -> GeneralMarch:
-        """Return another march that is where this one is."""
-        return GeneralMarch(self.blocks, deepcopy(self.state), self.step, self.ratio, self.solve)
-
-    def advance(self, imposed: Sequence[Imposed], samples: int) -> list[Chunk]:
-        """March on."""
-        modes, contacts, probes, state = self.blocks.modes, self.blocks.contacts, self.blocks.probes, self.state
-        energies = np.empty((samples, at.ENERGIES))
-        record = np.empty((samples, len(contacts.constants), at.COLUMNS))
-        raw = np.empty((samples * self.ratio, len(probes.direct)))
-        completed, ended = self.kernel(
-            self.ratio,
-            self.step,
-            self.solve.tolerance,
-            self.solve.sweeps,
-            modes.block,
-            modes.matrices,
-            contacts.constants,
-            contacts.laws,
-            contacts.spans,
-            contacts.half_waves,
-            contacts.shares,
-            contacts.rows,
-            contacts.compliance,
-            state.modal,
-            state.carried,
-            state.energies,
-            modes.loads,
-            imposed[0].signals,
-            imposed[0].motion,
-            probes.rows,
-            probes.spans,
-            probes.direct,
-            probes.contact,
-            energies,
-            record,
-            raw,
-        )
-        return [Chunk(energies, record, raw, completed, ended)]
-
-
-class SimpleMarch:
-    """One contact between bodies of uncoupled modes: of one run, or of several of the same kind side by side.
-
-    Runs of the same kind have the same modes in number, law of friction, drives and probes.
+    Parameters
+    ----------
+    blocks : sequence of Blocks
+        Each system as the march reads it.
+    states : sequence of State
+        Where each is.
+    step : float
+        Time step [s].
+    ratio : int
+        Steps a sample.
+    solve : GaussSeidel, optional
+        How several contacts are solved together.
     """
 
-    def __init__(self, blocks: Sequence[Blocks], states: Sequence[State], step: float, ratio: int) -> None:
-        first, self.given = blocks[0], len(blocks)
-        self.step, self.ratio = step, ratio
-        self.runs, per_block, width = self._layout()
+    def __init__(
+        self,
+        blocks: Sequence[Blocks],
+        states: Sequence[State],
+        step: float,
+        ratio: int,
+        solve: GaussSeidel | None = None,
+    ) -> None:
+        first, self.given, self.ratio = blocks[0], len(blocks), ratio
+        solve = GaussSeidel() if solve is None else solve
+        self.timing = Timing(ratio, step, solve.tolerance, solve.sweeps)
+        self.runs, per_block, width = self._arrangement()
+        self.layout = layout_of(blocks, per_block)
         blocks = [*blocks, *[blocks[-1]] * (self.runs - self.given)]
         states = [*states, *[states[-1]] * (self.runs - self.given)]
-        self.places = places(first.contacts, per_block)
-        known = [rows_of(one, state) for one, state in zip(blocks, states, strict=True)]
-        rows, self.scales = zip(*known, strict=True)
-        self.rows = pack(self.places, rows, width)
-        self.carried = side_by_side([state.carried[0] for state in states])
-        self.energies = side_by_side([state.energies for state in states])
-        self.law = int(first.contacts.constants[0, at.LAW])
-        self.laws = np.concatenate([one.contacts.laws for one in blocks])
-        self.numbers = side_by_side([numbers_of(one.contacts) for one in blocks])
-        self.work_of_loads = aligned(len(first.modes.loads), self.runs)
-        self.probe_count = len(first.probes.direct)
-        self.room: tuple[Array, ...] = (aligned(0, 0),)
-        self.heard = sorted({j for one in blocks for j in one.heard})
-        self.probes = (
-            first.probes.kinds,
-            self._probe_spans(),
-            side_by_side([one.probes.direct[:, self.heard] for one in blocks]),
-            side_by_side([one.probes.contact.reshape(-1) for one in blocks]),
-            aligned(self.probe_count, self.runs),
+        self.scales = [scale_of(one.modes) for one in blocks]
+        rows = [rows_of(*each) for each in zip(blocks, states, self.scales, strict=True)]
+        self.contact_count, runs = len(first.contacts.codes), self.runs
+        self.modes = Modes(
+            pack(self.layout, rows, width),
+            matrices_of(self.layout, [one.modes for one in blocks], width),
+            columns(aligned(len(first.modes.loads), runs)),
         )
+        self.paths = self._paths(width)
+        self.contacts = self._contacts([one.contacts for one in blocks], width)
+        carried = columns(side_by_side([state.carried.reshape(-1) for state in states]))
+        energies = columns(side_by_side([state.energies for state in states]))
+        self.carried = Carried(carried, carried.copy(), energies)
+        self.probe_count = len(first.probes.kinds)
+        self.used = sorted({j for one in blocks for j in one.used})
+        self.probes = self._probes([one.probes for one in blocks])
+        self.room: tuple[Array, ...] = (aligned(0, 0),)
 
-    def _layout(self) -> tuple[int, int, int]:
+    def _arrangement(self) -> tuple[int, int, int]:
         """Return how many runs march, how many modes of each lie in a block, and how wide a block is.
 
         A vector of runs is filled up with copies of the last.
@@ -229,18 +171,42 @@ class SimpleMarch:
             return self.given, 1, self.given
         return (1, LANES, LANES) if self.given == 1 else (LANES, 1, LANES)
 
-    def _probe_spans(self) -> Array:
-        """Return the first block that each probe sees, and the one after the last."""
+    def _paths(self, width: int) -> Paths:
+        where = self.layout
+        waves = waves_of(where, width)
+        return Paths(waves, where.sets, where.pairs, where.wave_of, where.spans, where.first_span, where.path_of)
+
+    def _contacts(self, contacts: Sequence[ContactBlocks], width: int) -> Contacts:
+        runs, count, sizes = self.runs, self.contact_count, self.layout.sizes
+        equations = aligned(sizes.faces, (2 * count + 1) * width).reshape(sizes.faces, 2 * count + 1, width)
+        return Contacts(
+            contacts[0].codes,
+            np.stack([one.laws for one in contacts], axis=1).reshape(count * runs, -1),
+            columns(side_by_side([one.constants.reshape(-1) for one in contacts])),
+            columns(side_by_side([one.compliance[[0, 0, 1], [0, 1, 1]] for one in contacts])),
+            compliance_in_blocks([one.compliance for one in contacts], sizes, width),
+            equations,
+            columns(aligned(count * at.IN_STEP, runs)),
+            columns(aligned(count * at.SUMS, runs)),
+        )
+
+    def _probes(self, probes: Sequence[ProbeBlocks]) -> Probes:
         spans = np.zeros((self.probe_count, 2), dtype=np.int64)
-        first = self.rows.shape[1] - self.probe_count
+        first = CONTACTS + 2 * self.contact_count + 2 * self.layout.sizes.loads
         for i, span in enumerate(spans):
-            seen = np.flatnonzero(self.rows[:, first + i].any(axis=1))
+            seen = np.flatnonzero(self.modes.rows[:, first + i].any(axis=1))
             span[:] = (seen[0], seen[-1] + 1) if seen.size else (0, 0)
-        return spans
+        return Probes(
+            probes[0].kinds,
+            spans,
+            side_by_side([one.direct[:, self.used] for one in probes]),
+            columns(side_by_side([one.contact.reshape(-1) for one in probes])),
+            columns(aligned(self.probe_count, self.runs)),
+        )
 
     @property
     def kernel(self) -> Any:
-        """What marches."""
+        """The function that marches: compiled, or anything else where nothing is compiled for the processor."""
         if PLAIN:
             return partial(march_one_by_one, self.runs)
         return march_run if self.runs == 1 else march_runs
@@ -248,63 +214,61 @@ class SimpleMarch:
     @property
     def states(self) -> list[State]:
         """Where each run is."""
-        found = []
+        found, where = [], self.layout
+        all_carried = self.carried.carried.reshape(-1, self.runs)
+        energies = self.carried.energies.reshape(-1, self.runs)
         for run, scale in enumerate(self.scales[: self.given]):
-            rows = self.rows[self.places.block, :2, self.places.lane + run].T
+            rows = self.modes.rows[where.block, :2, where.lane + run].T
             modal = rows * scale
-            carried, energies = self.carried[None, :, run].copy(), self.energies[:, run].copy()
-            found.append(State(modal, rows - modal / scale, carried, energies))
+            carried = all_carried[:, run].reshape(self.contact_count, at.CARRIED).copy()
+            found.append(State(modal, rows - modal / scale, carried, energies[:, run].copy()))
         return found
 
-    def copy(self) -> SimpleMarch:
+    def copy(self) -> March:
         """Return another march that is where this one is."""
         return deepcopy(self)
 
     def _room(self, samples: int) -> tuple[Array, Array, Array, Array]:
         """Return where a chunk is written to: the same memory as for the last one if that is enough."""
         if samples > len(self.room[0]):
-            columns = at.ENERGIES, at.COLUMNS
+            columns = at.ENERGIES, at.COLUMNS * self.contact_count
             records = [aligned(samples, count * self.runs) for count in columns]
             self.room = (*records, aligned(samples * self.ratio, self.probe_count * self.runs), aligned(2, self.runs))
         energies, record, raw, stops = self.room
         return energies[:samples], record[:samples], raw[: samples * self.ratio], stops
 
     def advance(self, imposed: Sequence[Imposed], samples: int) -> list[Chunk]:
-        """March on."""
+        """March `samples` samples on and return what each run left, to be read before the next call."""
         steps, runs = samples * self.ratio, self.runs
         imposed = [*imposed, *[imposed[-1]] * (runs - self.given)]
         energies, record, raw, stops = self._room(samples)
-        signals = _each(lambda one: one.signals[:, self.heard], imposed)
-        motions = _each(lambda one: one.motion[:, 0], imposed)
+        signals = _each(lambda one: one.signals[:, self.used], imposed)
+        motions = _each(lambda one: one.motion.reshape(len(one.motion), -1), imposed)
         if all((one == one[0]).all() for one in signals):
             signals = [one[:1] for one in signals]
         if not any(one.any() for one in motions):
             motions = [one[:1] for one in motions]
-        self._march(_beside(signals), _beside(motions), energies, record, raw, stops)
-        energies, record = energies.reshape(samples, -1, runs), record.reshape(samples, 1, -1, runs)
+        given = ImposedOnRuns(_beside(signals), _beside(motions))
+        self._march(given, Records(energies, record, raw, stops))
+        energies, record = energies.reshape(samples, -1, runs), record.reshape(samples, self.contact_count, -1, runs)
         raw = raw.reshape(steps, -1, runs)
         return [
             Chunk(energies[..., run], record[..., run], raw[..., run], int(stops[0, run]), int(stops[1, run]))
             for run in range(self.given)
         ]
 
-    def _march(self, signals: Array, motion: Array, *outputs: Array) -> None:
-        """March through a chunk and fill `outputs`: energies, record, probes at every step, what became of each run."""
+    def _march(self, imposed: ImposedOnRuns, records: Records) -> None:
+        """March through a chunk and fill `records`."""
         self.kernel(
-            self.places.blocks,
-            self.ratio,
-            self.step,
-            self.law,
-            self.laws,
-            self.numbers,
-            self.rows,
+            self.layout.sizes,
+            self.timing,
+            self.modes,
+            self.paths,
+            self.contacts,
             self.carried,
-            self.energies,
-            self.work_of_loads,
-            signals,
-            motion,
+            imposed,
             self.probes,
-            *outputs,
+            records,
         )
 
 

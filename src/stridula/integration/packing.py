@@ -1,57 +1,236 @@
-"""Runs of one contact as the march lays them out: eight modes of one run in a block, or one mode of eight runs."""
+"""Runs as the march lays them out: eight numbers of one run in a block, or one number of eight runs."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numba.core import config
 
 from .._kernels import layout as at
-from .._kernels.block_rows import LOADS, NUMBER, WAVES
+from .._kernels.block_rows import AMPLITUDE, COMPLIANCE, CONTACTS, NUMBER, WAVE_ROWS
+from .._kernels.march import Sizes
 from .._kernels.vectors import LANES
+from .._kernels.waves import WAVE_SET
 from ..bodies.modes import Array
+from ..bodies.paths import Waves
 from ..records.state import State
-from .blocks import Blocks, ContactBlocks
+from .blocks import Blocks, ContactBlocks, PathModes, Recurrence
+
+# Whether numba has been told to compile nothing.
+PLAIN = bool(config.DISABLE_JIT)  # type: ignore[attr-defined]
+# Kinds of the spans of a path.
+PATH_KINDS = (at.PATH_NORMAL, at.PATH_TANGENTIAL)
 
 
 @dataclass(frozen=True)
-class Places:
-    """Where the modes of a run lie: fixed ones in the first blocks, then bending and axial harmonics.
+class Layout:
+    """Where the numbers of a run lie.
 
     Attributes
     ----------
+    sizes : Sizes
+        How many blocks there are of what.
     block, lane : ndarray of int, shape (modes,)
         Block of each mode, and its place in it, of the first of runs side by side.
-    blocks : tuple of int
-        Number of blocks of each kind.
+    wave_of : ndarray of int, shape (blocks,)
+        Wave of each block of a path.
+    spans, first_span : ndarray of int
+        Spans of blocks that each contact sees.
+    path_of : ndarray of int, shape (contacts,)
+        First block of the path of each contact, -1 for none.
+    sets, pairs, numbers : ndarray
+        Waves of each contact; sums and differences among them; multiples of the angles, a row a block of waves.
     """
 
+    sizes: Sizes
     block: Array
     lane: Array
-    blocks: tuple[int, int, int]
+    wave_of: Array
+    spans: Array
+    first_span: Array
+    path_of: Array
+    sets: Array
+    pairs: Array
+    numbers: Array
+
+    @property
+    def coupled_places(self) -> Array:
+        """Where the coupled modes lie among those of their blocks."""
+        inside = self.block < self.sizes.coupled
+        return np.asarray(self.block[inside] * self.sizes.per_block + self.lane[inside])
 
 
-def places(contacts: ContactBlocks, per_block: int) -> Places:
-    """Return where the modes lie, `per_block` of each run in a block."""
-    count = contacts.rows.shape[2]
-    bending, axial, end = (int(contacts.spans[0, k]) for k in (at.BENDING, at.AXIAL, at.AXIAL_END))
-    kinds = (np.r_[0:bending, end:count], np.r_[bending:axial], np.r_[axial:end])
-    fixed, bends, stretches = (-(-kind.size // per_block) for kind in kinds)
-    block, lane = np.empty((2, count), dtype=np.int64)
-    for kind, first in zip(kinds, (0, fixed, fixed + bends), strict=True):
-        block[kind], lane[kind] = np.divmod(np.arange(kind.size), per_block)
-        block[kind] += first
-    return Places(block, lane, (fixed, bends, stretches))
+def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
+    """Return where the numbers of runs of the same kind lie, `per_block` of each in a block."""
+    contacts, modes = runs[0].contacts, runs[0].modes
+    places = _Places(contacts, modes.coupled, modes.block.shape[1], per_block)
+    seen = np.any([one.contacts.rows.any(axis=1) for one in runs], axis=0)
+    spans, first_span = [], [0]
+    for i, along in enumerate(contacts.paths):
+        if len(contacts.paths) == 1 and not modes.coupled:
+            spans.append((0, places.plain, at.CONSTANT, 0, 0))
+        else:
+            spans += [(*span, at.CONSTANT, 0, 0) for span in _runs_of(places.block[seen[i]])]
+        if along is not None:
+            spans += places.path_spans[_key(along)]
+        first_span.append(len(spans))
+    sets, pairs, numbers = _wave_sets(contacts, places)
+    count = len(contacts.paths)
+    sizes = Sizes(
+        places.blocks,
+        places.coupled,
+        per_block,
+        count,
+        -(-2 * count // per_block),
+        len(modes.loads),
+        any(along is not None for along in contacts.paths),
+        any(along is not None and along.normal.start < modes.coupled for along in contacts.paths),
+    )
+    path_of = [-1 if along is None else places.path_spans[_key(along)][0][0] for along in contacts.paths]
+    return Layout(
+        sizes,
+        places.block,
+        places.lane,
+        places.wave_of,
+        np.array(spans, dtype=np.int64).reshape(-1, at.SPAN),
+        np.array(first_span),
+        np.array(path_of),
+        sets,
+        pairs,
+        numbers,
+    )
 
 
-def pack(where: Places, rows: Sequence[Array], width: int) -> Array:
+def _key(along: PathModes) -> int:
+    return int(along.normal.start)
+
+
+def _runs_of(numbers: Array) -> Iterator[tuple[int, int]]:
+    """Yield spans of successive numbers."""
+    numbers = np.unique(numbers)
+    if numbers.size:
+        for run in np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1):
+            yield int(run[0]), int(run[-1]) + 1
+
+
+class _Places:
+    """Blocks filled one after the other: coupled modes, then the others; those of a path after these, wave by wave."""
+
+    def __init__(self, contacts: ContactBlocks, coupled: int, count: int, per_block: int) -> None:
+        self.per_block, self.blocks = per_block, 0
+        self.block, self.lane = np.zeros((2, count), dtype=np.int64)
+        self.path_spans: dict[int, list[tuple[int, ...]]] = {}
+        self.pairs: dict[int, dict[tuple[int, int], int]] = {}
+        self.waves: list[int] = []
+        paths = {_key(along): along for along in contacts.paths if along is not None}
+        self._fill(0, coupled, paths)
+        self.coupled = self.blocks
+        self._fill(coupled, count, paths)
+        self.wave_of = np.array(self.waves, dtype=np.int64)
+
+    def _fill(self, begin: int, end: int, paths: dict[int, PathModes]) -> None:
+        inside = [along for along in paths.values() if begin <= along.normal.start < end]
+        others = np.setdiff1d(
+            np.arange(begin, end), [k for along in inside for k in range(along.normal.start, along.tangential.stop)]
+        )
+        self.block[others] = self.blocks + np.arange(others.size) // self.per_block
+        self.lane[others] = np.arange(others.size) % self.per_block
+        self.plain = self._take(-(-others.size // self.per_block), 0)
+        for along in inside:
+            pairs = self.pairs[_key(along)] = {}
+            first, along_count = first_multiple(along), along_blocks(along, self.per_block)
+            across = across_blocks(along, self.per_block)
+            spans = []
+            for kind, span, waves in zip(
+                PATH_KINDS, (along.normal, along.tangential), (along.path.normal, along.path.tangential), strict=True
+            ):
+                start = self.blocks
+                for numbers in _groups(waves):
+                    self._take_group(span.start + numbers, waves.multiples[numbers], first, along_count + across, pairs)
+                spans.append((start, self.blocks, kind, int(waves.has_two), int(waves.cosines)))
+            self.path_spans[_key(along)] = [span for span in spans if span[1] > span[0]]
+
+    def _take(self, blocks: int, wave: int) -> int:
+        self.blocks += blocks
+        self.waves += [wave] * blocks
+        return self.blocks
+
+    def _take_group(
+        self, modes: Array, multiples: Array, first: int, simple: int, pairs: dict[tuple[int, int], int]
+    ) -> None:
+        """Put modes whose second multiple is the same where the first says."""
+        wave, lane = np.divmod(multiples[:, 0] - first, self.per_block)
+        across = int(multiples[0, 1])
+        for number in np.unique(wave).tolist():
+            here = wave == number
+            self.block[modes[here]], self.lane[modes[here]] = self.blocks, lane[here]
+            if across:
+                number = simple + 2 * pairs.setdefault((number, across), len(pairs))
+            self._take(1, number)
+
+
+def _groups(waves: Waves) -> list[Array]:
+    """Return numbers of modes that may share blocks: of the same second multiple, no first one twice."""
+    if not waves.multiples[:, 1].any() and np.unique(waves.multiples[:, 0]).size == len(waves.multiples):
+        return [np.arange(len(waves.multiples))] if len(waves.multiples) else []
+    seen: dict[tuple[int, int], int] = {}
+    groups: dict[tuple[int, int], list[int]] = {}
+    for number, (m, n) in enumerate(waves.multiples.tolist()):
+        times = seen[m, n] = seen.get((m, n), -1) + 1
+        groups.setdefault((n, times), []).append(number)
+    return [np.array(groups[key]) for key in sorted(groups)]
+
+
+def _both(along: PathModes) -> Array:
+    return np.concatenate([along.path.normal.multiples, along.path.tangential.multiples])
+
+
+def first_multiple(along: PathModes) -> int:
+    """Return the first multiple of the angle along a path that its waves need: 0 or 1."""
+    return min(1, int(_both(along)[:, 0].min()))
+
+
+def along_blocks(along: PathModes, per_block: int) -> int:
+    """Return how many blocks the waves along a path take."""
+    return int(-(-(_both(along)[:, 0].max() + 1 - first_multiple(along)) // per_block))
+
+
+def across_blocks(along: PathModes, per_block: int) -> int:
+    """Return how many blocks the waves across it take."""
+    return int(-(-_both(along)[:, 1].max() // per_block))
+
+
+def _wave_sets(contacts: ContactBlocks, places: _Places) -> tuple[Array, Array, Array]:
+    """Return the waves of each contact, their sums and differences, and their multiples."""
+    per_block, sets, pairs, numbers = places.per_block, [], [], []
+    lanes = np.arange(LANES)
+    for along in contacts.paths:
+        if along is None:
+            sets.append([0] * WAVE_SET)
+            continue
+        first, begin = len(numbers), len(pairs)
+        low, counts = first_multiple(along), (along_blocks(along, per_block), across_blocks(along, per_block))
+        numbers += [low + per_block * k + lanes for k in range(counts[0])]
+        numbers += [1 + per_block * k + lanes for k in range(counts[1])]
+        known = places.pairs[_key(along)]
+        pairs += [[first + j, (first + counts[0]) * per_block + n - 1] for j, n in known]
+        numbers += [lanes] * (2 * len(known))
+        sets.append([first, *counts, 1 - low, begin, len(pairs)])
+    return (
+        np.array(sets, dtype=np.int64),
+        np.array(pairs, dtype=np.int64).reshape(-1, 2),
+        np.array(numbers, dtype=float).reshape(-1, LANES),
+    )
+
+
+def pack(where: Layout, rows: Sequence[Array], width: int) -> Array:
     """Return rows over modes, shape (rows, modes) for each run, as blocks, shape (blocks, rows, width)."""
-    blocks, count = sum(where.blocks), len(rows[0])
+    blocks, count = where.sizes.blocks, len(rows[0])
     out = aligned(blocks, count * width).reshape(blocks, count, width)
     for run, values in enumerate(rows):
         out[where.block, :, where.lane + run] = values.T
-    out[:, NUMBER] = np.arange(blocks * width).reshape(blocks, width) + 1.0 - where.blocks[0] * width
     return out
 
 
@@ -63,6 +242,11 @@ def side_by_side(rows: Sequence[Array]) -> Array:
     return out
 
 
+def columns(array: Array) -> Array:
+    """Return what belongs to runs as the march takes it: that of one run, where it is compiled, without columns."""
+    return array if PLAIN or array.shape[1] > 1 else array[:, 0]
+
+
 def aligned(rows: int, columns: int) -> Array:
     """Return zeros whose first vector lies in a line of the cache."""
     memory = np.zeros(rows * columns + LANES)
@@ -70,33 +254,71 @@ def aligned(rows: int, columns: int) -> Array:
     return memory[skipped : skipped + rows * columns].reshape(rows, columns)
 
 
-def rows_of(blocks: Blocks, state: State) -> tuple[Array, Array]:
-    """Return all rows over the modes of a run, and the scale of its state."""
-    contacts, block = blocks.contacts, blocks.modes.block
-    scale = np.sqrt(block[at.LOAD])
-    harmonic = np.zeros(scale.size)
-    for first, end in ((at.BENDING, at.BENDING_END), (at.AXIAL, at.AXIAL_END)):
-        span = slice(int(contacts.spans[0, first]), int(contacts.spans[0, end]))
-        harmonic[span] = np.arange(1, span.stop - span.start + 1)
-    # A mode is fixed or a harmonic: its rows at the contact or the amplitudes of its trace.
-    amplitude = contacts.constants[0, at.AMPLITUDE] * (harmonic > 0.0)
-    at_contact = contacts.rows[0] + [amplitude, contacts.constants[0, at.WAVENUMBER] * harmonic * amplitude]
-    working = np.zeros((LOADS - WAVES, scale.size))
-    return np.concatenate(
-        [
-            state.modal / scale + state.remainder,
-            block[[at.B, at.R]],
-            np.zeros((1, scale.size)),
-            at_contact * scale,
-            working,
-            blocks.modes.loads / scale,
-            blocks.probes.row * scale,
-        ]
-    ), scale
+def scale_of(modes: Recurrence) -> Array:
+    """Return the scale of the state of each mode in the march: the root of its mobility, one for coupled modes."""
+    scale = np.sqrt(modes.block[at.LOAD])
+    scale[: modes.coupled] = 1.0
+    return np.asarray(scale)
 
 
-def numbers_of(contacts: ContactBlocks) -> Array:
-    """Return the numbers of a run that the march reads."""
-    constants, w = contacts.constants[0], contacts.compliance
-    own = constants[[at.START, at.GAP, at.HIGH, at.WAVENUMBER]]
-    return np.array([*own, w[0, 0], w[0, 1], w[1, 1], contacts.laws[0, 0]])
+def rows_of(blocks: Blocks, state: State, scale: Array) -> Array:
+    """Return all rows over the modes of a run."""
+    contacts, modes = blocks.contacts, blocks.modes
+    count, size = len(contacts.paths), scale.size
+    used = CONTACTS + 2 * count + 2 * len(modes.loads) + len(blocks.probes.rows)
+    # An odd number of vectors: the same row of all blocks would else crowd a part of the cache.
+    rows = np.zeros((used + 1 - used % 2, size))
+    rows[:2] = state.modal / scale + state.remainder
+    rows[2:4] = modes.block[[at.B, at.R]]
+    for along in contacts.paths:
+        if along is not None:
+            _put_waves(rows[AMPLITUDE:CONTACTS], along)
+    rows[AMPLITUDE:CONTACTS] *= scale
+    parts = (
+        contacts.rows.reshape(2 * count, size) * scale,
+        modes.loads / scale,
+        modes.forces * scale,
+        blocks.probes.rows * scale,
+    )
+    rows[CONTACTS:used] = np.concatenate(parts)
+    return rows
+
+
+def _put_waves(rows: Array, along: PathModes) -> None:
+    """Put amplitude and slope of each of the two waves of the modes of a path."""
+    path = along.path
+    for span, waves in ((along.normal, path.normal), (along.tangential, path.tangential)):
+        slopes = waves.amplitude * waves.rates(path.rate) * (-1.0 if waves.cosines else 1.0)
+        rows[0::2, span], rows[1::2, span] = waves.amplitude.T, slopes.T
+
+
+def matrices_of(where: Layout, runs: Sequence[Recurrence], width: int) -> Array:
+    """Return the matrices of coupled modes in blocks, shape (blocks, kinds places, width)."""
+    coupled, per_block = where.sizes.coupled, where.sizes.per_block
+    places = coupled * per_block
+    out = aligned(coupled, at.MATRICES * places * width).reshape(coupled, at.MATRICES, places, width)
+    here = where.coupled_places
+    block, lane = np.divmod(here, per_block)
+    for run, modes in enumerate(runs):
+        # Rows of a matrix go over blocks and lanes, columns over places.
+        out[block[:, None], :, here[None, :], (lane + run)[:, None]] = modes.matrices.transpose(1, 2, 0)
+    return out.reshape(coupled, at.MATRICES * places, width)
+
+
+def compliance_in_blocks(compliances: Sequence[Array], sizes: Sizes, width: int) -> Array:
+    """Return room for the displacements of the contacts of runs, and their compliances, shape (blocks, rows, width)."""
+    size = 2 * sizes.contacts
+    out = aligned(sizes.faces, (COMPLIANCE + 2 * size) * width).reshape(sizes.faces, -1, width)
+    block, lane = np.divmod(np.arange(size), sizes.per_block)
+    for run, compliance in enumerate(compliances):
+        for first in (COMPLIANCE, COMPLIANCE + size):
+            out[block[:, None], first + np.arange(size)[None, :], (lane + run)[:, None]] = compliance
+    return out
+
+
+def waves_of(where: Layout, width: int) -> Array:
+    """Return room for the waves of all contacts, shape (blocks, rows, width)."""
+    blocks = len(where.numbers)
+    out = aligned(blocks, WAVE_ROWS * width).reshape(blocks, WAVE_ROWS, width)
+    out[:, NUMBER] = where.numbers[:, : out.shape[2]] if width <= LANES else 0.0
+    return out

@@ -11,7 +11,6 @@ import numpy as np
 import xarray as xr
 
 from .._kernels import layout as at
-from .._kernels.march import stored_energy
 from ..assembly import Assembly, Signal, going_on, with_travel
 from ..bodies.modes import Array
 from ..checks import brief, instance, listed
@@ -178,9 +177,9 @@ def _root_moved_on(
     if faster:
         body: Any = system.imposed_velocity.point.body
         span = slice(*arrays.spans[system.body_name(body)])
-        before = stored_energy(modes.block, modes.matrices, state.modal)
+        before = modes.stored_energy(state.modal)
         state.modal[at.D, span] -= faster * step * body.modes(True).translation[0]
-        after = stored_energy(modes.block, modes.matrices, state.modal)
+        after = modes.stored_energy(state.modal)
         state.energies[at.DRIVE_WORK] += after - before
         state.energies[at.STORED] = after
     return arrays

@@ -16,7 +16,7 @@ from ..checks import at_least, at_most, brief, instance, positive
 from ..records import Acceleration, Probe
 from ..system import System
 from .contact_solve import GaussSeidel
-from .marches import march_of
+from .marches import March
 from .run import Run
 from .schemes import CentralDifference, ExactModal, Scheme
 from .stops import Diverged, Interrupted
@@ -95,7 +95,7 @@ def simulate(
     asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve)
     run = asked.run(asked.arrays(system), start, title)
     timing = run.timing
-    march = march_of(run.blocks, run.state, timing.step, timing.ratio, asked.solve)
+    march = March([run.blocks], [run.state], timing.step, timing.ratio, asked.solve)
     interrupted = march_together([run], march, watchers)
     record = run.record(interrupted)
     if interrupted:

@@ -9,8 +9,6 @@ import numpy as np
 from .._kernels import layout as at
 from .._kernels.contact import SEPARATED, SLIDING, STICKING
 from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
-from .._kernels.gauss_seidel import solve_all
-from .._kernels.march import stored_energy
 from ..assembly import Assembly, ContactRows
 from ..bodies import Track
 from ..bodies.modes import Array
@@ -18,6 +16,7 @@ from ..contact import FrictionLaw, RateAndState
 from ..records.state import State
 from .blocks import Blocks
 from .contact_solve import GaussSeidel
+from .forces import forces_of
 from .schemes import Scheme
 
 # Share of the terms of a gap that rounding may make, where each has come out of a sum or a solve of its own.
@@ -52,7 +51,7 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
         carried[pressed, at.CLOSED_SHARE] = 1.0
         carried[pressed, at.STATUS] = np.where(start.speeds[pressed] == 0.0, STICKING, SLIDING)
     modal, energies = np.stack([arrays.position, first]), np.zeros(at.ENERGIES)
-    energies[at.STORED] = stored_energy(modes.block, modes.matrices, modal)
+    energies[at.STORED] = modes.stored_energy(modal)
     return State(modal, np.zeros_like(modal), carried, energies)
 
 
@@ -100,7 +99,7 @@ class _Start:
         """Return the ratio of tangential to normal force of contacts whose motion settles it, NaN of others."""
         ratios, laws = np.full(len(self.speeds), np.nan), self.contacts.laws
         for i, speed in enumerate(self.speeds):
-            law = int(self.contacts.constants[i, at.LAW])
+            law = int(self.contacts.codes[i])
             if not set_valued(law):
                 ratios[i] = state_ratio(law, laws, i, carried[i, at.FRICTION_STATE], speed, self.step)
             elif speed:
@@ -128,7 +127,7 @@ class _Start:
         if not law.state_units:
             return 0.0
         state = float(self.arrays.friction_state[i])
-        code = int(self.contacts.constants[i, at.LAW])
+        code = int(self.contacts.codes[i])
         # The mirror image of the half step after it, which does not grow as motion backwards in time does.
         before = 2.0 * state - float(next_state(code, self.contacts.laws, i, state, velocity, self.step / 2.0))
         # The age of a contact stays above zero.
@@ -142,30 +141,16 @@ class _Start:
         """Return the normal and the tangential force of closed contacts, shape (closed, 2)."""
         gap, slip = self._at_first_step(self.modes.free(self.arrays.position, first) + self.factors @ self.modes.loads)
         compliance = self._compliance(self.pushes(closed))
-        constants, laws = self.contacts.constants[closed], self.contacts.laws[closed]
+        codes, laws = self.contacts.codes[closed], self.contacts.laws[closed]
         ratios = self._known_ratios(carried)[closed]
         for i in np.flatnonzero(np.isfinite(ratios)):
             # Where the ratio is known, the contact is one without friction whose push is inclined.
             inclined = compliance[:, 2 * i] - ratios[i] * compliance[:, 2 * i + 1]
             if inclined[2 * i] > 0.0:
-                compliance[:, 2 * i], constants[i, at.LAW], laws[i, 0] = inclined, at.COULOMB, 0.0
+                compliance[:, 2 * i], codes[i], laws[i, 0] = inclined, at.COULOMB, 0.0
             else:
                 ratios[i] = np.nan
-        forces = np.zeros((closed.size, 2))
-        solve_all(
-            gap[closed],
-            slip[closed],
-            compliance,
-            constants,
-            laws,
-            carried[closed],
-            self.step,
-            solve.tolerance,
-            solve.sweeps,
-            forces,
-            np.zeros(closed.size, dtype=np.int64),
-            np.zeros(closed.size, dtype=np.bool_),
-        )
+        forces = forces_of(gap[closed], slip[closed], compliance, (codes, laws), carried[closed], self.step, solve)
         forces[:, 1] = np.where(np.isfinite(ratios), ratios * forces[:, 0], forces[:, 1])
         return forces
 

@@ -63,7 +63,7 @@ def _compiled(runs: Sequence[Run], march: March) -> float:
 
 def _imposed(runs: Sequence[Run], first_sample: int, samples: int) -> list[Imposed]:
     """Return what is imposed on each run, one and the same for runs that share it."""
-    keys: list[Hashable] = [(run.arrays.prescribed, run.blocks.heard, run.first_step) for run in runs]
+    keys: list[Hashable] = [(run.arrays.prescribed, run.blocks.used, run.first_step) for run in runs]
     found: dict[Hashable, Imposed] = {}
     for run, key in zip(runs, keys, strict=True):
         if key not in found:

@@ -1,0 +1,107 @@
+"""What a step leaves of a contact: shares of its states, its anchor, the work of its forces, the state of its law."""
+
+import numba
+
+from . import layout as at
+from .contact import SLIDING, STICKING, closed_share, landed_share, stuck_share, velocity_at
+from .friction import set_valued
+from .lanes import anywhere, choose, held, hold, magnitude, read
+from .modes import OPTIONS
+from .solves import next_states
+
+
+@numba.njit(**OPTIONS)
+def add(array, row, run, value, zero):
+    """Add to a row."""
+    hold(array, row, run, held(array, row, run, zero) + value)
+
+
+@numba.njit(**OPTIONS)
+def share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, run, zero):
+    """Share the step before among the states of contact `i` and count this one; return the share closed of this one."""
+    base, tally = i * at.CARRIED, i * at.SUMS
+    _, _, status, jammed = touch
+    free_gap, free_slip, gap, _ = moved
+    was, last_normal, last_tangential = before[0], before[4], before[5]
+    stuck, touched = magnitude(was - STICKING) < 0.5, was > 0.5 * STICKING
+    apart = status < 0.5 * STICKING
+    closed = held(carried, base + at.CLOSED_SHARE, run, zero)
+    opened = choose(touched, choose(apart, last_normal, zero), zero) > 0.0
+    if anywhere(opened):
+        left = closed - 1.0 + closed_share(choose(opened, last_normal, 1.0), last_tangential, gap, w[0], w[1])
+        closed = choose(opened, choose(left < 0.0, zero, left), closed)
+    stayed = choose(stuck, closed, zero)
+    slips = choose(stuck, status, zero) > SLIDING - 0.5
+    if set_valued(law) and anywhere(slips):
+        kept = stuck_share(last_normal, last_tangential, free_gap, free_slip + away, w, at_rest)
+        stayed = choose(slips, kept * stayed, stayed)
+    add(sums, tally + at.STUCK, run, stayed, zero)
+    add(sums, tally + at.SLID, run, closed - stayed, zero)
+    if not anywhere(status > 0.5 * STICKING):
+        return zero
+    landed = choose(touched, zero, choose(apart, zero, 1.0))
+    closed = choose(touched, 1.0, landed_share(held(carried, base + at.LAST_GAP, run, zero), free_gap))
+    sticks = magnitude(status - STICKING) < 0.5
+    add(sums, tally + at.TOUCHDOWNS, run, landed, zero)
+    add(sums, tally + at.JAMS, run, jammed, zero)
+    add(sums, tally + at.STUCK_STEPS, run, choose(sticks, 1.0, zero), zero)
+    add(sums, tally + at.SLID_STEPS, run, choose(status > SLIDING - 0.5, 1.0, zero), zero)
+    anchor = held(carried, base + at.ANCHOR, run, zero)
+    begun = choose(stuck, anchor, held(carried, base + at.MATERIAL, run, zero))
+    hold(carried, base + at.ANCHOR, run, choose(sticks, begun, anchor))
+    return choose(apart, zero, closed)
+
+
+@numba.njit(**OPTIONS)
+def centred(motion, n, column, zero):
+    """Return the motion of a step, half that of the step before and after."""
+    return 0.5 * (read(motion, n + 2, column, zero) - read(motion, n, column, zero))
+
+
+@numba.njit(**OPTIONS)
+def driven_work(i, touch, motion, n, run, runs, zero):
+    """Return what the motions imposed on contact `i` give through its forces in step `n`."""
+    column = i * at.MOTIONS * runs + run
+    tip = centred(motion, n, column + at.TIP_MOTION * runs, zero)
+    track = centred(motion, n, column + at.TRACK_MOTION * runs, zero)
+    lift = centred(motion, n, column + at.GAP_MOTION * runs, zero)
+    return touch[1] * (tip - track) - touch[0] * lift
+
+
+@numba.njit(**OPTIONS)
+def keep_forces(i, touch, moved, before, carried, sums, closed, law, laws, number, step, run, zero):
+    """Carry the forces of contact `i` and the state of its law to the next step, sum them; return what friction took."""
+    base, tally = i * at.CARRIED, i * at.SUMS
+    normal, tangential, status, _ = touch
+    slip = moved[3]
+    add(sums, tally + at.NORMALS, run, normal, zero)
+    add(sums, tally + at.TANGENTIALS, run, tangential, zero)
+    if not set_valued(law):
+        velocity = velocity_at(slip, before, step)
+        hold(carried, base + at.FRICTION_STATE, run, next_states(law, laws, number, status, before[3], velocity, step))
+    hold(carried, base + at.STATUS, run, status)
+    hold(carried, base + at.CLOSED_SHARE, run, closed)
+    hold(carried, base + at.LAST_NORMAL, run, normal)
+    hold(carried, base + at.LAST_TANGENTIAL, run, tangential)
+    # In a step in which the slip turns round, its mean force and the slip have opposite signs.
+    return magnitude(tangential * slip) if set_valued(law) else tangential * slip
+
+
+@numba.njit(**OPTIONS)
+def keep_motion(i, moved, before, carried, run, zero):
+    """Carry gap and slip of contact `i` to the next step."""
+    base = i * at.CARRIED
+    hold(carried, base + at.EARLIER_SLIP, run, before[1])
+    hold(carried, base + at.LAST_SLIP, run, moved[3])
+    hold(carried, base + at.LAST_GAP, run, moved[2])
+    add(carried, base + at.MATERIAL, run, moved[3], zero)
+
+
+@numba.njit(**OPTIONS)
+def keep_place(i, carried, place, run, zero):
+    """Carry where contact `i` is; return half the way of the last two steps."""
+    base = i * at.CARRIED
+    way = 0.5 * (place - held(carried, base + at.ABSCISSA_BEFORE, run, zero))
+    hold(carried, base + at.ABSCISSA_BEFORE, run, held(carried, base + at.ABSCISSA, run, zero))
+    hold(carried, base + at.ABSCISSA, run, place)
+    return way

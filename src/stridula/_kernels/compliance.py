@@ -1,0 +1,69 @@
+"""Relative displacements of all contacts for unit forces on each, where contacts move along paths."""
+
+import numba
+
+from . import layout as at
+from .block_rows import COMPLIANCE, CONTACTS, POSITION
+from .coupled import respond
+from .lanes import entry, set_entry
+from .modes import OPTIONS, product, two_products
+
+
+@numba.njit(**OPTIONS)
+def set_compliance(rows, faces, spans, first_span, path_of, count, run, zero):
+    """Put the compliance of bodies of uncoupled modes: that of constant rows, and what paths add.
+
+    Contacts that share a path, or are on the body of another one's path, are soft together.
+    """
+    for i in range(count):
+        if path_of[i] < 0:
+            continue
+        for j in range(count):
+            # Of two contacts on the same path, or of two paths, the pair is taken once.
+            if path_of[j] >= 0 and j > i:
+                continue
+            set_pair(rows, faces, spans, first_span, i, j, 2 * count, run, zero)
+
+
+@numba.njit(**OPTIONS)
+def set_pair(rows, faces, spans, first_span, i, j, size, run, zero):
+    """Put the compliance of contact `i`, which is on a path, for forces on contact `j`, and the other way round."""
+    for side in range(2):
+        normal = entry(faces, 2 * i + side, COMPLIANCE + size + 2 * j, run, zero)
+        tangential = entry(faces, 2 * i + side, COMPLIANCE + size + 2 * j + 1, run, zero)
+        for s in range(first_span[i], first_span[i + 1]):
+            if spans[s, at.KIND] != at.CONSTANT:
+                begin, end = spans[s, at.BEGIN], spans[s, at.END]
+                along = two_products(rows, CONTACTS + 2 * j, CONTACTS + 2 * i + side, begin, end, run, zero)
+                normal, tangential = normal + along[0], tangential + along[1]
+        for s in range(first_span[j], first_span[j + 1]):
+            if spans[s, at.KIND] != at.CONSTANT and not shared(spans, first_span, i, spans[s, at.BEGIN]):
+                begin, end = spans[s, at.BEGIN], spans[s, at.END]
+                along = two_products(rows, CONTACTS + 2 * j, CONTACTS + 2 * i + side, begin, end, run, zero)
+                normal, tangential = normal + along[0], tangential + along[1]
+        for other, value in ((2 * j, normal), (2 * j + 1, tangential)):
+            set_entry(faces, 2 * i + side, COMPLIANCE + other, run, value)
+            set_entry(faces, other, COMPLIANCE + 2 * i + side, run, value)
+
+
+@numba.njit(**OPTIONS)
+def shared(spans, first_span, i, begin):
+    """Return whether a span of a path is one of contact `i`, too."""
+    for s in range(first_span[i], first_span[i + 1]):
+        if spans[s, at.KIND] != at.CONSTANT and spans[s, at.BEGIN] == begin:
+            return True
+    return False
+
+
+@numba.njit(**OPTIONS)
+def set_compliance_of_coupled(rows, matrices, faces, blocks, coupled, places, count, run, zero):
+    """Put the compliance of bodies of which some have coupled modes.
+
+    It is symmetric but where stiffness and damping of these do not commute.
+    """
+    for j in range(2 * count):
+        respond(rows, matrices, coupled, places, run, CONTACTS + j, POSITION, zero)
+        for i in range(2 * count):
+            value = product(rows, CONTACTS + i, POSITION, 0, coupled, run, zero)
+            value += product(rows, CONTACTS + i, CONTACTS + j, coupled, blocks, run, zero)
+            set_entry(faces, i, COMPLIANCE + j, run, value)

@@ -1,0 +1,149 @@
+"""Any number of contacts in one step: block Gauss-Seidel over the exact solve of one, started from the forces before.
+
+What belongs to contact `i` of a run lies in rows ``i * count + what``.
+"""
+
+import math
+
+import numba
+
+from . import layout as at
+from .block_rows import DISPLACEMENT
+from .contact import SLIDING, STICKING
+from .direct import solve_states
+from .faces import displace, displace_freely, own_compliance
+from .lanes import anywhere, choose, entry, everywhere, held, hold, magnitude
+from .modes import OPTIONS
+from .solves import carried_by, forces_of_one, strayed
+
+# Sweeps after which, and then between which, the forces of the states that were found are solved for directly.
+FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 2, 8
+# Sweeps after which a contact that has broken away in this step is no longer held by its static coefficient.
+PATIENCE = 24
+# Change of a force by rounding alone, relative to the largest.
+ROUND_OFF = 1e-14
+
+
+@numba.njit(**OPTIONS)
+def start_from_last(contacts, carried, touching, sizes, run, zero):
+    """Let contacts that were closed begin with the forces of the last step, in runs in which any touches."""
+    faces, now = contacts.faces, contacts.now
+    # One contact is solved at once.
+    warm = choose(touching > 0.5, 1.0, zero) if sizes.contacts > 1 else zero
+    displace_freely(faces, now, sizes.contacts, run, zero)
+    for i in range(sizes.contacts):
+        here, base = i * at.IN_STEP, i * at.CARRIED
+        was_closed = warm * held(carried, base + at.STATUS, run, zero) > 0.5 * STICKING
+        normal = choose(was_closed, held(carried, base + at.LAST_NORMAL, run, zero), zero)
+        tangential = choose(was_closed, held(carried, base + at.LAST_TANGENTIAL, run, zero), zero)
+        hold(now, here + at.NORMAL_NOW, run, normal)
+        hold(now, here + at.TANGENTIAL_NOW, run, tangential)
+        status = choose(normal > 0.0, held(carried, base + at.STATUS, run, zero), zero)
+        hold(now, here + at.STATUS_NOW, run, status)
+        hold(now, here + at.JAMMED_NOW, run, zero)
+        hold(now, here + at.MAY_TOUCH, run, choose(normal > 0.0, 1.0, zero))
+        hold(now, here + at.BROKE, run, zero)
+        hold(now, here + at.LET_GO, run, zero)
+        if anywhere(normal > 0.0):
+            displace(faces, sizes.faces, i, run, normal, tangential)
+
+
+@numba.njit(**OPTIONS)
+def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
+    """Solve each contact that may touch in turn, in runs not `done`; return change, largest force, whether states held."""
+    faces, now = contacts.faces, contacts.now
+    change, largest, settled = zero, zero, zero + 1.0
+    for i in range(sizes.contacts):
+        here = i * at.IN_STEP
+        gap = entry(faces, 2 * i, DISPLACEMENT, run, zero)
+        may_touch = held(now, here + at.MAY_TOUCH, run, zero)
+        may_touch = choose(gap < 0.0, 1.0, may_touch)
+        if not anywhere(may_touch > 0.5):
+            continue
+        hold(now, here + at.MAY_TOUCH, run, may_touch)
+        slip = entry(faces, 2 * i + 1, DISPLACEMENT, run, zero)
+        was_normal, was_tangential = held(now, here + at.NORMAL_NOW, run, zero), held(now, here + at.TANGENTIAL_NOW, run, zero)
+        was = held(now, here + at.STATUS_NOW, run, zero)
+        w = own_compliance(faces, i, run, zero)
+        gap -= w[0] * was_normal - w[1] * was_tangential
+        slip -= w[2] * was_normal - w[3] * was_tangential
+        normal, tangential, status, jammed = forces_of_one(
+            gap,
+            slip,
+            strayed(carried, i, run, zero),
+            w,
+            contacts.codes[i],
+            contacts.laws,
+            i * runs + run,
+            held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero),
+            carried_by(carried, i, run, zero),
+            held(now, here + at.LET_GO, run, zero),
+            step,
+            zero,
+        )
+        goes_on = done < 0.5
+        normal, tangential = choose(goes_on, normal, was_normal), choose(goes_on, tangential, was_tangential)
+        status = choose(goes_on, status, was)
+        hold(now, here + at.NORMAL_NOW, run, normal)
+        hold(now, here + at.TANGENTIAL_NOW, run, tangential)
+        hold(now, here + at.STATUS_NOW, run, status)
+        hold(now, here + at.JAMMED_NOW, run, choose(goes_on, jammed, held(now, here + at.JAMMED_NOW, run, zero)))
+        broke = held(now, here + at.BROKE, run, zero)
+        hold(now, here + at.BROKE, run, choose(status > SLIDING - 0.5, 1.0, broke))
+        settled = choose(magnitude(status - was) > 0.5, zero, settled)
+        more, pulled = normal - was_normal, tangential - was_tangential
+        displace(faces, sizes.faces, i, run, more, pulled)
+        change = largest_of(change, largest_of(magnitude(more), magnitude(pulled)))
+        largest = largest_of(largest, largest_of(normal, magnitude(tangential)))
+    return change, largest, settled
+
+
+@numba.njit(**OPTIONS)
+def largest_of(one, other):
+    """Return the larger of two numbers, the first where one is none."""
+    return choose(other > one, other, one)
+
+
+@numba.njit(**OPTIONS)
+def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
+    """Solve contacts in turn until no force changes; return sweeps made and error estimated from the changes.
+
+    The error is relative to the largest force. Sweeps that only creep towards the forces of states they have found are
+    helped by a direct solve. A contact that was held and breaks away may find no consistent state in which it could be
+    held again: it then lets go. Which runs lie side by side does not matter: one that is done changes no more.
+    """
+    done = choose(touching > 0.5, zero, 1.0)
+    made, error, before = zero, choose(touching > 0.5, math.inf, zero), zero + math.inf
+    for sweep in range(timing.sweeps):
+        change, largest, settled = sweep_once(contacts, carried, sizes, timing.step, done, run, runs, zero)
+        goes_on = done < 0.5
+        exact = change <= ROUND_OFF * largest
+        # The changes of a linear iteration fall by a constant factor, which tells what is still to come.
+        falls = choose(change < before, before, math.inf) < math.inf
+        size = choose(largest > 0.0, largest, 1.0)
+        estimate = choose(falls, change / size * change / choose(falls, before - change, 1.0), math.inf)
+        estimate = choose(exact, change / size, estimate)
+        error, made = choose(goes_on, estimate, error), choose(goes_on, sweep + 1.0, made)
+        done = choose(exact, 1.0, choose(error <= timing.tolerance, 1.0, done))
+        if sizes.contacts == 1:
+            return made, zero
+        if everywhere(done > 0.5):
+            break
+        before = change
+        if sweep + 1 == FIRST_DIRECT_SOLVE or (sweep + 1) % SWEEPS_PER_DIRECT_SOLVE == 0:
+            tried = choose(done < 0.5, settled, zero)
+            if anywhere(tried > 0.5):
+                solve_states(contacts, carried, sizes, run, tried, zero)
+                before = choose(tried > 0.5, math.inf, before)
+        if sweep + 1 == PATIENCE:
+            for i in range(sizes.contacts):
+                here = i * at.IN_STEP
+                hold(contacts.now, here + at.LET_GO, run, held(contacts.now, here + at.BROKE, run, zero))
+    return made, error
+
+
+@numba.njit(cache=True, error_model="numpy")
+def solve_closed(contacts, carried, sizes, timing):
+    """Solve the contacts of one run, as a step of the march does."""
+    start_from_last(contacts, carried, 1.0, sizes, 0, 0.0)
+    return solve_all(contacts, carried, 1.0, sizes, timing, 0, 1, 0.0)

@@ -1,0 +1,232 @@
+"""What the march does to the modes, block by block.
+
+A block is as wide as a vector: eight modes of one run, filled up with zeros, or one mode of eight runs. All that is known
+of a block lies together. States are scaled by the root of the mobility, ``q / sqrt(l)``, and so are loads and rows: a
+unit force adds its row to the increment, and the energy half a step ago is ``[(1 + b) / 2 d² + r q[n] q[n-1]] / 2``.
+
+One contact between bodies of uncoupled modes: a step is completed, under its forces, when the next one is tried, so that
+the modes are read once a step (`pass_fixed`, `pass_waves`). Any number of contacts: a step is tried, each contact gathers
+its displacement, and the step is completed under the push of all.
+"""
+
+from typing import Any
+
+import numba
+
+from .block_rows import (
+    AMPLITUDE,
+    CONTACTS,
+    FORCE,
+    INCREMENT,
+    KEPT,
+    NORMAL,
+    OTHER_AMPLITUDE,
+    OTHER_SLOPE,
+    POSITION,
+    PUSH,
+    SLOPE,
+    STIFFNESS,
+    TANGENTIAL,
+    D,
+    Q,
+)
+from .lanes import fused, load, spread, store, total
+
+# No rule of arithmetic is relaxed: a step is the same to the last bit wherever it is completed. No counting of
+# references: arrays come from Python and stay.
+OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "forceinline": True, "fastmath": False, "_nrt": False}
+
+
+@numba.njit(**OPTIONS)
+def block_at(rows, k, run):
+    """Return position, last increment, share kept, stiffness and load of a block."""
+    return (
+        load(rows, k, Q, run),
+        load(rows, k, D, run),
+        load(rows, k, KEPT, run),
+        load(rows, k, STIFFNESS, run),
+        load(rows, k, FORCE, run),
+    )
+
+
+@numba.njit(**OPTIONS)
+def complete(rows, k, run, q, d, increment):
+    """Complete the step of a block by an increment; return the position and the sum of both increments."""
+    q = q + increment
+    store(rows, k, Q, run, q)
+    store(rows, k, D, run, increment)
+    return q, increment + d
+
+
+@numba.njit(**OPTIONS)
+def pass_fixed(rows, begin, end, run, pending, normal, tangential):
+    """Complete a pending step of modes whose rows are constant and try the next.
+
+    Returns
+    -------
+    along, across, works, losses : vector
+        Trial displacements of the contact along tangent and normal; twice the work of the contact in the step
+        completed, four times what damping took.
+    """
+    along, across, works, losses = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    for k in range(begin, end):
+        q, d, kept, stiffness, force = block_at(rows, k, run)
+        upright, level = load(rows, k, NORMAL, run), load(rows, k, TANGENTIAL, run)
+        if pending:
+            push = fused(upright, normal, -level * tangential)
+            increment = fused(kept, d, fused(-stiffness, q, force + push))
+            q, both = complete(rows, k, run, q, d, increment)
+            d = increment
+            works = fused(push, both, works)
+            losses = fused((1.0 - kept) * both, both, losses)
+        position = q + fused(kept, d, fused(-stiffness, q, force))
+        along = fused(level, position, along)
+        across = fused(upright, position, across)
+    return along, across, works, losses
+
+
+@numba.njit(**OPTIONS)
+def pass_waves(rows, waves, wave_of, begin, end, two, run, pending, pull, last, last_slope, now):
+    """Complete a pending step of modes on a path that a force pulls at, and try the next.
+
+    `last`, `last_slope` and `now` are the rows of the waves at the contact in the step completed, of their derivatives,
+    and of the waves in the next. Modes are made of `two` waves, or one.
+
+    Returns
+    -------
+    trace, softness, slopes, works, losses : vector
+        Trial displacement of the path at the contact, that for a unit force, its derivative along the path after the
+        step completed; works and losses of that step as above.
+    """
+    trace, softness, slopes = spread(0.0), spread(0.0), spread(0.0)
+    works, losses = spread(0.0), spread(0.0)
+    for k in range(begin, end):
+        q, d, kept, stiffness, force = block_at(rows, k, run)
+        here, amplitude = wave_of[k], load(rows, k, AMPLITUDE, run)
+        row = amplitude * load(waves, here, now, run)
+        if two:
+            row = fused(load(rows, k, OTHER_AMPLITUDE, run), load(waves, here + 1, now, run), row)
+        if pending:
+            before = amplitude * load(waves, here, last, run)
+            slope = load(rows, k, SLOPE, run) * load(waves, here, last_slope, run)
+            if two:
+                before = fused(load(rows, k, OTHER_AMPLITUDE, run), load(waves, here + 1, last, run), before)
+                slope = fused(load(rows, k, OTHER_SLOPE, run), load(waves, here + 1, last_slope, run), slope)
+            push = pull * before
+            increment = fused(kept, d, fused(-stiffness, q, force + push))
+            q, both = complete(rows, k, run, q, d, increment)
+            d = increment
+            works = fused(push, both, works)
+            losses = fused((1.0 - kept) * both, both, losses)
+            slopes = fused(slope, q, slopes)
+        trace = fused(row, q + fused(kept, d, fused(-stiffness, q, force)), trace)
+        softness = fused(row, row, softness)
+    return trace, softness, slopes, works, losses
+
+
+@numba.njit(**OPTIONS)
+def try_all(rows, begin, end, run):
+    """Put increment and position at the end of the step without contact force into the rows of uncoupled modes."""
+    for k in range(begin, end):
+        q, d, kept, stiffness, force = block_at(rows, k, run)
+        increment = fused(kept, d, fused(-stiffness, q, force))
+        store(rows, k, INCREMENT, run, increment)
+        store(rows, k, POSITION, run, q + increment)
+
+
+@numba.njit(**OPTIONS)
+def set_path_rows(rows, waves, wave_of, first, begin, end, two, run, row, sine):
+    """Put minus the trace of a path at a contact, whose waves begin at `first`, into its row."""
+    for k in range(begin, end):
+        here = first + wave_of[k]
+        trace = load(rows, k, AMPLITUDE, run) * load(waves, here, sine, run)
+        if two:
+            trace = fused(load(rows, k, OTHER_AMPLITUDE, run), load(waves, here + 1, sine, run), trace)
+        store(rows, k, row, run, -trace)
+
+
+@numba.njit(**OPTIONS)
+def slope_along(rows, waves, wave_of, first, begin, end, two, run, slope_row, zero):
+    """Return the derivative of a path's displacement along it at a contact."""
+    slopes = spread(0.0)
+    for k in range(begin, end):
+        here = first + wave_of[k]
+        slope = load(rows, k, SLOPE, run) * load(waves, here, slope_row, run)
+        if two:
+            slope = fused(load(rows, k, OTHER_SLOPE, run), load(waves, here + 1, slope_row, run), slope)
+        slopes = fused(slope, load(rows, k, Q, run), slopes)
+    return total(slopes, zero)
+
+
+@numba.njit(**OPTIONS)
+def clear_push(rows, blocks, run):
+    """Let nothing push."""
+    for k in range(blocks):
+        store(rows, k, PUSH, run, spread(0.0))
+
+
+@numba.njit(**OPTIONS)
+def add_push(rows, i, begin, end, run, normal, tangential):
+    """Add the forces of contact `i` to the push on the modes."""
+    for k in range(begin, end):
+        push = fused(load(rows, k, CONTACTS + 2 * i, run), normal, load(rows, k, PUSH, run))
+        store(rows, k, PUSH, run, fused(-load(rows, k, CONTACTS + 2 * i + 1, run), tangential, push))
+
+
+@numba.njit(**OPTIONS)
+def complete_all(rows, begin, end, run, zero):
+    """Complete the step of uncoupled modes under their push; return the work of the push and what damping took."""
+    works, losses = spread(0.0), spread(0.0)
+    for k in range(begin, end):
+        q, d, push = load(rows, k, Q, run), load(rows, k, D, run), load(rows, k, PUSH, run)
+        _, both = complete(rows, k, run, q, d, load(rows, k, INCREMENT, run) + push)
+        works = fused(push, both, works)
+        losses = fused((1.0 - load(rows, k, KEPT, run)) * both, both, losses)
+    return 0.5 * total(works, zero), 0.25 * total(losses, zero)
+
+
+@numba.njit(**OPTIONS)
+def set_load(rows, j, row, blocks, run, factor):
+    """Add a unit load, times a factor, to the loads of this step; the first one replaces them."""
+    for k in range(blocks):
+        before = load(rows, k, FORCE, run) if j else spread(0.0)
+        store(rows, k, FORCE, run, fused(factor, load(rows, k, row, run), before))
+
+
+@numba.njit(**OPTIONS)
+def work_of_unit_load(rows, row, blocks, run, zero):
+    """Return the work of a constant unit load up to now, up to a constant."""
+    work = spread(0.0)
+    for k in range(blocks):
+        work = fused(load(rows, k, row, run), load(rows, k, Q, run) - 0.5 * load(rows, k, D, run), work)
+    return total(work, zero)
+
+
+@numba.njit(**OPTIONS)
+def stored_energy(rows, begin, end, run, zero):
+    """Return the energy of uncoupled modes half a step ago."""
+    energy = spread(0.0)
+    for k in range(begin, end):
+        q, d = load(rows, k, Q, run), load(rows, k, D, run)
+        energy += (0.5 + 0.5 * load(rows, k, KEPT, run)) * d * d + load(rows, k, STIFFNESS, run) * q * (q - d)
+    return 0.5 * total(energy, zero)
+
+
+@numba.njit(**OPTIONS)
+def product(rows, row, other, begin, end, run, zero):
+    """Return the product of two rows over a span of blocks."""
+    value = spread(0.0)
+    for k in range(begin, end):
+        value = fused(load(rows, k, row, run), load(rows, k, other, run), value)
+    return total(value, zero)
+
+
+@numba.njit(**OPTIONS)
+def two_products(rows, row, other, begin, end, run, zero):
+    """Return the products of a row and of the next one with a third over a span of blocks."""
+    first, second = spread(0.0), spread(0.0)
+    for k in range(begin, end):
+        factor = load(rows, k, other, run)
+        first = fused(load(rows, k, row, run), factor, first)
+        second = fused(load(rows, k, row + 1, run), factor, second)
+    return total(first, zero), total(second, zero)

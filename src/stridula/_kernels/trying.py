@@ -1,0 +1,223 @@
+"""Steps of the modes without and with the forces of their contacts: of one contact in one pass, of several in three."""
+
+import numba
+
+from . import layout as at
+from .block_rows import CONTACTS, POSITION, PUSH, SINE, Q
+from .compliance import set_compliance, set_compliance_of_coupled
+from .coupled import complete_coupled, try_coupled
+from .lanes import anywhere, choose, fused, held, hold, read, total
+from .modes import (
+    OPTIONS,
+    add_push,
+    clear_push,
+    complete_all,
+    pass_fixed,
+    pass_waves,
+    product,
+    set_path_rows,
+    slope_along,
+    try_all,
+    two_products,
+)
+from .waves import FIRST, set_waves
+
+
+@numba.njit(**OPTIONS)
+def place_of(i, constants, motion, n, tip, run, runs, zero):
+    """Return the abscissa of contact `i`, of a tip displaced along the tangent, and what its track moves along it."""
+    column = i * at.MOTIONS * runs + run
+    place = held(constants, i * at.CONTACT_CONSTANTS + at.START, run, zero)
+    place += read(motion, n, column + at.TIP_MOTION * runs, zero) + tip
+    return place, read(motion, n, column + at.TRACK_MOTION * runs, zero)
+
+
+@numba.njit(**OPTIONS)
+def gap_of(i, constants, motion, n, run, runs, zero):
+    """Return the gap of contact `i` where nothing is displaced."""
+    lift = read(motion, n, (i * at.MOTIONS + at.GAP_MOTION) * runs + run, zero)
+    return held(constants, i * at.CONTACT_CONSTANTS + at.GAP, run, zero) + lift
+
+
+@numba.njit(**OPTIONS)
+def set_waves_at(i, paths, constants, place, sine, run, zero):
+    """Put the waves of the path of contact `i` at an abscissa."""
+    base = i * at.CONTACT_CONSTANTS
+    along = fused(held(constants, base + at.ALONG, run, zero), place, held(constants, base + at.ALONG_PHASE, run, zero))
+    across = fused(held(constants, base + at.ACROSS, run, zero), place, held(constants, base + at.ACROSS_PHASE, run, zero))
+    set_waves(paths.waves, paths.sets, paths.pairs, i, along, across, sine, run)
+
+
+@numba.njit(**OPTIONS)
+def put_free(i, now, place, gap, slip, run):
+    """Keep what contact `i` is without its forces."""
+    here = i * at.IN_STEP
+    hold(now, here + at.PLACE, run, place)
+    hold(now, here + at.FREE_GAP, run, gap)
+    hold(now, here + at.FREE_SLIP, run, slip)
+
+
+@numba.njit(**OPTIONS)
+def try_one(modes, paths, contacts, state, imposed, n, touch, pending, sine, run, runs, zero):
+    """Complete a pending step of the only contact and try the next, in one pass over the modes.
+
+    Returns
+    -------
+    free : tuple of float or vector
+        Abscissa, gap and slip of the contact without its forces.
+    w_nn, w_tt : float or vector
+        Compliances of the contact where it will be.
+    done : tuple of float or vector
+        Of the step completed: work of the contact, what damping took, force along the path by its slope.
+    """
+    rows, spans = modes.rows, paths.spans
+    normal, tangential = touch[0], touch[1]
+    along, across, works, losses = pass_fixed(
+        rows, spans[0, at.BEGIN], spans[0, at.END], run, pending, normal, tangential
+    )
+    place, track = place_of(0, contacts.constants, imposed.motion, n, total(along, zero), run, runs, zero)
+    gap = gap_of(0, contacts.constants, imposed.motion, n, run, runs, zero) + total(across, zero)
+    slip = place - track - held(state.carried, at.MATERIAL, run, zero)
+    w_nn, w_tt = held(contacts.fixed, 0, run, zero), held(contacts.fixed, 2, run, zero)
+    slope = zero
+    if paths.first_span[1] > 1:
+        last, sine = sine, 2 - sine
+        set_waves_at(0, paths, contacts.constants, place, sine, run, zero)
+        for s in range(1, paths.first_span[1]):
+            upright, turned = spans[s, at.KIND] == at.PATH_NORMAL, spans[s, at.COSINES]
+            trace, softness, slopes, work, loss = pass_waves(
+                rows,
+                paths.waves,
+                paths.wave_of,
+                spans[s, at.BEGIN],
+                spans[s, at.END],
+                spans[s, at.TWO_WAVES],
+                run,
+                pending,
+                -normal if upright else tangential,
+                last + turned,
+                last + 1 - turned,
+                sine + turned,
+            )
+            works, losses = works + work, losses + loss
+            if upright:
+                gap -= total(trace, zero)
+                w_nn += total(softness, zero)
+                slope += normal * total(slopes, zero)
+            else:
+                slip -= total(trace, zero)
+                w_tt += total(softness, zero)
+                slope -= tangential * total(slopes, zero)
+    return (place, gap, slip), w_nn, w_tt, (0.5 * total(works, zero), 0.25 * total(losses, zero), slope)
+
+
+@numba.njit(**OPTIONS)
+def complete_one(modes, paths, touch, sine, run, zero):
+    """Complete the step of the only contact where no next one follows at once; return work, loss and slope as above."""
+    rows, spans = modes.rows, paths.spans
+    normal, tangential = touch[0], touch[1]
+    _, _, works, losses = pass_fixed(rows, spans[0, at.BEGIN], spans[0, at.END], run, True, normal, tangential)
+    slope = zero
+    for s in range(1, paths.first_span[1]):
+        upright, turned = spans[s, at.KIND] == at.PATH_NORMAL, spans[s, at.COSINES]
+        _, _, slopes, work, loss = pass_waves(
+            rows,
+            paths.waves,
+            paths.wave_of,
+            spans[s, at.BEGIN],
+            spans[s, at.END],
+            spans[s, at.TWO_WAVES],
+            run,
+            True,
+            -normal if upright else tangential,
+            sine + turned,
+            sine + 1 - turned,
+            sine + turned,
+        )
+        works, losses = works + work, losses + loss
+        slope += normal * total(slopes, zero) if upright else -tangential * total(slopes, zero)
+    return 0.5 * total(works, zero), 0.25 * total(losses, zero), slope
+
+
+@numba.njit(**OPTIONS)
+def try_many(modes, paths, contacts, state, imposed, sizes, n, ended, run, runs, zero):
+    """Try a step of all modes, and put what each contact is at its end without contact forces."""
+    rows, spans, now = modes.rows, paths.spans, contacts.now
+    try_coupled(rows, modes.matrices, sizes.coupled, sizes.coupled * sizes.per_block, run, zero)
+    try_all(rows, sizes.coupled, sizes.blocks, run)
+    for i in range(sizes.contacts):
+        across, along = zero, zero
+        for s in range(paths.first_span[i], paths.first_span[i + 1]):
+            if spans[s, at.KIND] == at.CONSTANT:
+                found = two_products(rows, CONTACTS + 2 * i, POSITION, spans[s, at.BEGIN], spans[s, at.END], run, zero)
+                across, along = across + found[0], along + found[1]
+        place, track = place_of(i, contacts.constants, imposed.motion, n, along, run, runs, zero)
+        gap = gap_of(i, contacts.constants, imposed.motion, n, run, runs, zero) + across
+        slip = place - track - held(state.carried, i * at.CARRIED + at.MATERIAL, run, zero)
+        if paths.path_of[i] >= 0:
+            set_waves_at(i, paths, contacts.constants, place, SINE, run, zero)
+            for s in range(paths.first_span[i], paths.first_span[i + 1]):
+                kind, begin, end = spans[s, at.KIND], spans[s, at.BEGIN], spans[s, at.END]
+                if kind != at.CONSTANT:
+                    upright = kind == at.PATH_NORMAL
+                    row = CONTACTS + 2 * i + (0 if upright else 1)
+                    sine = SINE + spans[s, at.COSINES]
+                    two = spans[s, at.TWO_WAVES]
+                    first = paths.sets[i, FIRST]
+                    set_path_rows(rows, paths.waves, paths.wave_of, first, begin, end, two, run, row, sine)
+                    moved = product(rows, row, POSITION, begin, end, run, zero)
+                    gap += moved if upright else zero
+                    slip += zero if upright else moved
+        put_free(i, now, place, choose(ended > 0.0, zero, gap), slip, run)
+
+
+@numba.njit(**OPTIONS)
+def soften(modes, paths, contacts, sizes, run, zero):
+    """Put the compliance of contacts on paths where they will be."""
+    if sizes.coupled_paths:
+        places = sizes.coupled * sizes.per_block
+        set_compliance_of_coupled(
+            modes.rows, modes.matrices, contacts.faces, sizes.blocks, sizes.coupled, places, sizes.contacts, run, zero
+        )
+    elif sizes.paths:
+        set_compliance(
+            modes.rows, contacts.faces, paths.spans, paths.first_span, paths.path_of, sizes.contacts, run, zero
+        )
+
+
+@numba.njit(**OPTIONS)
+def complete_many(modes, paths, contacts, sizes, run, zero):
+    """Complete the step of all modes under the forces of the contacts; return work of these and what damping took."""
+    rows, spans, now = modes.rows, paths.spans, contacts.now
+    clear_push(rows, sizes.blocks, run)
+    for i in range(sizes.contacts):
+        here = i * at.IN_STEP
+        if anywhere(held(now, here + at.STATUS_NOW, run, zero) > 0.5):
+            normal, tangential = held(now, here + at.NORMAL_NOW, run, zero), held(now, here + at.TANGENTIAL_NOW, run, zero)
+            for s in range(paths.first_span[i], paths.first_span[i + 1]):
+                add_push(rows, i, spans[s, at.BEGIN], spans[s, at.END], run, normal, tangential)
+    places = sizes.coupled * sizes.per_block
+    work, lost = complete_coupled(rows, modes.matrices, sizes.coupled, places, run, zero)
+    more, taken = complete_all(rows, sizes.coupled, sizes.blocks, run, zero)
+    return work + more, lost + taken
+
+
+@numba.njit(**OPTIONS)
+def place_after(i, modes, paths, contacts, imposed, n, run, runs, zero):
+    """Return the abscissa of contact `i` after the step, and the force along the path that its slopes make."""
+    rows, spans, here = modes.rows, paths.spans, i * at.IN_STEP
+    along, slope = zero, zero
+    for s in range(paths.first_span[i], paths.first_span[i + 1]):
+        kind, begin, end = spans[s, at.KIND], spans[s, at.BEGIN], spans[s, at.END]
+        if kind == at.CONSTANT:
+            along += product(rows, CONTACTS + 2 * i + 1, Q, begin, end, run, zero)
+        else:
+            turned, two = spans[s, at.COSINES], spans[s, at.TWO_WAVES]
+            first = paths.sets[i, FIRST]
+            found = slope_along(rows, paths.waves, paths.wave_of, first, begin, end, two, run, SINE + 1 - turned, zero)
+            if kind == at.PATH_NORMAL:
+                slope += held(contacts.now, here + at.NORMAL_NOW, run, zero) * found
+            else:
+                slope -= held(contacts.now, here + at.TANGENTIAL_NOW, run, zero) * found
+    place, _ = place_of(i, contacts.constants, imposed.motion, n, along, run, runs, zero)
+    return place, slope

@@ -1,0 +1,113 @@
+"""Sines and cosines of the waves of a path at a moving point.
+
+The waves of a path are sines of ``m a + n b``: of the multiples of an angle that runs along it, and on a plate of sums
+and differences with those of a second one. They come in this order: multiples of the first angle, those of the second,
+then for each pair that is asked for its sum and its difference.
+"""
+
+import math
+
+import numba
+from numba.extending import overload
+
+from .block_rows import NUMBER
+from .lanes import entry, fused, lane, load, spread, store, whole
+from .modes import OPTIONS
+from .vectors import LANES, VECTOR
+
+# Of the path of a contact: its first block of waves, how many go along and across, whether those along start from the
+# multiple 0, and its pairs.
+FIRST, ALONG, ACROSS, FROM_ZERO, PAIRS, PAIRS_END = range(6)
+WAVE_SET = 6
+
+
+@numba.njit(cache=True, fastmath={"contract", "nsz"}, forceinline=True, _nrt=False)
+def sine_and_cosine(theta):
+    """Return sin and cos of an angle from 0 to pi, to two units in the last place.
+
+    From the sine and cosine of half the angle off pi/2, which is at most pi/4, by the polynomials of FreeBSD's msun.
+    """
+    x = 0.5 * (theta - math.pi / 2.0)
+    z = x * x
+    s = 2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)
+    s = -1.66666666666666324348e-01 + z * (8.33333333332248946124e-03 + z * (-1.98412698298579493134e-04 + z * s))
+    s = x + x * z * s
+    c = -2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)
+    c = 4.16666666666666019037e-02 + z * (-1.38888888888741095749e-03 + z * (2.48015872894767294178e-05 + z * c))
+    c = 1.0 - 0.5 * z + z * z * c
+    return 1.0 - 2.0 * s * s, -2.0 * s * c
+
+
+def set_multiples(theta, from_zero, count, waves, first, sine, run):
+    """Put sin(k theta) and cos(k theta), k from 1, or from 0 on, into `count` blocks of rows of `waves`."""
+    s, c = sine_and_cosine(theta)
+    if from_zero:
+        store(waves, first, sine, run, spread(0.0))
+        store(waves, first, sine + 1, run, spread(1.0))
+        first, count = first + 1, count - 1
+    if count == 0:
+        return
+    store(waves, first, sine, run, s)
+    store(waves, first, sine + 1, run, c)
+    filled = 1
+    while filled < count:
+        for k in range(min(filled, count - filled)):
+            known, new = first + k, first + filled + k
+            a, b = load(waves, known, sine, run), load(waves, known, sine + 1, run)
+            store(waves, new, sine, run, fused(s, b, c * a))
+            store(waves, new, sine + 1, run, fused(c, b, -s * a))
+        s, c = 2.0 * s * c, 1.0 - 2.0 * s * s
+        filled *= 2
+
+
+@numba.njit(**OPTIONS)
+def set_eight_at_a_time(theta, from_zero, count, waves, first, sine, run):
+    """Do so for one run, whose blocks have eight multiples: the first eight at once, the others by turning on."""
+    half_turns = load(waves, first, NUMBER, run) * (theta / math.pi)
+    passed = whole(half_turns)
+    s, c = sine_and_cosine((half_turns - passed) * math.pi)
+    sign = 1.0 - 2.0 * (passed - 2.0 * whole(0.5 * passed))
+    s, c = s * sign, c * sign
+    store(waves, first, sine, run, s)
+    store(waves, first, sine + 1, run, c)
+    turn_s, turn_c = lane(s, LANES - 1), lane(c, LANES - 1)
+    if from_zero:
+        one_s, one_c = lane(s, 1), lane(c, 1)
+        turn_s, turn_c = turn_s * one_c + turn_c * one_s, turn_c * one_c - turn_s * one_s
+    for k in range(1, count):
+        s, c = fused(s, turn_c, c * turn_s), fused(c, turn_c, -turn_s * s)
+        store(waves, first + k, sine, run, s)
+        store(waves, first + k, sine + 1, run, c)
+
+
+@overload(set_multiples)
+def _set_multiples(theta, from_zero, count, waves, first, sine, run):
+    if theta is VECTOR:
+        return set_multiples
+    return lambda theta, from_zero, count, waves, first, sine, run: set_eight_at_a_time(
+        theta, from_zero, count, waves, first, sine, run
+    )
+
+
+@numba.njit(**OPTIONS)
+def set_sums_and_differences(waves, pairs, begin, end, first, sine, run, like):
+    """Put the waves of the sums and the differences of pairs of angles into blocks from `first` on."""
+    for p in range(begin, end):
+        along, across, here = pairs[p, 0], pairs[p, 1], first + 2 * (p - begin)
+        s, c = load(waves, along, sine, run), load(waves, along, sine + 1, run)
+        turn_s, turn_c = entry(waves, across, sine, run, like), entry(waves, across, sine + 1, run, like)
+        store(waves, here, sine, run, fused(s, turn_c, c * turn_s))
+        store(waves, here, sine + 1, run, fused(c, turn_c, -turn_s * s))
+        store(waves, here + 1, sine, run, fused(s, turn_c, -turn_s * c))
+        store(waves, here + 1, sine + 1, run, fused(c, turn_c, s * turn_s))
+
+
+@numba.njit(**OPTIONS)
+def set_waves(waves, sets, pairs, i, along, across, sine, run):
+    """Put the waves of the path of contact `i` into rows from `sine` on, from the two angles at the contact."""
+    first, count, cross = sets[i, FIRST], sets[i, ALONG], sets[i, ACROSS]
+    set_multiples(along, sets[i, FROM_ZERO], count, waves, first, sine, run)
+    if cross:
+        set_multiples(across, 0, cross, waves, first + count, sine, run)
+        begin, end = sets[i, PAIRS], sets[i, PAIRS_END]
+        set_sums_and_differences(waves, pairs, begin, end, first + count + cross, sine, run, along)

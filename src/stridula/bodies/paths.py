@@ -1,0 +1,85 @@
+"""Paths: what the modes of a body look like along a line on which others slide."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from .modes import Array
+
+
+@dataclass(frozen=True)
+class Waves:
+    """The traces of some modes along a path: sines, or cosines, of ``m a + n b`` and ``m a - n b``.
+
+    Attributes
+    ----------
+    multiples : ndarray of int, shape (modes, 2)
+        Multiples (m, n) of the two angles of the path.
+    amplitude : ndarray, shape (modes, 2)
+        Amplitudes of the sum and of the difference of the angles [kg^(-1/2)]; the second is zero where n is.
+    cosines : bool, optional
+        Whether they are cosines.
+    """
+
+    multiples: Array
+    amplitude: Array
+    cosines: bool = False
+
+    @property
+    def has_two(self) -> bool:
+        """Whether modes are made of two waves."""
+        return bool(self.multiples[:, 1].any())
+
+    def rates(self, rate: Array) -> Array:
+        """Return the wavenumbers of the two waves of each mode [rad/m], shape (modes, 2)."""
+        return np.asarray(self.multiples @ (rate * [[1.0, 1.0], [1.0, -1.0]]).T)
+
+    def traces(self, path: Path, abscissa: float) -> tuple[Array, Array]:
+        """Return the trace of each mode at an abscissa [m] and its derivative along the path."""
+        rates = self.rates(path.rate)
+        angles = rates * abscissa + self.rates(path.phase)
+        if self.cosines:
+            return (self.amplitude * np.cos(angles)).sum(axis=1), (-self.amplitude * rates * np.sin(angles)).sum(axis=1)
+        return (self.amplitude * np.sin(angles)).sum(axis=1), (self.amplitude * rates * np.cos(angles)).sum(axis=1)
+
+
+@dataclass(frozen=True)
+class Path:
+    """A line on a body: along it every mode is at most two sinusoids of the abscissa s.
+
+    They are those of two angles, ``rate s + phase``, each from 0 to pi between the ends. Modes that move the surface along its normal
+    come first, then those that move it along the tangent.
+
+    Attributes
+    ----------
+    ends : tuple of float
+        Abscissas between which a contact may move [m].
+    rate, phase : ndarray, shape (2,)
+        Rates of the angles along the path [rad/m], and their values at abscissa zero [rad].
+    normal, tangential : Waves
+        Displacement along the normal and along the tangent.
+    """
+
+    ends: tuple[float, float]
+    rate: Array
+    phase: Array
+    normal: Waves
+    tangential: Waves
+
+
+class HasPath(Protocol):
+    """A body that others slide along."""
+
+    def path(self) -> Path:
+        """Return the line along which they do."""
+        ...
+
+
+def along_one_angle(numbers: Array, amplitude: float | Array, cosines: bool = False) -> Waves:
+    """Return modes that are sines of multiples of the first angle alone."""
+    amplitudes = np.zeros((numbers.size, 2))
+    amplitudes[:, 0] = amplitude
+    return Waves(np.stack([numbers, np.zeros_like(numbers)], axis=1), amplitudes, cosines)

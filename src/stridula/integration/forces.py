@@ -1,0 +1,61 @@
+"""The forces of closed contacts in one step, solved as the march solves them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .._kernels import layout as at
+from .._kernels.contacts import solve_closed
+from .._kernels.march import Contacts, Sizes, Timing
+from .._kernels.vectors import LANES
+from ..bodies.modes import Array
+from .blocks import ContactBlocks
+from .contact_solve import GaussSeidel
+from .packing import PLAIN, aligned, columns, compliance_in_blocks, side_by_side
+
+
+def forces_of(
+    gaps: Array,
+    slips: Array,
+    compliance: Array,
+    laws: tuple[Array, Array],
+    carried: Array,
+    step: float,
+    solve: GaussSeidel,
+) -> Array:
+    """Return the normal and the tangential force of each contact [N], shape (contacts, 2).
+
+    Parameters
+    ----------
+    gaps, slips : ndarray, shape (contacts,)
+        Gap at the end of a step and slip in it, without contact forces [m].
+    compliance : ndarray, shape (2 contacts, 2 contacts)
+        Displacements along normal and tangent of each contact for unit forces on each [m/N].
+    laws : tuple of ndarray
+        Codes of the laws of friction, shape (contacts,), and their parameters, a row a contact.
+    carried : ndarray, shape (contacts, scalars)
+        What the march carries of each contact.
+    step : float
+        Time step [s].
+    solve : GaussSeidel
+        How they are solved together.
+    """
+    count = len(gaps)
+    per_block = 1 if PLAIN else LANES
+    sizes = Sizes(0, 0, per_block, count, -(-2 * count // per_block), 0, False, False)
+    now = np.zeros((count, at.IN_STEP))
+    now[:, at.FREE_GAP], now[:, at.FREE_SLIP] = gaps, slips
+    constants = np.zeros((count, at.CONTACT_CONSTANTS))
+    constants[:, at.AT_REST] = laws[1][:, 0]
+    contacts = Contacts(
+        *laws,
+        columns(side_by_side([constants.ravel()])),
+        columns(aligned(3, 1)),
+        compliance_in_blocks([compliance], sizes, 1 if PLAIN else LANES),
+        aligned(sizes.faces, (2 * count + 1) * per_block).reshape(sizes.faces, 2 * count + 1, per_block),
+        columns(side_by_side([now.ravel()])),
+        columns(aligned(count * at.SUMS, 1)),
+    )
+    solve_closed(contacts, columns(side_by_side([carried.ravel()])), sizes, Timing(1, step, solve.tolerance, solve.sweeps))
+    now = contacts.now.reshape(count, at.IN_STEP)
+    return np.asarray(now[:, [at.NORMAL_NOW, at.TANGENTIAL_NOW]])
