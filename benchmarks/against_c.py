@@ -13,10 +13,11 @@ import shutil
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from copy import deepcopy
 from itertools import count
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
@@ -130,19 +131,25 @@ def result(positions: np.ndarray, energies: np.ndarray, columns: np.ndarray) -> 
     }
 
 
-def parameters() -> list[str]:
+def parameters(source: Path = SOURCE) -> list[str]:
     """Return the names of the arguments of the march in C, in their order."""
-    words = re.search(r"^void march\(([^)]*)\)", SOURCE.read_text(encoding="utf-8"), re.MULTILINE)
+    words = re.search(r"^void march\(([^)]*)\)", source.read_text(encoding="utf-8"), re.MULTILINE)
     return re.findall(r"(\w+)(?:,|$)", words[1])
 
 
-def built(folder: Path) -> ctypes.CDLL:
-    """Return the march in C, compiled with the places of the package's layout."""
-    places = {name: place for name, place in vars(at).items() if name.isupper()}
+def without_gcc() -> str:
+    """Return why there is nothing to compare with, nothing where there is."""
+    return "" if shutil.which("gcc") else "skipped: gcc is not installed, so there is no C to compare with"
+
+
+def built(folder: Path, source: Path = SOURCE, numbers: Mapping[str, object] = MappingProxyType({})) -> ctypes.CDLL:
+    """Return a march in C, compiled with the places of the package's layout and other whole numbers of the package."""
+    known = {**vars(at), **numbers}
+    places = {name: place for name, place in known.items() if name.isupper() and isinstance(place, int)}
     lines = [f"enum {{ {name} = {place} }};" for name, place in places.items()]
     (folder / "layout.h").write_text("\n".join(lines), encoding="utf-8")
     target = folder / "step.so"
-    subprocess.run(["gcc", *FLAGS, "-I", folder, "-o", target, SOURCE, "-lm"], check=True)
+    subprocess.run(["gcc", *FLAGS, "-I", folder, "-o", target, source, "-lm"], check=True)
     return ctypes.CDLL(str(target))
 
 
@@ -179,8 +186,8 @@ def ratios(pair: Pair) -> tuple[list[float], np.ndarray]:
 
 def rows() -> Iterator[Ratio | str]:
     """Compile the C step, march both and yield the ratios."""
-    if shutil.which("gcc") is None:
-        yield "skipped: gcc is not installed, so there is no C to compare with"
+    if missing := without_gcc():
+        yield missing
         return
     with tempfile.TemporaryDirectory() as folder:
         compiled = built(Path(folder))

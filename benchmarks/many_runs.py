@@ -41,8 +41,7 @@ def of_the_march(modes: int) -> list[float]:
     step = 0.2 * limit_of(system)
     some = [case_of(system, step)] * LANES
     single, vector = (
-        March([one.blocks for one in group], [one.state for one in group], step, RATIO)
-        for group in (some[:1], some)
+        March([one.blocks for one in group], [one.state for one in group], step, RATIO) for group in (some[:1], some)
     )
     one, together = marching(single, some[:1], SAMPLES), marching(vector, some, SAMPLES)
     sequence, side_by_side = seconds(lambda: [one()[0] for _ in some], together, agree=same_march)

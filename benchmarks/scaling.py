@@ -9,7 +9,22 @@ from dataclasses import replace
 import stridula as st
 from ratios import Ratio, over, seconds, show, sized
 from stridula.integration.marches import March
-from systems import FEET, GIVEN, RUNS, SIZES, beams, case_of, limit_of, marching, pad, same_start, squeals
+from systems import (
+    FEET,
+    GIVEN,
+    LINES,
+    RUNS,
+    SIZES,
+    beams,
+    case_of,
+    limit_of,
+    marching,
+    on_a_beam,
+    on_a_plate,
+    pad,
+    same_start,
+    squeals,
+)
 
 TITLE = "scaling"
 SAMPLES, RATIO = sized(200, 10), 100
@@ -22,6 +37,8 @@ LAWS = {
     "rate and state": st.RateAndState(0.1, 0.01, 0.008, 1e-4, 1e-2),
 }
 LAW_BAR, LAW_MODES = 1.5, 60
+CONTACT_BARS = {2: 6.0, 8: 30.0}
+PLATES, PLATE_BAR = sized((100, 300), (100,)), 1.6
 
 
 def rows() -> Iterator[Ratio]:
@@ -29,6 +46,7 @@ def rows() -> Iterator[Ratio]:
     yield from modes()
     yield from laws()
     yield from contacts()
+    yield from plates()
     yield from runs()
     yield from cores()
 
@@ -51,25 +69,29 @@ def laws() -> Iterator[Ratio]:
 
 
 def contacts() -> Iterator[Ratio]:
-    """Yield the time of a step over that with one contact, in the march of any number of contacts."""
+    """Yield the time of a step over that with one contact."""
     numbers = [2**power for power in range(FEET.bit_length())]
-    first, *others = seconds(*(stepping_generally(pad(number)) for number in numbers))
+    first, *others = seconds(*(stepping(pad(number)) for number in numbers))
     for number, times in zip(numbers[1:], others, strict=True):
-        yield Ratio(f"time of a step, {number} sliding contacts over 1, general march", over(times, first))
+        yield Ratio(
+            f"time of a step, {number} sliding contacts over 1", over(times, first), most=CONTACT_BARS.get(number)
+        )
+
+
+def plates() -> Iterator[Ratio]:
+    """Yield the time of a step on a plate over that on a beam of as many modes; sliding."""
+    for number in PLATES:
+        beam, *others = seconds(stepping(on_a_beam(number)), *(stepping(on_a_plate(number, line)) for line in LINES))
+        for line, times in zip(LINES, others, strict=True):
+            quantity = f"time of a step, {number} modes of a plate over a beam, {line}"
+            yield Ratio(quantity, over(times, beam), most=PLATE_BAR)
 
 
 def stepping(system: st.System) -> Callable[[], object]:
-    """Return what marches a system of one contact."""
+    """Return what marches a system."""
     step = 0.2 * limit_of(system)
     case = case_of(system, step)
     return marching(March([case.blocks], [case.state], step, RATIO), [case], SAMPLES)
-
-
-def stepping_generally(system: st.System) -> Callable[[], object]:
-    """Return what marches a system of any number of contacts."""
-    step = 0.2 * limit_of(system)
-    case = case_of(system, step, SAMPLES * RATIO)
-    return marching(GeneralMarch(case.blocks, case.state, step, RATIO, st.GaussSeidel()), [case], SAMPLES)
 
 
 def runs() -> Iterator[Ratio]:

@@ -32,6 +32,8 @@ SIZES = {
     400: (80, 100, 60),
 }
 FEET = 8
+# Lines on a plate: along a side, where each mode is one wave, and across, where it is two.
+LINES = {"along a side": None, "across": st.Line((0.05, 0.05), 0.4)}
 # How long [s] runs that differ by round-off alone are alike, and to which share of the largest force.
 BEFORE_CHAOS, TOLERANCE = 0.02, 1e-6
 FORCES = [at.NORMAL_FORCE, at.TANGENTIAL_FORCE]
@@ -48,6 +50,26 @@ def beams(size: tuple[int, int, int], regime: str) -> st.System:
     friction, gap, push = choices[regime]
     contact = st.PointContact(rod.tip, track, at=0.3, friction=st.Coulomb(friction), gap=gap)
     return st.System(contact, [st.Force(rod.root, y=-1.0, x=push)])
+
+
+def on_a_beam(modes: int) -> st.System:
+    """Return a short rod that slides on a beam of bending modes alone, as a plate has."""
+    return sliding_on(st.ModalBeam(STEEL, STRIP, 0.5, bending_modes=modes, axial_modes=0, damping=0.2))
+
+
+def on_a_plate(modes: int, line: str) -> st.System:
+    """Return the same rod on a plate of some number of modes, along a line on it."""
+    count = next(n for n in range(2, modes) if n * -(-modes // n) >= modes and n * n >= 0.4 * modes)
+    material = st.Material(2.1e11, 7800.0, poisson=0.3)
+    sheet = st.ModalPlate(material, 0.004, 0.5, 0.3, modes=(-(-modes // count), count), damping=0.2, line=LINES[line])
+    return sliding_on(sheet)
+
+
+def sliding_on(track: st.ModalBeam | st.ModalPlate) -> st.System:
+    """Return a rod that slides on a track."""
+    rod = st.FiniteElementBeam(STEEL, STRIP, 0.5, radians(20.0), elements=9, damping=0.2)
+    contact = st.PointContact(rod.tip, track, at=0.1, friction=st.Coulomb(0.1))
+    return st.System(contact, [st.Force(rod.root, y=-1.0, x=0.3)])
 
 
 def squeal(angle: float, friction: float) -> st.System:
@@ -91,6 +113,20 @@ def pad(contacts: int) -> st.System:
     ]
     held = [st.Spring(block.at("back"), stiffness=5e3)]
     return st.System(touching, [st.Force(foot, y=-2.0) for foot in feet], held)
+
+
+def slab(contacts: int, modes: int) -> st.System:
+    """Return a body of given modes, pressed on a belt at points along it: every mode moves both ways at every point."""
+    order = np.arange(modes) // 2
+    lean = np.where(np.arange(modes) % 2, 1.2, 0.3)
+    positions = (np.arange(contacts) + 0.5) / contacts
+    waves = np.cos(np.pi * order * positions[:, None]) * np.sqrt(2.0 / 0.5)
+    points = {f"point {j}": np.stack([np.sin(lean), np.cos(lean)]) * wave for j, wave in enumerate(waves)}
+    stiffness = np.diag((2.0 * np.pi * (300.0 + 150.0 * order)) ** 2 * (1.0 + 0.3 * (np.arange(modes) % 2)))
+    body = st.ReducedBody(np.eye(modes), stiffness, points, damping=0.02, name="slab")
+    belt, feet = st.RigidTrack(velocity=0.02), [body.at(name) for name in points]
+    touching = [st.PointContact(foot, belt, friction=st.Coulomb(0.4), name=foot.position) for foot in feet]
+    return st.System(touching, [st.Force(foot, y=-2.0) for foot in feet])
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from stridula._kernels import lanes
+from stridula._kernels.block_rows import NUMBER, WAVE_ROWS
 from stridula._kernels.lanes import (
     anywhere,
     choose,
@@ -23,7 +24,6 @@ from stridula._kernels.lanes import (
     with_lane,
     write,
 )
-from stridula._kernels.block_rows import NUMBER, WAVE_ROWS
 from stridula._kernels.vectors import LANES
 from stridula._kernels.waves import set_multiples
 

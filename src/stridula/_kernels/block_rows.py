@@ -26,6 +26,6 @@ CONTACTS = NORMAL
 SINE, COSINE, NUMBER = 0, 1, 4
 WAVE_ROWS = 5
 
-# Of contact forces: relative displacement that they lead to; then the compliance, a row for a unit of each force; then as
-# many rows for that of the constant rows alone.
+# Of contact forces: relative displacement that they lead to; then the compliance, a row for a unit of each force; then
+# as many rows for that of the constant rows alone.
 DISPLACEMENT, COMPLIANCE = range(2)

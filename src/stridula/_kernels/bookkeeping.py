@@ -7,7 +7,7 @@ from .contact import SLIDING, STICKING, closed_share, landed_share, stuck_share,
 from .friction import set_valued
 from .lanes import anywhere, choose, held, hold, magnitude, read
 from .modes import OPTIONS
-from .solves import next_states
+from .solves import carried_by, next_states, strayed
 
 
 @numba.njit(**OPTIONS)
@@ -18,7 +18,7 @@ def add(array, row, run, value, zero):
 
 @numba.njit(**OPTIONS)
 def share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, run, zero):
-    """Share the step before among the states of contact `i` and count this one; return the share closed of this one."""
+    """Share the step before among the states of contact `i` and count this one; return the share closed in this one."""
     base, tally = i * at.CARRIED, i * at.SUMS
     _, _, status, jammed = touch
     free_gap, free_slip, gap, _ = moved
@@ -70,7 +70,7 @@ def driven_work(i, touch, motion, n, run, runs, zero):
 
 @numba.njit(**OPTIONS)
 def keep_forces(i, touch, moved, before, carried, sums, closed, law, laws, number, step, run, zero):
-    """Carry the forces of contact `i` and the state of its law to the next step, sum them; return what friction took."""
+    """Carry forces and state of the law of contact `i` to the next step, sum the forces; return what friction took."""
     base, tally = i * at.CARRIED, i * at.SUMS
     normal, tangential, status, _ = touch
     slip = moved[3]
@@ -105,3 +105,36 @@ def keep_place(i, carried, place, run, zero):
     hold(carried, base + at.ABSCISSA_BEFORE, run, held(carried, base + at.ABSCISSA, run, zero))
     hold(carried, base + at.ABSCISSA, run, place)
     return way
+
+
+@numba.njit(**OPTIONS)
+def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, runs, zero):
+    """Do the bookkeeping of contact `i` in step `n`, but for where it is.
+
+    `touch` are normal and tangential force, status and whether it is jammed, `moved` gap and slip without these forces,
+    then with them.
+    """
+    law, carried, sums = contacts.codes[i], state.carried, contacts.sums
+    before = carried_by(carried, i, run, zero)
+    if not set_valued(law) or anywhere(touch[2] + before[0] > 0.5):
+        away = strayed(carried, i, run, zero)
+        at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero)
+        closed = share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, run, zero)
+        if imposed.motion.shape[0] > 1:
+            driven = driven_work(i, touch, imposed.motion, n, run, runs, zero)
+            add(state.energies, at.CONTACT_WORK, run, -driven, zero)
+            add(state.energies, at.DRIVE_WORK, run, driven, zero)
+        number = i * runs + run
+        lost = keep_forces(
+            i, touch, moved, before, carried, sums, closed, law, contacts.laws, number, timing.step, run, zero
+        )
+        add(state.energies, at.FRICTION_LOSS, run, lost, zero)
+    keep_motion(i, moved, before, carried, run, zero)
+
+
+@numba.njit(**OPTIONS)
+def credit(energies, work, lost, convected, run, zero):
+    """Add what a step of the modes came to: work of the contacts, what damping took, work of slopes carried along."""
+    add(energies, at.CONTACT_WORK, run, work, zero)
+    add(energies, at.DAMPING_LOSS, run, lost, zero)
+    add(energies, at.CONVECTION_WORK, run, convected, zero)

@@ -50,7 +50,7 @@ def start_from_last(contacts, carried, touching, sizes, run, zero):
 
 @numba.njit(**OPTIONS)
 def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
-    """Solve each contact that may touch in turn, in runs not `done`; return change, largest force, whether states held."""
+    """Solve contacts that may touch in turn, in runs not `done`; return change, largest force, whether states held."""
     faces, now = contacts.faces, contacts.now
     change, largest, settled = zero, zero, zero + 1.0
     for i in range(sizes.contacts):
@@ -62,7 +62,10 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
             continue
         hold(now, here + at.MAY_TOUCH, run, may_touch)
         slip = entry(faces, 2 * i + 1, DISPLACEMENT, run, zero)
-        was_normal, was_tangential = held(now, here + at.NORMAL_NOW, run, zero), held(now, here + at.TANGENTIAL_NOW, run, zero)
+        was_normal, was_tangential = (
+            held(now, here + at.NORMAL_NOW, run, zero),
+            held(now, here + at.TANGENTIAL_NOW, run, zero),
+        )
         was = held(now, here + at.STATUS_NOW, run, zero)
         w = own_compliance(faces, i, run, zero)
         gap -= w[0] * was_normal - w[1] * was_tangential

@@ -8,7 +8,7 @@ import numba
 from .block_rows import FORCE, INCREMENT, POSITION, PUSH, D, Q
 from .lanes import entry, fused, load, spread, store, total
 from .layout import ELASTIC, KEPT, KINETIC, LOSS, MOBILITY, STIFFNESS, TURN
-from .modes import OPTIONS, complete
+from .modes import OPTIONS, complete, stored_energy
 
 
 @numba.njit(**OPTIONS)
@@ -68,3 +68,11 @@ def energy_of_coupled(rows, matrices, coupled, places, run, zero):
             elastic = fused(load(matrices, k, ELASTIC * places + j, run), q - d, elastic)
         energy = fused(kinetic, load(rows, k, D, run), fused(elastic, load(rows, k, Q, run), energy))
     return total(energy, zero)
+
+
+@numba.njit(**OPTIONS)
+def energy_of(modes, sizes, run, zero):
+    """Return the energy half a step ago."""
+    places = sizes.coupled * sizes.per_block
+    coupled = energy_of_coupled(modes.rows, modes.matrices, sizes.coupled, places, run, zero)
+    return coupled + stored_energy(modes.rows, sizes.coupled, sizes.blocks, run, zero)

@@ -40,8 +40,8 @@ _march = on_card(march)
 
 
 @cuda.jit
-def march_each(runs, arguments):
+def march_each(runs, parts):
     """March `runs` runs, one in each thread."""
     run = cuda.grid(1)
     if run < runs:
-        _march(0.0, run, runs, *arguments)
+        _march(0.0, run, runs, parts)

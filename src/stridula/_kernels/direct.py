@@ -1,6 +1,6 @@
 """The forces of contacts whose states are given: one linear system.
 
-It lies in blocks like the compliance, ``scratch[block, row, lane]``: a row for each equation, the right sides in one more.
+It lies in blocks like the compliance, ``scratch[block, row, lane]``: a row for each equation, one more for right sides.
 """
 
 import numba
@@ -13,7 +13,6 @@ from .friction import set_valued
 from .lanes import anywhere, choose, entry, fused, held, hold, load, magnitude, set_entry, store
 from .modes import OPTIONS
 from .solves import strayed
-
 
 
 @numba.njit(**OPTIONS)

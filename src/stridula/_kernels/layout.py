@@ -26,7 +26,7 @@ TIP_MOTION, TRACK_MOTION, GAP_MOTION = range(3)
 MOTIONS = 3
 
 # Constants of a contact: where it starts, its gap, the ends of its path, rate along the path and value at abscissa zero
-# of the two angles whose sines the modes of the path are, ratio at rest of the law of friction, and whether there is a path.
+# of the two angles whose sines the modes of the path are, ratio at rest of the law of friction.
 START, GAP, LOW, HIGH, ALONG, ALONG_PHASE, ACROSS, ACROSS_PHASE, AT_REST = range(9)
 CONTACT_CONSTANTS = 9
 

@@ -1,12 +1,13 @@
 """What the march does to the modes, block by block.
 
-A block is as wide as a vector: eight modes of one run, filled up with zeros, or one mode of eight runs. All that is known
-of a block lies together. States are scaled by the root of the mobility, ``q / sqrt(l)``, and so are loads and rows: a
-unit force adds its row to the increment, and the energy half a step ago is ``[(1 + b) / 2 d² + r q[n] q[n-1]] / 2``.
+A block is as wide as a vector: eight modes of one run, filled up with zeros, or one mode of eight runs. All that is
+known of a block lies together. States are scaled by the root of the mobility, ``q / sqrt(l)``, and so are loads and
+rows: a unit force adds its row to the increment, and the energy half a step ago is
+``[(1 + b) / 2 d² + r q[n] q[n-1]] / 2``.
 
-One contact between bodies of uncoupled modes: a step is completed, under its forces, when the next one is tried, so that
-the modes are read once a step (`pass_fixed`, `pass_waves`). Any number of contacts: a step is tried, each contact gathers
-its displacement, and the step is completed under the push of all.
+One contact between bodies of uncoupled modes: a step is completed, under its forces, when the next one is tried, so
+that the modes are read once a step (`pass_fixed`, `pass_waves`). Any number of contacts: a step is tried, each contact
+gathers its displacement, and the step is completed under the push of all.
 """
 
 from typing import Any

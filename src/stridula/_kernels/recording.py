@@ -94,3 +94,12 @@ def height_of(rows, i, spans, first, end, run, zero):
         if spans[s, at.KIND] == at.CONSTANT:
             height += product(rows, CONTACTS + 2 * i, Q, spans[s, at.BEGIN], spans[s, at.END], run, zero)
     return height
+
+
+@numba.njit(**OPTIONS)
+def keep_probes_at(parts, n, run, runs, zero):
+    """Record the probes at step `n`, which is complete."""
+    sizes = parts.sizes
+    first, count = CONTACTS + 2 * sizes.contacts + 2 * sizes.loads, sizes.contacts
+    raw, now = parts.records.raw, parts.contacts.now
+    keep_probes(parts.modes.rows, first, parts.probes, parts.imposed, now, count, n, run, runs, raw, zero)

@@ -3,7 +3,7 @@
 import numba
 
 from . import layout as at
-from .block_rows import CONTACTS, POSITION, PUSH, SINE, Q
+from .block_rows import CONTACTS, POSITION, SINE, Q
 from .compliance import set_compliance, set_compliance_of_coupled
 from .coupled import complete_coupled, try_coupled
 from .lanes import anywhere, choose, fused, held, hold, read, total
@@ -44,7 +44,9 @@ def set_waves_at(i, paths, constants, place, sine, run, zero):
     """Put the waves of the path of contact `i` at an abscissa."""
     base = i * at.CONTACT_CONSTANTS
     along = fused(held(constants, base + at.ALONG, run, zero), place, held(constants, base + at.ALONG_PHASE, run, zero))
-    across = fused(held(constants, base + at.ACROSS, run, zero), place, held(constants, base + at.ACROSS_PHASE, run, zero))
+    across = fused(
+        held(constants, base + at.ACROSS, run, zero), place, held(constants, base + at.ACROSS_PHASE, run, zero)
+    )
     set_waves(paths.waves, paths.sets, paths.pairs, i, along, across, sine, run)
 
 
@@ -193,7 +195,10 @@ def complete_many(modes, paths, contacts, sizes, run, zero):
     for i in range(sizes.contacts):
         here = i * at.IN_STEP
         if anywhere(held(now, here + at.STATUS_NOW, run, zero) > 0.5):
-            normal, tangential = held(now, here + at.NORMAL_NOW, run, zero), held(now, here + at.TANGENTIAL_NOW, run, zero)
+            normal, tangential = (
+                held(now, here + at.NORMAL_NOW, run, zero),
+                held(now, here + at.TANGENTIAL_NOW, run, zero),
+            )
             for s in range(paths.first_span[i], paths.first_span[i + 1]):
                 add_push(rows, i, spans[s, at.BEGIN], spans[s, at.END], run, normal, tangential)
     places = sizes.coupled * sizes.per_block
@@ -203,21 +208,24 @@ def complete_many(modes, paths, contacts, sizes, run, zero):
 
 
 @numba.njit(**OPTIONS)
-def place_after(i, modes, paths, contacts, imposed, n, run, runs, zero):
+def place_after(i, modes, paths, contacts, state, imposed, n, run, runs, zero):
     """Return the abscissa of contact `i` after the step, and the force along the path that its slopes make."""
     rows, spans, here = modes.rows, paths.spans, i * at.IN_STEP
     along, slope = zero, zero
+    if paths.path_of[i] < 0:
+        # What it slides on does not move but as imposed.
+        track = read(imposed.motion, n, (i * at.MOTIONS + at.TRACK_MOTION) * runs + run, zero)
+        return held(state.carried, i * at.CARRIED + at.MATERIAL, run, zero) + track, slope
     for s in range(paths.first_span[i], paths.first_span[i + 1]):
         kind, begin, end = spans[s, at.KIND], spans[s, at.BEGIN], spans[s, at.END]
         if kind == at.CONSTANT:
             along += product(rows, CONTACTS + 2 * i + 1, Q, begin, end, run, zero)
+            continue
+        turned, two, first = spans[s, at.COSINES], spans[s, at.TWO_WAVES], paths.sets[i, FIRST]
+        found = slope_along(rows, paths.waves, paths.wave_of, first, begin, end, two, run, SINE + 1 - turned, zero)
+        if kind == at.PATH_NORMAL:
+            slope += held(contacts.now, here + at.NORMAL_NOW, run, zero) * found
         else:
-            turned, two = spans[s, at.COSINES], spans[s, at.TWO_WAVES]
-            first = paths.sets[i, FIRST]
-            found = slope_along(rows, paths.waves, paths.wave_of, first, begin, end, two, run, SINE + 1 - turned, zero)
-            if kind == at.PATH_NORMAL:
-                slope += held(contacts.now, here + at.NORMAL_NOW, run, zero) * found
-            else:
-                slope -= held(contacts.now, here + at.TANGENTIAL_NOW, run, zero) * found
+            slope -= held(contacts.now, here + at.TANGENTIAL_NOW, run, zero) * found
     place, _ = place_of(i, contacts.constants, imposed.motion, n, along, run, runs, zero)
     return place, slope

@@ -283,8 +283,8 @@ class ModalPlate:
     def path(self) -> Path:
         """Return the line along which others slide.
 
-        ``sin a sin b = [cos(a - b) - cos(a + b)] / 2``, and so for the products of displacements in the plane. On a line
-        along a side the angle across it stays: one sine is left.
+        ``sin a sin b = [cos(a - b) - cos(a + b)] / 2``, and so for displacements in the plane. On a line along a side
+        the angle across it stays: one sine is left.
         """
         (x, y), direction = self.track_line.origin, np.array(self.track_line.tangent)
         sides = np.array([self.length, self.width])

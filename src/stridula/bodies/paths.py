@@ -50,8 +50,8 @@ class Waves:
 class Path:
     """A line on a body: along it every mode is at most two sinusoids of the abscissa s.
 
-    They are those of two angles, ``rate s + phase``, each from 0 to pi between the ends. Modes that move the surface along its normal
-    come first, then those that move it along the tangent.
+    They are those of two angles, ``rate s + phase``, each from 0 to pi between the ends. Modes that move the surface
+    along its normal come first, then those that move it along the tangent.
 
     Attributes
     ----------

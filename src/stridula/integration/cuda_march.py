@@ -9,7 +9,7 @@ from typing import Any
 
 from numba.core import config
 
-from .._kernels.march import Imposed, Records
+from .._kernels.parts import Imposed, Parts, Records
 from ..bodies.modes import Array
 from ..records.state import State
 from .blocks import Blocks
@@ -104,8 +104,8 @@ class CudaMarch(March):
 
         imposed, filled = self._moved(imposed), self._moved(records)
         modes, paths, contacts, carried, probes = self.there
-        arguments = (self.layout.sizes, self.timing, modes, paths, contacts, carried, imposed, probes, filled)
+        parts = Parts(self.layout.sizes, self.timing, modes, paths, contacts, carried, imposed, probes, filled)
         grid = -(-self.runs // self.threads_per_block)
-        march_each[grid, self.threads_per_block](self.runs, arguments)
+        march_each[grid, self.threads_per_block](self.runs, parts)
         for array, output in zip(filled, records, strict=True):
             array.copy_to_host(output)

@@ -6,10 +6,9 @@ import numpy as np
 
 from .._kernels import layout as at
 from .._kernels.contacts import solve_closed
-from .._kernels.march import Contacts, Sizes, Timing
+from .._kernels.parts import Contacts, Sizes, Timing
 from .._kernels.vectors import LANES
 from ..bodies.modes import Array
-from .blocks import ContactBlocks
 from .contact_solve import GaussSeidel
 from .packing import PLAIN, aligned, columns, compliance_in_blocks, side_by_side
 
@@ -56,6 +55,8 @@ def forces_of(
         columns(side_by_side([now.ravel()])),
         columns(aligned(count * at.SUMS, 1)),
     )
-    solve_closed(contacts, columns(side_by_side([carried.ravel()])), sizes, Timing(1, step, solve.tolerance, solve.sweeps))
+    solve_closed(
+        contacts, columns(side_by_side([carried.ravel()])), sizes, Timing(1, step, solve.tolerance, solve.sweeps)
+    )
     now = contacts.now.reshape(count, at.IN_STEP)
     return np.asarray(now[:, [at.NORMAL_NOW, at.TANGENTIAL_NOW]])

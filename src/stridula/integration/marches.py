@@ -12,26 +12,28 @@ import numpy as np
 
 from .._kernels import layout as at
 from .._kernels.block_rows import CONTACTS
-from .._kernels.march import (
-    Carried,
-    Contacts,
-    Modes,
-    Paths,
-    Probes,
-    Records,
-    Timing,
-    march_one_by_one,
-    march_run,
-    march_runs,
-)
-from .._kernels.march import Imposed as ImposedOnRuns
+from .._kernels.march import march_one_by_one, march_run, march_runs
+from .._kernels.parts import Carried, Contacts, Modes, Parts, Paths, Probes, Records, Timing
+from .._kernels.parts import Imposed as ImposedOnRuns
 from .._kernels.vectors import LANES
 from ..assembly import Assembly
 from ..bodies.modes import Array
 from ..records.state import State
 from .blocks import Blocks, ContactBlocks, ProbeBlocks
 from .contact_solve import GaussSeidel
-from .packing import PLAIN, aligned, columns, compliance_in_blocks, layout_of, matrices_of, pack, rows_of, scale_of, side_by_side, waves_of
+from .packing import (
+    PLAIN,
+    aligned,
+    columns,
+    compliance_in_blocks,
+    layout_of,
+    matrices_of,
+    pack,
+    rows_of,
+    scale_of,
+    side_by_side,
+    waves_of,
+)
 
 
 @dataclass(frozen=True)
@@ -112,8 +114,8 @@ class Chunk:
 class March:
     """Runs on the march: one, or several of the same kind side by side.
 
-    Runs of the same kind have the same modes in number, contacts on paths of the same waves, laws of friction, drives and
-    probes.
+    Runs of the same kind have the same modes in number, contacts on paths of the same waves, laws of friction, drives
+    and probes.
 
     Parameters
     ----------
@@ -259,17 +261,8 @@ class March:
 
     def _march(self, imposed: ImposedOnRuns, records: Records) -> None:
         """March through a chunk and fill `records`."""
-        self.kernel(
-            self.layout.sizes,
-            self.timing,
-            self.modes,
-            self.paths,
-            self.contacts,
-            self.carried,
-            imposed,
-            self.probes,
-            records,
-        )
+        parts = self.modes, self.paths, self.contacts, self.carried, imposed, self.probes, records
+        self.kernel(Parts(self.layout.sizes, self.timing, *parts))
 
 
 def _beside(imposed: Sequence[Array]) -> Array:

@@ -10,7 +10,7 @@ from numba.core import config
 
 from .._kernels import layout as at
 from .._kernels.block_rows import AMPLITUDE, COMPLIANCE, CONTACTS, NUMBER, WAVE_ROWS
-from .._kernels.march import Sizes
+from .._kernels.parts import Sizes
 from .._kernels.vectors import LANES
 from .._kernels.waves import WAVE_SET
 from ..bodies.modes import Array

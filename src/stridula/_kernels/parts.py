@@ -1,0 +1,148 @@
+"""What a march takes, part by part."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Sizes(NamedTuple):
+    """How much there is of what.
+
+    Attributes
+    ----------
+    blocks, coupled : int
+        Blocks of modes, those of coupled modes, which come first.
+    per_block : int
+        Numbers of a run in a block.
+    contacts, faces : int
+        Contacts, blocks of their forces.
+    loads : int
+        Unit loads.
+    paths, coupled_paths : bool
+        Whether a contact is on a path, and on one whose modes are coupled.
+    """
+
+    blocks: int
+    coupled: int
+    per_block: int
+    contacts: int
+    faces: int
+    loads: int
+    paths: bool
+    coupled_paths: bool
+
+
+class Timing(NamedTuple):
+    """Steps of a sample, their length [s], and how contacts are solved: tolerance and most sweeps."""
+
+    steps_per_sample: int
+    step: float
+    tolerance: float
+    sweeps: int
+
+
+class Modes(NamedTuple):
+    """Rows of all modes, ``(blocks, rows, lanes)``, matrices of coupled ones, work of each load when last changed."""
+
+    rows: np.ndarray
+    matrices: np.ndarray
+    given: np.ndarray
+
+
+class Paths(NamedTuple):
+    """The modes that each contact sees, and the waves of those that it moves along.
+
+    Attributes
+    ----------
+    waves : ndarray, shape (blocks, rows, lanes)
+        Sines and cosines at each contact.
+    sets, pairs : ndarray of int
+        Which waves each contact has, and which of them are sums and differences.
+    wave_of : ndarray of int, shape (blocks of modes,)
+        The wave of a block, from the first of a contact on.
+    spans, first_span : ndarray of int
+        Spans of blocks; those of contact i from ``first_span[i]`` to ``first_span[i + 1]``, constant ones first.
+    path_of : ndarray of int, shape (contacts,)
+        The first block of the path of a contact, -1 for none.
+    """
+
+    waves: np.ndarray
+    sets: np.ndarray
+    pairs: np.ndarray
+    wave_of: np.ndarray
+    spans: np.ndarray
+    first_span: np.ndarray
+    path_of: np.ndarray
+
+
+class Contacts(NamedTuple):
+    """Laws of friction, constants, compliances and what the contacts are in a step.
+
+    Attributes
+    ----------
+    codes, laws : ndarray, shapes (contacts,), (contacts runs, parameters)
+        Law of each contact and its parameters in each run.
+    constants, fixed : ndarray, a column a run
+        Constants of each contact; compliance of the only one on constant rows.
+    faces, scratch : ndarray, shape (blocks, rows, lanes)
+        Forces, displacements and compliances of all contacts; a linear system.
+    now, sums : ndarray, a column a run
+        What each contact is in a step; sums over a sample.
+    """
+
+    codes: np.ndarray
+    laws: np.ndarray
+    constants: np.ndarray
+    fixed: np.ndarray
+    faces: np.ndarray
+    scratch: np.ndarray
+    now: np.ndarray
+    sums: np.ndarray
+
+
+class Carried(NamedTuple):
+    """What is carried from step to step, a column a run: of contacts, at the end of runs that have ended, energies."""
+
+    carried: np.ndarray
+    at_end: np.ndarray
+    energies: np.ndarray
+
+
+class Imposed(NamedTuple):
+    """Amplitudes of the loads and what else is imposed; motions of contacts, a step more at both ends; or one row."""
+
+    signals: np.ndarray
+    motion: np.ndarray
+
+
+class Probes(NamedTuple):
+    """Kinds of probes, blocks they see, shares of signals and contact forces, values at the last step."""
+
+    kinds: np.ndarray
+    spans: np.ndarray
+    direct: np.ndarray
+    shares: np.ndarray
+    last: np.ndarray
+
+
+class Records(NamedTuple):
+    """A row a sample for energies and contacts, a row a step for the probes; what became of each run."""
+
+    energies: np.ndarray
+    contacts: np.ndarray
+    raw: np.ndarray
+    stops: np.ndarray
+
+
+class Parts(NamedTuple):
+    """All that a march takes."""
+
+    sizes: Sizes
+    timing: Timing
+    modes: Modes
+    paths: Paths
+    contacts: Contacts
+    state: Carried
+    imposed: Imposed
+    probes: Probes
+    records: Records

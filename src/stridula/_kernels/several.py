@@ -1,0 +1,112 @@
+"""A step of any number of contacts, or of coupled modes."""
+
+import numba
+
+from . import layout as at
+from .block_rows import DISPLACEMENT
+from .bookkeeping import add, credit, keep_books, keep_place
+from .contacts import solve_all, start_from_last
+from .faces import own_compliance
+from .lanes import anywhere, choose, entry, held, hold
+from .leaving import any_beyond_ends
+from .modes import OPTIONS
+from .trying import complete_many, place_after, soften, try_many
+
+# Error of the contact forces, relative to the largest, beyond which none can be believed.
+UNBELIEVABLE = 1e-3
+
+
+@numba.njit(**OPTIONS)
+def solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero):
+    """Put forces, status, gap and slip of all contacts; return the error of the forces."""
+    now, faces, count = contacts.now, contacts.faces, sizes.contacts
+    touching, closed = zero, zero
+    for i in range(count):
+        touching = choose(held(now, i * at.IN_STEP + at.FREE_GAP, run, zero) < 0.0, 1.0, touching)
+        closed = choose(held(state.carried, i * at.CARRIED + at.STATUS, run, zero) > 0.5, 1.0, closed)
+    if sizes.paths and (anywhere(touching > 0.5) or anywhere(closed > 0.5)):
+        soften(modes, paths, contacts, sizes, run, zero)
+    start_from_last(contacts, state.carried, touching, sizes, run, zero)
+    made, error = zero, zero
+    if anywhere(touching > 0.5):
+        made, error = solve_all(contacts, state.carried, touching, sizes, timing, run, runs, zero)
+    most = held(state.energies, at.ITERATIONS, run, zero)
+    hold(state.energies, at.ITERATIONS, run, choose(made > most, made, most))
+    add(state.energies, at.UNSOLVED, run, choose(error <= timing.tolerance, zero, 1.0), zero)
+    for i in range(count):
+        here, w = i * at.IN_STEP, own_compliance(faces, i, run, zero)
+        normal, tangential = held(now, here + at.NORMAL_NOW, run, zero), held(now, here + at.TANGENTIAL_NOW, run, zero)
+        gap, slip = entry(faces, 2 * i, DISPLACEMENT, run, zero), entry(faces, 2 * i + 1, DISPLACEMENT, run, zero)
+        hold(now, here + at.NEW_GAP, run, gap)
+        hold(now, here + at.NEW_SLIP, run, slip)
+        # From here on without the forces of this contact alone.
+        hold(now, here + at.FREE_GAP, run, gap - w[0] * normal + w[1] * tangential)
+        hold(now, here + at.FREE_SLIP, run, slip - w[2] * normal + w[3] * tangential)
+    return error
+
+
+@numba.njit(**OPTIONS)
+def keep_unsolved(contacts, state, sizes, unsolved, run, zero):
+    """Carry the forces that were not found, for the message that says so."""
+    for i in range(sizes.contacts):
+        here, base = i * at.IN_STEP, i * at.CARRIED
+        for row, found in (
+            (at.LAST_NORMAL, at.NORMAL_NOW),
+            (at.LAST_TANGENTIAL, at.TANGENTIAL_NOW),
+            (at.STATUS, at.STATUS_NOW),
+        ):
+            value = held(contacts.now, here + found, run, zero)
+            kept = choose(unsolved > 0.5, value, held(state.carried, base + row, run, zero))
+            hold(state.carried, base + row, run, kept)
+
+
+@numba.njit(**OPTIONS)
+def keep_books_of(i, contacts, state, imposed, timing, n, run, runs, zero):
+    """Do the bookkeeping of contact `i` among several."""
+    now, here = contacts.now, i * at.IN_STEP
+    touch = (
+        held(now, here + at.NORMAL_NOW, run, zero),
+        held(now, here + at.TANGENTIAL_NOW, run, zero),
+        held(now, here + at.STATUS_NOW, run, zero),
+        held(now, here + at.JAMMED_NOW, run, zero),
+    )
+    moved = (
+        held(now, here + at.FREE_GAP, run, zero),
+        held(now, here + at.FREE_SLIP, run, zero),
+        held(now, here + at.NEW_GAP, run, zero),
+        held(now, here + at.NEW_SLIP, run, zero),
+    )
+    w = own_compliance(contacts.faces, i, run, zero)
+    keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, runs, zero)
+
+
+@numba.njit(**OPTIONS)
+def touch_many(parts, n, ended, run, runs, zero):
+    """Try step `n` and find the forces of all contacts; return where a run leaves, and why."""
+    sizes, contacts, state = parts.sizes, parts.contacts, parts.state
+    after = n + 2 if parts.imposed.motion.shape[0] > 1 else 0
+    try_many(parts.modes, parts.paths, contacts, state, parts.imposed, sizes, after, ended, run, runs, zero)
+    leaves, why = zero, zero
+    if sizes.paths:
+        leaves, why = any_beyond_ends(sizes, parts.paths, contacts, state, run, zero)
+    error = solve_several(parts.modes, parts.paths, contacts, state, sizes, parts.timing, run, runs, zero)
+    unsolved = choose(leaves > 0.5, zero, choose(error <= UNBELIEVABLE, zero, 1.0))
+    if anywhere(unsolved > 0.5):
+        keep_unsolved(contacts, state, sizes, choose(ended > 0.0, zero, unsolved), run, zero)
+        why = choose(unsolved > 0.5, zero + at.CONTACT_UNSOLVED, why)
+        leaves = choose(unsolved > 0.5, 1.0, leaves)
+    return leaves, why
+
+
+@numba.njit(**OPTIONS)
+def keep_many(parts, n, run, runs, zero):
+    """Complete step `n` under the forces of all contacts, and do their bookkeeping."""
+    contacts, state, imposed = parts.contacts, parts.state, parts.imposed
+    after = n + 2 if imposed.motion.shape[0] > 1 else 0
+    work, lost = complete_many(parts.modes, parts.paths, contacts, parts.sizes, run, zero)
+    credit(state.energies, work, lost, zero, run, zero)
+    for i in range(parts.sizes.contacts):
+        keep_books_of(i, contacts, state, imposed, parts.timing, n, run, runs, zero)
+        place, slope = place_after(i, parts.modes, parts.paths, contacts, state, imposed, after, run, runs, zero)
+        way = keep_place(i, state.carried, place, run, zero)
+        add(state.energies, at.CONVECTION_WORK, run, slope * way, zero)

@@ -1,0 +1,69 @@
+"""A step of the only contact, between bodies of uncoupled modes."""
+
+import numba
+
+from . import layout as at
+from .bookkeeping import credit, keep_books, keep_place
+from .lanes import anywhere, choose, held, hold
+from .leaving import beyond_ends
+from .modes import OPTIONS
+from .recording import keep_probes_at
+from .solves import carried_by, forces_of_one, strayed
+from .trying import try_one
+
+
+@numba.njit(**OPTIONS)
+def solve_single(free, contacts, carried, w, timing, run, zero):
+    """Return normal and tangential force, status and whether it is jammed of the only contact."""
+    _, gap, slip = free
+    if not anywhere(gap < 0.0):
+        return zero, zero, zero, zero
+    law, at_rest = contacts.codes[0], held(contacts.constants, at.AT_REST, run, zero)
+    away, before = strayed(carried, 0, run, zero), carried_by(carried, 0, run, zero)
+    return forces_of_one(gap, slip, away, w, law, contacts.laws, run, at_rest, before, zero, timing.step, zero)
+
+
+@numba.njit(**OPTIONS)
+def touch_one(parts, n, loop, ended, run, runs, zero):
+    """Complete a pending step of the only contact, try step `n`, and find the forces.
+
+    `loop` are forces and status of the step before, whether it is pending, the rows of its waves, the way since.
+
+    Returns
+    -------
+    free, w, touch : tuple
+        Abscissa, gap and slip without the forces; compliance; forces, status and whether it is jammed.
+    leaves, why : float or vector
+        Where the contact leaves its path, and why.
+    """
+    modes, paths, contacts, state = parts.modes, parts.paths, parts.contacts, parts.state
+    last, pending, sine, advance = loop
+    after = n + 2 if parts.imposed.motion.shape[0] > 1 else 0
+    free, w_nn, w_tt, done = try_one(
+        modes, paths, contacts, state, parts.imposed, after, last, pending, sine, run, runs, zero
+    )
+    if pending:
+        credit(state.energies, done[0], done[1], done[2] * advance, run, zero)
+        keep_probes_at(parts, n - 1, run, runs, zero)
+    # A run that has ended is not looked at again.
+    free = (free[0], choose(ended > 0.0, zero, free[1]), free[2])
+    w_nt = held(contacts.fixed, 1, run, zero)
+    w = (w_nn, w_nt, w_nt, choose(ended > 0.0, 1.0, w_tt))
+    leaves, why = zero, zero
+    if parts.sizes.paths:
+        leaves, why = beyond_ends(0, free[0], contacts, state, run, zero)
+    return free, w, solve_single(free, contacts, state.carried, w, parts.timing, run, zero), leaves, why
+
+
+@numba.njit(**OPTIONS)
+def keep_one(parts, n, free, w, touch, run, runs, zero):
+    """Do the bookkeeping of the only contact; return half its way in the last two steps."""
+    contacts, state = parts.contacts, parts.state
+    normal, tangential = touch[0], touch[1]
+    gap, slip = free[1] + w[0] * normal - w[1] * tangential, free[2] + w[2] * normal - w[3] * tangential
+    place = free[0] + w[1] * normal - held(contacts.fixed, 2, run, zero) * tangential
+    moved = (free[1], free[2], gap, slip)
+    keep_books(0, w, touch, moved, contacts, state, parts.imposed, parts.timing, n, run, runs, zero)
+    hold(contacts.now, at.NORMAL_NOW, run, normal)
+    hold(contacts.now, at.TANGENTIAL_NOW, run, tangential)
+    return keep_place(0, state.carried, place, run, zero)
