@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-import stridula
 from stridula.cli import main
 
 # The same examples in every run: a test that fails must fail again.
@@ -43,17 +42,11 @@ def pytest_terminal_summary(terminalreporter, config):
 
 
 def pytest_configure(config):
-    """Draw the order; compile the march anew where any kernel is newer: numba looks at the file called only."""
-    kernels = Path(stridula.__file__).parent / "_kernels"
+    """Draw the order."""
     if hasattr(config, "workerinput"):
         config.option.order = config.workerinput["order"]
-    else:
-        if config.option.order is None:
-            config.option.order = random.SystemRandom().randrange(10**6)
-        newest = max(path.stat().st_mtime for path in kernels.glob("*.py"))
-        for compiled in (kernels / "__pycache__").glob("*.nb[ic]"):
-            if compiled.stat().st_mtime < newest:
-                compiled.unlink()
+    elif config.option.order is None:
+        config.option.order = random.SystemRandom().randrange(10**6)
 
 
 # A runner in the background starts with Ctrl-C ignored: tests of Ctrl-C need Python's own handler.

@@ -14,7 +14,7 @@ from .coupled import energy_of
 from .lanes import anywhere, choose, everywhere, hold, magnitude, spread
 from .leaving import end, leave
 from .loads import change_loads, credit_loads, differ
-from .modes import OPTIONS
+from .modes import ENTRY, OPTIONS
 from .recording import begin_sample, height_of, keep_probes_at, record_contact, record_energies, remember_probes
 from .several import keep_many, touch_many
 from .single import keep_one, touch_one
@@ -51,7 +51,7 @@ def record_row(parts, sample, n, run, runs, zero):
         record_contact(i, contacts.sums, state.carried, height, steps, timing.step, record, sample, run, runs, zero)
 
 
-@numba.njit(**(OPTIONS | {"nogil": True, "forceinline": False}))
+@numba.njit(fastmath=False, **ENTRY)
 def march(zero, run, runs, parts):
     """March through the samples of the records, or until no run goes on.
 
@@ -106,13 +106,13 @@ def march(zero, run, runs, parts):
     end(parts, ended, completed, run, zero)
 
 
-@numba.njit(cache=True, nogil=True, _nrt=False)
+@numba.njit(**ENTRY)
 def march_run(parts):
     """March one run."""
     march(0.0, 0, 1, parts)
 
 
-@numba.njit(cache=True, nogil=True, _nrt=False)
+@numba.njit(**ENTRY)
 def march_runs(parts):
     """March `LANES` runs side by side."""
     march(spread(0.0), 0, LANES, parts)

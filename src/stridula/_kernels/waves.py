@@ -21,7 +21,7 @@ FIRST, ALONG, ACROSS, FROM_ZERO, PAIRS, PAIRS_END = range(6)
 WAVE_SET = 6
 
 
-@numba.njit(cache=True, fastmath={"contract", "nsz"}, forceinline=True, _nrt=False)
+@numba.njit(**(OPTIONS | {"fastmath": {"contract", "nsz"}}))
 def sine_and_cosine(theta):
     """Return sin and cos of an angle from 0 to pi, to two units in the last place.
 

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import atexit
+import hashlib
 import os
 import shutil
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
 
 import numba
 from numba.core import event
+
+# The file that says which sources the compiled code beside it is of.
+STAMP = "stridula-kernels"
 
 
 def find_a_place() -> None:
@@ -32,6 +38,26 @@ def find_a_place() -> None:
 
 def _anything() -> None:
     """Stand for all that is compiled."""
+
+
+def forget_other_sources(kernel: Any) -> None:
+    """Delete compiled code of other sources than those of the kernels now.
+
+    numba looks only at the file of the function that is called: after an update of the package in place it would run
+    old code in silence.
+    """
+    folder = Path(kernel._cache.cache_path)
+    stamp = folder / STAMP
+    sources = hashlib.blake2b(digest_size=16)
+    for path in sorted(Path(kernel.py_func.__code__.co_filename).parent.glob("*.py")):
+        sources.update(path.read_bytes())
+    # Where the folder cannot be written, numba keeps nothing either.
+    with suppress(OSError):
+        if not stamp.exists() or stamp.read_text(encoding="ascii") != sources.hexdigest():
+            for compiled in folder.glob("*.nb[ic]"):
+                compiled.unlink(missing_ok=True)
+            folder.mkdir(parents=True, exist_ok=True)
+            stamp.write_text(sources.hexdigest(), encoding="ascii")
 
 
 @contextmanager

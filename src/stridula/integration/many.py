@@ -200,7 +200,8 @@ def _waves(one: ContactRows) -> Hashable:
     """Return which waves the modes of a path are."""
     if one.bending == one.axial:
         return None
-    path = one.contact.track.path()
+    track: Any = one.contact.track
+    path = track.path()
     return tuple((waves.multiples.tobytes(), waves.cosines) for waves in (path.normal, path.tangential))
 
 

@@ -20,6 +20,7 @@ from ..assembly import Assembly
 from ..bodies.modes import Array
 from ..records.state import State
 from .blocks import Blocks, ContactBlocks, ProbeBlocks
+from .compiled_code import forget_other_sources
 from .contact_solve import GaussSeidel
 from .packing import (
     PLAIN,
@@ -34,6 +35,9 @@ from .packing import (
     side_by_side,
     waves_of,
 )
+
+if not PLAIN:
+    forget_other_sources(march_run)
 
 
 @dataclass(frozen=True)

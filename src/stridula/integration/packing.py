@@ -67,7 +67,8 @@ def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
     contacts, modes = runs[0].contacts, runs[0].modes
     places = _Places(contacts, modes.coupled, modes.block.shape[1], per_block)
     seen = np.any([one.contacts.rows.any(axis=1) for one in runs], axis=0)
-    spans, first_span = [], [0]
+    spans: list[tuple[int, ...]] = []
+    first_span = [0]
     for i, along in enumerate(contacts.paths):
         if len(contacts.paths) == 1 and not modes.coupled:
             spans.append((0, places.plain, at.CONSTANT, 0, 0))
@@ -204,7 +205,10 @@ def across_blocks(along: PathModes, per_block: int) -> int:
 
 def _wave_sets(contacts: ContactBlocks, places: _Places) -> tuple[Array, Array, Array]:
     """Return the waves of each contact, their sums and differences, and their multiples."""
-    per_block, sets, pairs, numbers = places.per_block, [], [], []
+    per_block = places.per_block
+    sets: list[list[int]] = []
+    pairs: list[list[int]] = []
+    numbers: list[Array] = []
     lanes = np.arange(LANES)
     for along in contacts.paths:
         if along is None:

@@ -27,7 +27,7 @@ from .marches import Chunk, Imposed, Impositions
 from .restart import imposed_at, motion_about, moved_on, state_of
 from .schemes import Scheme
 from .start import state_at_start
-from .stops import ENDED, contact_words
+from .stops import ENDED, contact_words, rank_words
 from .timing import Timing
 
 CONTACT_COLUMN = {
@@ -142,8 +142,11 @@ class Run:
         self.filled += count
 
     def why_diverged(self) -> str:
-        """Return where the contacts were when the run diverged, in words."""
-        return contact_words(self.system.contact_names, self.state.carried)
+        """Return where the contacts were when the run diverged, and whether they can be told apart, in words."""
+        words = contact_words(self.system.contact_names, self.state.carried)
+        if self.ended != at.CONTACT_UNSOLVED:
+            return words
+        return f"{words}; {rank_words(self.arrays, self.blocks, self.state)}"
 
     def record(self, interrupted: bool = False, provenance: bool = True) -> xr.Dataset:
         """Return the record, with the scenario that it is of in its attributes unless `provenance` is false."""

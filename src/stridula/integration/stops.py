@@ -6,9 +6,13 @@ import numpy as np
 import xarray as xr
 
 from .._kernels import layout as at
+from ..assembly import Assembly
 from ..bodies.modes import Array
 from ..checks import listed
+from ..records.state import State
 from ..records.variables import STATUS_WORDS
+from .blocks import Blocks
+from .start import rows_at
 
 ENDED = {
     at.FINISHED: "finished",
@@ -69,6 +73,20 @@ def contact_words(names: tuple[str, ...], carried: Array) -> str:
     ]
     hardest = np.argsort(-np.abs(np.nan_to_num(carried[:, at.LAST_NORMAL], nan=np.inf)), kind="stable")
     return listed([lines[number] for number in hardest], longest=LONGEST_WORDS)
+
+
+def rank_words(arrays: Assembly, blocks: Blocks, state: State) -> str:
+    """Return how well the modes tell the closed contacts apart: rank and condition of their compliance, in words."""
+    places = state.carried[:, at.ABSCISSA]
+    closed = np.flatnonzero(state.carried[:, at.STATUS] > 0)
+    rows = [rows_at(arrays.contacts[i], float(places[i])) for i in closed]
+    if not rows or not np.isfinite(places[closed]).all():
+        return "no contact is closed"
+    flat = np.concatenate(rows)
+    sizes = np.linalg.svd(flat @ blocks.modes.mobility(flat).T, compute_uv=False)
+    rank = int(np.sum(sizes > sizes[0] * len(sizes) * np.finfo(float).eps))
+    condition = f"{sizes[0] / sizes[-1]:.1e}" if rank == len(sizes) else "infinite"
+    return f"their compliance has rank {rank} of {len(sizes)} and condition {condition}"
 
 
 def energy_created(
