@@ -243,7 +243,7 @@ def test_a_narrow_groove_is_counted_or_stopped_or_right(opening, mu):
 
 
 def test_too_few_sweeps_are_counted():
-    """Three sweeps are no solution: every step in which both walls press is counted, or the run stops."""
+    """One sweep is no solution: every step in which both walls press is counted, or the run stops."""
     try:
         run = st.simulate(
             groove(60.0),
@@ -251,13 +251,13 @@ def test_too_few_sweeps_are_counted():
             step=STEP,
             sample_rate=1e4,
             probes=[],
-            contact_solve=st.GaussSeidel(sweeps=3),
+            contact_solve=st.GaussSeidel(sweeps=1),
         )
     except st.Diverged as stop:
         check(stop, "contact unsolved", (0, 99), name="left")
         return
     assert run.unsolved_steps.values[:2].sum() > 0
-    assert run.contact_sweeps.max() == 3
+    assert run.contact_sweeps.max() == 1
 
 
 def test_a_stop_in_the_first_sample_keeps_an_empty_record():

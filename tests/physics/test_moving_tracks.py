@@ -198,7 +198,9 @@ def assert_joined(first, second, whole):
         values, expected = np.nan_to_num(parts), np.nan_to_num(whole[name].values)
         # A share of a step is a ratio of what the forces miss of the cone, down to a thousandth of them.
         share = 1e-5 if name == "status_share" else 1e-8
-        assert np.abs(values - expected).max() <= share * np.abs(expected).max() + 1e-16, name
+        # Sweeps end at a tolerance, which rounding may just miss.
+        least = 1.0 if name == "contact_sweeps" else 1e-16
+        assert np.abs(values - expected).max() <= share * np.abs(expected).max() + least, name
     assert np.abs(second.ledger_residual.values).max() < 1e-10 * np.abs(second.drive_work.values).max()
 
 

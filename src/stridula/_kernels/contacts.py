@@ -13,7 +13,7 @@ from .contact import SLIDING, STICKING
 from .direct import solve_states
 from .faces import displace, displace_freely, own_compliance
 from .lanes import anywhere, choose, entry, everywhere, held, hold, magnitude
-from .modes import OPTIONS
+from .modes import ENTRY, OPTIONS
 from .solves import carried_by, forces_of_one, strayed
 
 # Sweeps after which, and then between which, the forces of the states that were found are solved for directly.
@@ -163,7 +163,7 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
     return made, error
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(fastmath=False, **ENTRY)
 def solve_closed(contacts, carried, sizes, timing):
     """Solve the contacts of one run, as a step of the march does."""
     start_from_last(contacts, carried, 1.0, sizes, 0, 0.0)

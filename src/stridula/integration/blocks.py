@@ -70,10 +70,12 @@ class Recurrence:
         It is ``[(1+b)/2 d² + r q[n] q[n-1]] / (2 l)`` of every mode that is not coupled.
         """
         (q, d), block, size = modal, self.block, self.coupled
-        alone = ((1.0 - block[at.HALF_LOSS]) * d * d + block[at.R] * q * (q - d)) * block[at.HALF_OVER_LOAD]
-        q, d = q[:size], d[:size]
-        together = d @ self.matrices[at.KINETIC] @ d + q @ self.matrices[at.ELASTIC] @ (q - d)
-        return float(alone.sum() + together)
+        # What overflows ends the run.
+        with np.errstate(over="ignore", invalid="ignore"):
+            alone = ((1.0 - block[at.HALF_LOSS]) * d * d + block[at.R] * q * (q - d)) * block[at.HALF_OVER_LOAD]
+            q, d = q[:size], d[:size]
+            together = d @ self.matrices[at.KINETIC] @ d + q @ self.matrices[at.ELASTIC] @ (q - d)
+            return float(alone.sum() + together)
 
     def energy_of_loads(self) -> float:
         """Return the energy [J] that all unit loads give to modes at rest in one step."""
