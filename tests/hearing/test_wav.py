@@ -200,6 +200,6 @@ def test_files_that_are_no_sound_or_say_no_scale(tmp_path):
 
 def test_a_rate_that_is_an_array_is_refused_in_one_line(tmp_path):
     rate = xr.DataArray(np.arange(3.0))
-    with pytest.raises(ValueError, match="^sample_rate must be one of 44100, 48000, 96000 Hz, got .*$") as refused:
+    with pytest.raises(ValueError, match=r"^sample_rate must be one of 44100, 48000, 96000 Hz, got .*$") as refused:
         st.write_wav(tmp_path / "a.wav", rate, sample_rate=rate[1])
     assert "\n" not in str(refused.value)
