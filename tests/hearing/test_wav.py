@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import soundfile
+import xarray as xr
 
 import stridula as st
 from stridula.acoustics.sample_rates import ratio, resampled
@@ -195,3 +196,10 @@ def test_files_that_are_no_sound_or_say_no_scale(tmp_path):
     with pytest.raises(ValueError, match="full_scale must be given for a file that does not say its own"):
         st.read_wav(path)
     assert list(st.read_wav(path, full_scale=4.0).values[:, 0]) == [0.0, 2.0]
+
+
+def test_a_rate_that_is_an_array_is_refused_in_one_line(tmp_path):
+    rate = xr.DataArray(np.arange(3.0))
+    with pytest.raises(ValueError, match=r"^sample_rate must be one of 44100, 48000, 96000 Hz, got .*$") as refused:
+        st.write_wav(tmp_path / "a.wav", rate, sample_rate=rate[1])
+    assert "\n" not in str(refused.value)

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from ..bodies.modes import Array
-from ..checks import at_least, choice, positive
+from ..checks import at_least, brief, choice, positive
 from ..disk import check_writable, read, write
 from .pressures import channels
 from .sample_rates import resampled
@@ -106,7 +106,7 @@ def write_wav(
         If the file cannot be written.
     """
     if sample_rate not in RATES:
-        raise ValueError(f"sample_rate must be one of {', '.join(map(str, RATES))} Hz, got {sample_rate!r}")
+        raise ValueError(f"sample_rate must be one of {', '.join(map(str, RATES))} Hz, got {brief(sample_rate)}")
     choice("subtype", subtype, SUBTYPES)
     scale = full_scale if isinstance(full_scale, str) else positive("full_scale", full_scale)
     if isinstance(scale, str):
