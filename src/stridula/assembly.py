@@ -12,7 +12,7 @@ import numpy as np
 from .bodies import BodyPoint, FiniteElementBeam
 from .bodies.modes import Array, Modes
 from .bodies.ordinary import check_coupled_count, of_ordinary_size
-from .checks import brief
+from .checks import ArgumentError, brief
 from .connections import Spring, ends, unit
 from .contact import PointContact, RigidTrack
 from .drives import Force, Gravity, ImposedVelocity, InitialState, InitialVelocity
@@ -452,7 +452,7 @@ def _probe(probe: Probe, layout: _Layout, loads: list[_Load]) -> ProbeRows:
     if isinstance(probe, Reaction):
         return _reaction_rows(probe, layout, loads, direct, contact)
     if probe.point.body not in system.bodies:
-        raise ValueError(f"probe must be on a body of this system, got one on {brief(probe.point.body)}")
+        raise ArgumentError("probe", "be on a body of this system", probe, got=f"one on {brief(probe.point.body)}")
     kind = (Displacement, Velocity, Acceleration).index(type(probe))
     along, across = probe.point.body.axes
     direction = {"x": np.array([1.0, 0.0]), "y": np.array([0.0, 1.0]), "axial": along, "transverse": across}
@@ -468,11 +468,11 @@ def _reaction_rows(probe: Reaction, layout: _Layout, loads: list[_Load], direct:
     system, beam = layout.system, probe.body
     component = ("x", "y", "moment").index(probe.component)
     if beam != system.slider:
-        raise ValueError(f"probe must be on the slider of this system, got one on {brief(beam)}")
+        raise ArgumentError("probe", "be on the slider of this system", probe, got=f"one on {brief(beam)}")
     if beam.tip_support != "free":
-        raise ValueError(f"tip_support must be free where a Reaction is recorded, got {beam.tip_support!r}")
+        raise ArgumentError("tip_support", "be free where a Reaction is recorded", beam.tip_support)
     if any(point.body == beam for connection in system.connections for point in ends(connection)):
-        raise ValueError(f"connections must leave a body whose Reaction is recorded, got one on {brief(beam)}")
+        raise ArgumentError("connections", "leave a body whose Reaction is recorded", got=f"one on {brief(beam)}")
     reaction = beam.root_reaction(system.is_held(beam))
     matrix = np.zeros((3, layout.size))
     matrix[2] = layout.full(beam, reaction.mass[component])

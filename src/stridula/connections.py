@@ -8,7 +8,7 @@ import numpy as np
 
 from .bodies import BodyPoint
 from .bodies.modes import Array
-from .checks import brief, choice, instance, positive
+from .checks import ArgumentError, brief, choice, instance, positive
 
 
 @dataclass(frozen=True)
@@ -81,6 +81,6 @@ def _check_ends(first: BodyPoint, second: BodyPoint | None, direction: str) -> N
     if second is not None:
         instance("second", second, BodyPoint)
         if second == first:
-            words = "second must be another point than first (equal bodies need names)"
-            raise ValueError(f"{words}, got {brief(second)} for both")
+            words = "be another point than first (equal bodies need names)"
+            raise ArgumentError("second", words, second, got=f"{brief(second)} for both")
     choice("direction", direction, ("x", "y"))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, PointMass, ReducedBody
-from .checks import STATUS_WORDS, choice, count, finite, instance, one_or_each, positive
+from .checks import STATUS_WORDS, ArgumentError, choice, count, finite, instance, one_or_each, positive
 from .histories import HISTORIES, Constant, History
 
 # The mode whose amplitude grows fastest.
@@ -75,7 +75,9 @@ class ImposedVelocity:
         instance("point", self.point, BodyPoint)
         instance("point.body", self.point.body, FiniteElementBeam)
         if self.point != self.point.body.root:  # type: ignore[attr-defined]
-            raise ValueError(f"point must be the root of the slider, got position {self.point.position!r} m")
+            raise ArgumentError(
+                "point", "be the root of the slider", self.point, got=f"position {self.point.position!r} m"
+            )
         finite("velocity", self.velocity)
         finite("normal_load", self.normal_load)
         instance("history", self.history, HISTORIES)
@@ -116,7 +118,9 @@ class InitialVelocity:
     def __post_init__(self) -> None:
         instance("body", self.body, (FiniteElementBeam, ModalBeam, ModalPlate, PointMass, ReducedBody))
         if isinstance(self.body, ReducedBody) and not self.body.has_translation:
-            raise ValueError("body must have its translation given for a uniform velocity, got a ReducedBody without")
+            raise ArgumentError(
+                "body", "have its translation given for a uniform velocity", self.body, got="a ReducedBody without"
+            )
         finite("x", self.x)
         finite("y", self.y)
 
@@ -148,8 +152,8 @@ class InitialState:
     def _checked(self, name: str, given: Sequence[float]) -> tuple[float, ...]:
         try:
             self.body.modal_coordinates(given)
-        except ValueError as error:
-            raise ValueError(str(error).replace("vector", name, 1)) from None
+        except ArgumentError as error:
+            raise error.renamed(name) from None
         return tuple(float(value) for value in np.asarray(given))
 
 
@@ -199,7 +203,7 @@ class InitialEquilibrium:
         finite("phase", self.phase)
         if self.mode is None:
             if finite("amplitude", self.amplitude):
-                raise ValueError(f"amplitude must be 0 without a mode that has it, got {self.amplitude!r}")
+                raise ArgumentError("amplitude", "be 0 without a mode that has it", self.amplitude)
             return
         if isinstance(self.mode, str):
             choice("mode", self.mode, (MOST_UNSTABLE,))

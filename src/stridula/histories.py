@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from .bodies.modes import Array
-from .checks import brief, finite, positive
+from .checks import ArgumentError, brief, finite, positive
 
 # Share of a time within which it is that of a jump: a step is a whole division of it only up to rounding.
 ROUND_OFF = 1e-12
@@ -164,28 +164,30 @@ class Sampled:
         for name in ("time", "value"):
             numbers = getattr(self, name)
             if isinstance(numbers, str) or not isinstance(numbers, Iterable):
-                raise ValueError(f"{name} must be a sequence of numbers, got {brief(numbers)}")
+                raise ArgumentError(name, "be a sequence of numbers", numbers)
             checked = tuple(finite(f"{name}[{k}]", number) for k, number in enumerate(numbers))
             object.__setattr__(self, name, checked)
         if len(self.time) < 2 or len(self.time) != len(self.value):
-            raise ValueError(
-                f"time and value must have the same length, at least 2, got {len(self.time)} and {len(self.value)}"
+            raise ArgumentError(
+                "time and value", "have the same length, at least 2", got=f"{len(self.time)} and {len(self.value)}"
             )
         self._check_times()
 
     def _check_times(self) -> None:
         times = np.array(self.time)
         if self.time[0] < 0.0:
-            raise ValueError(f"time must rise from 0 or above, got {brief(self.time)}, from {self.time[0]!r}")
+            raise ArgumentError(
+                "time", "rise from 0 or above", self.time, got=f"{brief(self.time)}, from {self.time[0]!r}"
+            )
         falls = np.flatnonzero(times[1:] < times[:-1]) + 1
         thrice = np.flatnonzero(times[2:] == times[:-2]) + 2
         for allowed, wrong in (("rise", falls), ("have no more than two points, a jump, at a time", thrice)):
             if wrong.size:
                 k = int(wrong[0])
                 got = f"time[{k}] = {self.time[k]!r} after {self.time[k - 1]!r}"
-                raise ValueError(f"time must {allowed}, got {brief(self.time)}, with {got}")
+                raise ArgumentError("time", allowed, self.time, got=f"{brief(self.time)}, with {got}")
         if self.time[1] == 0.0:
-            raise ValueError(f"time must be above 0 at a jump, got {brief(self.time)}")
+            raise ArgumentError("time", "be above 0 at a jump", self.time)
 
     @property
     def settled(self) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, ReducedBody, Track
-from .checks import brief, instance
+from .checks import ArgumentError, instance
 from .connections import Connection, Dashpot, Spring, ends
 from .contact import PointContact, RigidTrack
 from .drives import Drive, Gravity, ImposedVelocity, InitialEquilibrium, InitialState, InitialVelocity
@@ -44,7 +44,7 @@ class System:
         if not isinstance(self.contact, PointContact):
             object.__setattr__(self, "contact", _listed("contact", self.contact, (PointContact,)))
             if not self.contacts:
-                raise ValueError("contact must hold at least one PointContact, got none")
+                raise ArgumentError("contact", "hold at least one PointContact", self.contact, got="none")
         object.__setattr__(
             self,
             "drives",
@@ -56,8 +56,8 @@ class System:
             self._check_body(f"drives[{number}]", drive)
         self._check_imposed()
         if len(self._of_kind(InitialEquilibrium)) > 1:
-            raise ValueError(
-                f"drives must hold at most one InitialEquilibrium, got {len(self._of_kind(InitialEquilibrium))}"
+            raise ArgumentError(
+                "drives", "hold at most one InitialEquilibrium", self.drives, got=len(self._of_kind(InitialEquilibrium))
             )
 
     @property
@@ -125,41 +125,44 @@ class System:
         ):
             twice = next((name for name in names if list(names).count(name) > 1), None)
             if twice is not None:
-                raise ValueError(f"{words} must have different names, got {twice!r} twice")
+                raise ArgumentError(words, "have different names", twice, got=f"{twice!r} twice")
 
     def _check_body(self, name: str, drive: Drive) -> None:
         body = getattr(drive, "body", None) or getattr(getattr(drive, "point", None), "body", None)
         if body is not None and body not in self.bodies:
-            raise ValueError(f"{name} must act on a body of this system, got {brief(body)}")
+            raise ArgumentError(name, "act on a body of this system", body)
         if isinstance(drive, InitialVelocity) and self.is_held(body) and drive.x:
-            raise ValueError(
-                f"{name}.x must be 0 under an imposed velocity, which already moves the slider, got {drive.x!r}"
-            )
+            raise ArgumentError(f"{name}.x", "be 0 under an imposed velocity, which already moves the slider", drive.x)
         if isinstance(drive, Gravity):
             for other in self.bodies:
                 if isinstance(other, ReducedBody) and not other.has_translation:
-                    raise ValueError(
-                        f"{name} must act on bodies whose translation is known, got {self.body_name(other)!r} without"
+                    raise ArgumentError(
+                        name,
+                        "act on bodies whose translation is known",
+                        self.body_name(other),
+                        got=f"{self.body_name(other)!r} without",
                     )
 
     def _check_imposed(self) -> None:
         imposed = self._of_kind(ImposedVelocity)
         if len(imposed) > 1:
-            raise ValueError(f"drives must hold at most one ImposedVelocity, got {len(imposed)}")
+            raise ArgumentError("drives", "hold at most one ImposedVelocity", got=len(imposed))
         for drive in imposed:
             beam: Any = drive.point.body
             if beam.root_support not in ("guided", "free"):
-                raise ValueError(
-                    "root_support must be guided or free under an imposed velocity, so that the root can move, "
-                    f"got {beam.root_support!r}"
+                raise ArgumentError(
+                    "root_support",
+                    "be guided or free under an imposed velocity, so that the root can move",
+                    beam.root_support,
                 )
             if beam.tip_support != "free":
-                raise ValueError(f"tip_support must be free under an imposed velocity, got {beam.tip_support!r}")
+                raise ArgumentError("tip_support", "be free under an imposed velocity", beam.tip_support)
             for number, connection in enumerate(self.connections):
                 if connection.direction == "x" and any(point.body == beam for point in ends(connection)):
-                    raise ValueError(
-                        f"connections[{number}] must not act along x on a body under an imposed velocity, which "
-                        "prescribes its x; got direction 'x'"
+                    raise ArgumentError(
+                        f"connections[{number}]",
+                        "not act along x on a body under an imposed velocity, which prescribes its x; "
+                        "got direction 'x'",
                     )
 
     def __str__(self) -> str:
@@ -173,7 +176,7 @@ class System:
 def _listed(name: str, given: Any, kinds: tuple[type, ...]) -> tuple[Any, ...]:
     words = {"contact": "a PointContact or a list of them"}.get(name, f"a list of {name}")
     if isinstance(given, (str, bytes)) or not isinstance(given, Sequence):
-        raise ValueError(f"{name} must be {words}, got {brief(given)}")
+        raise ArgumentError(name, f"be {words}", given)
     for number, entry in enumerate(given):
         instance(f"{name}[{number}]", entry, kinds)
     return tuple(given)

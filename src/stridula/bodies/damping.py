@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
-from ..checks import brief, non_negative
+from ..checks import ArgumentError, non_negative
 from .modes import Array
 
 
@@ -117,12 +117,15 @@ class SampledDamping:
         frequencies = _each("frequency", self.frequency, non_negative)
         ratios = _each("ratio", self.ratio, ratio)
         if not frequencies or len(frequencies) != len(ratios):
-            raise ValueError(
-                f"ratio must have as many values as frequency, one or more, got {len(ratios)} and {len(frequencies)}"
+            raise ArgumentError(
+                "ratio",
+                "have as many values as frequency, one or more",
+                self.ratio,
+                got=f"{len(ratios)} and {len(frequencies)}",
             )
         for number, (before, after) in enumerate(pairwise(frequencies), start=1):
             if after <= before:
-                raise ValueError(f"frequency[{number}] must be above {before!r}, the one before it, got {after!r}")
+                raise ArgumentError(f"frequency[{number}]", f"be above {before!r}, the one before it", after)
         object.__setattr__(self, "frequency", frequencies)
         object.__setattr__(self, "ratio", ratios)
 
@@ -144,7 +147,7 @@ def ratio(name: str, value: Any) -> float:
         If it is not from 0 to 1, 1 excluded.
     """
     if non_negative(name, value) >= 1.0:
-        raise ValueError(f"{name} must be below 1 (critical), got {brief(value)}")
+        raise ArgumentError(name, "be below 1 (critical)", value)
     return float(value)
 
 
@@ -160,9 +163,7 @@ def checked_damping(given: Any) -> float | tuple[float, ...] | DampingLaw:
         return given
     if isinstance(given, (Sequence, np.ndarray)) and not isinstance(given, str):
         if np.ndim(given) != 1:
-            raise ValueError(
-                f"damping must be one ratio, a list of one for each mode or a law such as Rayleigh, got {brief(given)}"
-            )
+            raise ArgumentError("damping", "be one ratio, a list of one for each mode or a law such as Rayleigh", given)
         return _each("damping", given, ratio)
     return ratio("damping", given)
 
@@ -170,7 +171,7 @@ def checked_damping(given: Any) -> float | tuple[float, ...] | DampingLaw:
 def check_damping_count(damping: Any, modes: int) -> None:
     """Raise ValueError if damping is a list with not as many ratios as there are modes."""
     if isinstance(damping, (tuple, np.ndarray)) and len(damping) != modes:
-        raise ValueError(f"damping must have one ratio or {modes}, one for each mode kept, got {len(damping)}")
+        raise ArgumentError("damping", f"have one ratio or {modes}, one for each mode kept", damping, got=len(damping))
 
 
 def damping_rates(damping: Any, angular_frequency: Array) -> Array:
@@ -183,5 +184,5 @@ def damping_rates(damping: Any, angular_frequency: Array) -> Array:
 
 def _each(name: str, given: Any, check: Any) -> tuple[float, ...]:
     if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)):
-        raise ValueError(f"{name} must be a list of numbers, got {brief(given)}")
+        raise ArgumentError(name, "be a list of numbers", given)
     return tuple(float(check(f"{name}[{k}]", value)) for k, value in enumerate(np.asarray(given).tolist()))

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 import scipy.linalg
 
-from ..checks import choice, count, finite, instance, positive, within
+from ..checks import ArgumentError, choice, count, finite, instance, positive, within
 from .damping import DampingLaw, checked_damping, damping_rates
 from .finite_elements import (
     FIXED_BY_SUPPORT,
@@ -20,7 +20,7 @@ from .finite_elements import (
     element_stiffness,
 )
 from .modes import Array, BodyPoint, Modes
-from .ordinary import of_ordinary_size
+from .ordinary import check_overflow, of_ordinary_size
 from .sections import Circle, Material, Rectangle, Section
 
 LARGEST_ELEMENTS = 500
@@ -85,9 +85,9 @@ class FiniteElementBeam:
         instance("section", self.section, (Rectangle, Circle, Section))
         positive("length", self.length)
         if abs(finite("angle", self.angle)) >= np.pi / 2:
-            raise ValueError(f"angle must be strictly between -pi/2 and pi/2 rad (90 deg), got {self.angle!r}")
+            raise ArgumentError("angle", "be strictly between -pi/2 and pi/2 rad (90 deg)", self.angle)
         if count("elements", self.elements) > LARGEST_ELEMENTS:
-            raise ValueError(f"elements must be at most {LARGEST_ELEMENTS}, got {self.elements!r}")
+            raise ArgumentError("elements", f"be at most {LARGEST_ELEMENTS}", self.elements)
         object.__setattr__(self, "damping", checked_damping(self.damping))
         choice("root_support", self.root_support, tuple(FIXED_BY_SUPPORT))
         choice("tip_support", self.tip_support, tuple(FIXED_BY_SUPPORT))
@@ -206,6 +206,7 @@ def _reduce(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
         beam.elements,
     )
     mass = assemble(element_mass(material.density * section.area, le, beam.mass), beam.angle, beam.elements)
+    check_overflow(stiffness, mass)
     fixed = _fixed(beam, held_x)
     free = np.setdiff1d(np.arange(mass.shape[0]), fixed)
     rigid = _rigid_shapes(beam, mass, fixed)
@@ -224,7 +225,7 @@ def _reduce(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
         kept = angular <= 2.0 * np.pi * beam.cutoff
         angular, shapes = angular[kept], shapes[:, kept]
     if angular.size == 0:
-        raise ValueError(f"cutoff must leave at least one mode, got {beam.cutoff!r} Hz")
+        raise ArgumentError("cutoff", "leave at least one mode", beam.cutoff, got=f"{beam.cutoff!r} Hz")
     directions = np.zeros((2, mass.shape[0]))
     directions[0, 0::3] = directions[1, 1::3] = 1.0
     modes = Modes(angular, damping_rates(beam.damping, angular), directions @ mass @ shapes)

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..checks import at_least, count, instance, positive, within
+from ..checks import ArgumentError, at_least, count, instance, positive, within
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .modes import Array, BodyPoint, Modes
 from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
@@ -70,8 +70,11 @@ class ModalBeam:
             check_first_modes((self._bending(1), self._axial(1)), self.cutoff)
             if self.harmonics[0] < 1:
                 first = at_least(float(self._bending(1)) / (2 * np.pi))
-                raise ValueError(
-                    f"cutoff must leave at least one bending mode (first at {first} Hz), got {self.cutoff!r} Hz"
+                raise ArgumentError(
+                    "cutoff",
+                    f"leave at least one bending mode (first at {first} Hz)",
+                    self.cutoff,
+                    got=f"{self.cutoff!r} Hz",
                 )
         check_mode_count(sum(self.harmonics), self.cutoff)
         check_damping_count(self.damping, sum(self.harmonics))
@@ -120,7 +123,7 @@ class ModalBeam:
     def modes(self, held_x: bool = False) -> Modes:
         """Return the modes, bending ones first; `held_x` is for bodies whose root is driven and must be false."""
         if held_x:
-            raise ValueError("held_x must be False for a ModalBeam: its ends are fixed, got True")
+            raise ArgumentError("held_x", "be False for a ModalBeam: its ends are fixed", held_x)
         return _modes(self)
 
     def trace(self, position: float, held_x: bool = False) -> Array:

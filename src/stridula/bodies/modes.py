@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import brief
+from ..checks import ArgumentError
 
 Array = NDArray[Any]
 
@@ -103,7 +103,7 @@ class BodyPoint:
     def __post_init__(self) -> None:
         check = getattr(self.body, "check_position", None)
         if check is None or isinstance(self.body, type):
-            raise ValueError(f"body must be a body of stridula, got {brief(self.body)}")
+            raise ArgumentError("body", "be a body of stridula", self.body)
         if isinstance(self.position, np.generic):
             # Numbers of NumPy are not equal or unequal to a pair, but an array of both.
             object.__setattr__(self, "position", self.position.item())

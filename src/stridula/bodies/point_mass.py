@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import brief, choice, instance, positive
+from ..checks import ArgumentError, choice, instance, positive
 from .modes import Array, BodyPoint, Modes
 
 POINTS = ("centre",)
@@ -37,7 +37,7 @@ class PointMass:
 
     def __post_init__(self) -> None:
         if positive("mass", self.mass) < SMALLEST_MASS:
-            raise ValueError(f"mass must be at least {SMALLEST_MASS:g}, got {brief(self.mass)}")
+            raise ArgumentError("mass", f"be at least {SMALLEST_MASS:g}", self.mass)
         instance("name", self.name, str)
 
     @property
@@ -66,7 +66,7 @@ class PointMass:
     def modes(self, held_x: bool = False) -> Modes:
         """Return the two rigid modes, along x and along y; `held_x` is for bodies with a driven end, must be false."""
         if held_x:
-            raise ValueError("held_x must be False for a PointMass: it has no driven end, got True")
+            raise ArgumentError("held_x", "be False for a PointMass: it has no driven end", held_x)
         return Modes(np.zeros(2), np.zeros(2), np.eye(2) * np.sqrt(self.mass))
 
     def trace(self, position: str, held_x: bool = False) -> Array:
@@ -79,5 +79,5 @@ class PointMass:
         """Return the modal coordinates of a displacement [m] or a velocity [m/s] along (x, y), shape (2,)."""
         values = np.asarray(vector)
         if values.dtype.kind not in "iuf" or values.shape != (2,) or not np.isfinite(values).all():
-            raise ValueError(f"vector must be two finite numbers, along x and y, got {brief(vector)}")
+            raise ArgumentError("vector", "be two finite numbers, along x and y", vector)
         return np.sqrt(self.mass) * values

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..checks import positive, within
+from ..checks import ArgumentError, positive, within
 
 
 @dataclass(frozen=True)
@@ -117,4 +117,4 @@ def _check_ordinary(sides: str, section: Rectangle | Circle) -> None:
     except OverflowError:
         is_ordinary = False
     if not is_ordinary:
-        raise ValueError(f"{sides} must be of ordinary size, got {section}")
+        raise ArgumentError(sides, "be of ordinary size", got=section)

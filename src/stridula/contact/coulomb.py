@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..bodies.modes import Array
-from ..checks import non_negative
+from ..checks import ArgumentError, non_negative
 from .linearised import Linearised
 
 
@@ -82,4 +82,4 @@ def check_static(static: float, kinetic: float) -> None:
     """Raise unless both coefficients are not negative and the static one is not the smaller."""
     non_negative("kinetic", kinetic)
     if non_negative("static", static) < kinetic:
-        raise ValueError(f"static must be at least kinetic ({kinetic!r}), got {static!r}")
+        raise ArgumentError("static", f"be at least kinetic ({kinetic!r})", static)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..bodies import BodyPoint, Track
 from ..bodies.modes import Array
-from ..checks import brief, finite, instance, non_negative, within
+from ..checks import ArgumentError, brief, finite, instance, non_negative, within
 from .coulomb import Coulomb, StaticKinetic
 from .lugre import LuGre
 from .rate_and_state import RateAndState
@@ -63,15 +63,17 @@ class PointContact:
         if isinstance(self.track, Track):
             within("at", self.at, *self.track.ends, ends=False)
             if self.inclination != 0.0:
-                raise ValueError(f"inclination must be 0 on a {type(self.track).__name__}, got {self.inclination!r}")
+                raise ArgumentError("inclination", f"be 0 on a {type(self.track).__name__}", self.inclination)
         finite("at", self.at)
         if self.track_body == self.tip.body:
             body = brief(self.tip.body)
-            raise ValueError(f"track must be another body than the tip's (equal ones need names), got {body} for both")
+            raise ArgumentError(
+                "track", "be another body than the tip's (equal ones need names)", self.track, got=f"{body} for both"
+            )
         instance("friction", self.friction, LAWS)
         non_negative("gap", self.gap)
         if abs(finite("inclination", self.inclination)) > 2.0 * math.pi:
-            raise ValueError(f"inclination must be from -2 pi to 2 pi rad, got {self.inclination!r}")
+            raise ArgumentError("inclination", "be from -2 pi to 2 pi rad", self.inclination)
         instance("name", self.name, str)
 
     @property

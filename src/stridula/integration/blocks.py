@@ -11,6 +11,7 @@ from .._kernels import layout as at
 from ..assembly import Assembly
 from ..bodies import ModalPlate, Track
 from ..bodies.modes import Array
+from ..checks import ArgumentError
 from ..contact import (
     Coulomb,
     ExponentialWeakening,
@@ -85,7 +86,7 @@ def recurrence(arrays: Assembly, scheme: Scheme, step: float) -> Recurrence:
         kept = inverse @ c.b
         kinetic, lost, turned = _symmetric(inverse + kept), _symmetric(inverse - kept), inverse + kept
         if min(np.linalg.eigvalsh(form)[0] for form in (_symmetric(c.load), kinetic - 0.5 * arrays.stiffness)) <= 0.0:
-            raise ValueError(f"step must be shorter for the coupled modes of this system, got {step!r} s")
+            raise ArgumentError("step", "be shorter for the coupled modes of this system", step, got=f"{step!r} s")
         block[:, :size] = 0.0
         matrices[at.KEPT], matrices[at.STIFFNESS], matrices[at.MOBILITY] = c.b, c.r, c.load
         matrices[at.IMPULSE], matrices[at.ELASTIC] = inverse / 2.0, arrays.stiffness / 2.0
@@ -154,9 +155,10 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
         constants[i, at.LAW], parameters = _law(one.contact.friction)
         laws[i, : len(parameters)] = parameters
         if not one.fixed[0].any() and one.bending[0] == one.bending[1]:
-            raise ValueError(
-                f"contact {one.contact.name or i + 1} must be between bodies of which one moves along its normal, "
-                "got a tip that does not"
+            raise ArgumentError(
+                f"contact {one.contact.name or i + 1}",
+                "be between bodies of which one moves along its normal",
+                got="a tip that does not",
             )
     flat = rows.reshape(2 * count, -1)
     compliance = np.ascontiguousarray(flat @ modes.mobility(flat).T)

@@ -15,7 +15,7 @@ from .._kernels.march import stored_energy
 from ..assembly import Assembly, Signal, assemble, with_travel
 from ..bodies import Track
 from ..bodies.modes import Array
-from ..checks import instance, positive
+from ..checks import ArgumentError, instance, positive
 from ..records import Probe
 from ..records.state import State
 from ..system import System
@@ -338,8 +338,8 @@ def assembled(system: System, probes: Sequence[Probe]) -> Assembly:
     """
     instance("system", system, System)
     if len(system.contacts) != 1:
-        raise ValueError(f"system must have one contact to march without end, got {len(system.contacts)}")
+        raise ArgumentError("system", "have one contact to march without end", system, got=len(system.contacts))
     if not isinstance(system.contacts[0].track, Track):
         kind = type(system.contacts[0].track).__name__
-        raise ValueError(f"track must be a ModalBeam or a ModalPlate to march without end, got a {kind}")
+        raise ArgumentError("track", "be a ModalBeam or a ModalPlate to march without end", got=f"a {kind}")
     return assemble(system, probes)

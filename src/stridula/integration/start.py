@@ -14,6 +14,7 @@ from .._kernels.march import stored_energy
 from ..assembly import Assembly, ContactRows
 from ..bodies import Track
 from ..bodies.modes import Array
+from ..checks import ArgumentError
 from ..contact import FrictionLaw, RateAndState
 from ..records.state import State
 from .blocks import Blocks
@@ -219,5 +220,5 @@ def _gap(one: ContactRows, rows: Array, arrays: Assembly, terms: Array) -> float
     felt = sum(float(np.linalg.norm(rows[0, span]) * np.linalg.norm(terms[span])) for span in spans)
     scale = one.contact.gap + felt
     if gap < -ROUND_OFF * scale:
-        raise ValueError(f"gap must leave the bodies apart at the start, got an overlap of {-gap:.3g} m")
+        raise ArgumentError("gap", "leave the bodies apart at the start", got=f"an overlap of {-gap:.3g} m")
     return gap if gap > ROUND_OFF * scale else 0.0

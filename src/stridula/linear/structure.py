@@ -13,7 +13,7 @@ import scipy.linalg
 from ..assembly import ContactRows, assemble
 from ..bodies import BodyPoint, Track
 from ..bodies.modes import Array
-from ..checks import STATUS_WORDS, brief
+from ..checks import STATUS_WORDS, ArgumentError
 from ..contact import PointContact, RigidTrack
 from ..histories import History
 from ..system import System
@@ -150,12 +150,17 @@ class Structure:
             contact = int(np.flatnonzero(closed)[int(missed.argmax()) % int(closed.sum())])
             name = self.system.contact_names[contact]
             if int(missed.argmax()) < int(closed.sum()):
-                raise ValueError(f"drives must let bodies follow what is moved along the normal of {name}")
+                raise ArgumentError("drives", f"let bodies follow what is moved along the normal of {name}")
             if status[contact] == STICKING:
-                raise ValueError(f"status must let {name} slide, whose track nothing can follow, got {STICKING!r}")
-            raise ValueError(
-                f"velocity must be one at which bodies move as a whole, got {float(slip_velocity[contact])!r} m/s for "
-                f"{name}, which nothing lets slide on: move its track or its root"
+                raise ArgumentError("status", f"let {name} slide, whose track nothing can follow", STICKING)
+            raise ArgumentError(
+                "velocity",
+                "be one at which bodies move as a whole",
+                float(slip_velocity[contact]),
+                got=(
+                    f"{float(slip_velocity[contact])!r} m/s for {name}, which nothing lets slide on: move its "
+                    "track or its root"
+                ),
             )
         return np.asarray(self.rigid @ found)
 
@@ -184,7 +189,7 @@ class Structure:
         left = np.abs(openings - normals @ (np.linalg.pinv(normals, rcond=UNMOVED) @ openings))
         if left.max() > UNMOVED * np.abs(openings).max():
             name = self.system.contact_names[int(left.argmax())]
-            raise ValueError(f"time must be given: nothing follows what is moved along the normal of {name}, got None")
+            raise ArgumentError("time", f"be given: nothing follows what is moved along the normal of {name}", None)
 
     def free_motions(self, rows: Array) -> Array:
         """Return the rigid motions that some rows do not feel, orthonormal, shape (modes, motions)."""
@@ -212,7 +217,7 @@ def settled_time(system: System) -> float:
             histories += [(f"the track of {name}", history) for history in _varying(contact.track, name)]
     for name, history in histories:
         if history.settled is None:
-            raise ValueError(f"time must be given for {name}, which never stops varying, got {brief(history)}")
+            raise ArgumentError("time", f"be given for {name}, which never stops varying", history)
     return max((history.settled or 0.0 for _, history in histories), default=0.0)
 
 
@@ -224,7 +229,7 @@ def _varying(track: RigidTrack, name: str) -> list[History]:
     )
     for _, acceleration, history in moved:
         if acceleration and history.settled is not None and history.factor(np.array([history.settled + 1.0]))[0]:
-            raise ValueError(f"time must be given for the track of {name}, which goes on gathering speed")
+            raise ArgumentError("time", f"be given for the track of {name}, which goes on gathering speed")
     return [history for velocity, acceleration, history in moved if velocity or acceleration]
 
 

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..bodies.modes import Array
-from ..checks import brief, instance
+from ..checks import ArgumentError, instance
 from ..contact import LAWS, ExponentialWeakening, FrictionLaw, LinearWeakening, LuGre, RateAndState, Stribeck
 from .colours import LINE, LINES
 
@@ -44,7 +44,7 @@ def friction(law: FrictionLaw, velocities: Array | Sequence[float] | None = None
     if over_decades:
         chosen = chosen[chosen > 0.0]
         if chosen.size < 2:
-            raise ValueError(f"velocities must be at least 2 above 0 for rate and state, got {brief(velocities)}")
+            raise ArgumentError("velocities", "be at least 2 above 0 for rate and state", velocities)
     figure = Figure(figsize=(6.4, 4.2), layout="constrained", dpi=120)
     axes = figure.subplots()
     for side in (chosen[chosen < 0.0], chosen[chosen > 0.0]):
@@ -68,7 +68,7 @@ def _velocities(given: Array | Sequence[float]) -> Array:
     except (TypeError, ValueError):
         values = np.empty(0)
     if values.ndim != 1 or values.size < 2 or not np.isfinite(values).all():
-        raise ValueError(f"velocities must be a list of at least 2 finite numbers, got {brief(given)}")
+        raise ArgumentError("velocities", "be a list of at least 2 finite numbers", given)
     return values
 
 

@@ -12,7 +12,7 @@ import xarray as xr
 from ..assembly import assemble
 from ..bodies import FiniteElementBeam, ModalBeam, ModalPlate
 from ..bodies.modes import Array, BodyPoint
-from ..checks import at_most, instance, non_negative, positive
+from ..checks import ArgumentError, at_most, instance, non_negative, positive
 from ..contact import RigidTrack
 from ..integration import simulate
 from ..integration.schemes import ExactModal, Scheme
@@ -117,9 +117,11 @@ def motion_of(
     positive("duration", duration)
     frames = duration / frame
     if not FEWEST_FRAMES <= round(frames) <= MOST_FRAMES:
-        raise ValueError(
-            f"duration must give from {FEWEST_FRAMES} to {MOST_FRAMES} frames of {frame:.3g} s, got {duration!r} s "
-            f"({frames:.0f} frames): change the slowdown"
+        raise ArgumentError(
+            "duration",
+            f"give from {FEWEST_FRAMES} to {MOST_FRAMES} frames of {frame:.3g} s",
+            duration,
+            got=f"{duration!r} s ({frames:.0f} frames): change the slowdown",
         )
     end = non_negative("start", start) + duration
     chosen: Scheme = ExactModal() if scheme is None else scheme
@@ -131,7 +133,7 @@ def motion_of(
     window = run.isel(time=run["time"].values > start + 0.5 * float(run.attrs["sample_interval"]))
     if window.sizes["time"] < FEWEST_FRAMES:
         ended = f"{run.attrs['ended']} at {at_most(float(run['time'][-1]))} s"
-        raise ValueError(f"start must be before the run ends ({ended}), got {start!r}")
+        raise ArgumentError("start", f"be before the run ends ({ended})", start)
     return _motion(system, window, list(places.values()))
 
 
@@ -143,9 +145,8 @@ def _pair(system: System) -> tuple[FiniteElementBeam, ModalBeam | ModalPlate | R
     if several or not isinstance(slider, FiniteElementBeam) or not isinstance(track, kinds):
         under = f"a point of a {type(track.body).__name__}" if isinstance(track, BodyPoint) else _a(track)
         got = f"{len(system.contacts)} contacts" if several else f"{_a(slider)} on {under}"
-        raise ValueError(
-            "system must be a FiniteElementBeam on one ModalBeam, ModalPlate or RigidTrack to be filmed, got " + got
-        )
+        words = "be a FiniteElementBeam on one ModalBeam, ModalPlate or RigidTrack to be filmed"
+        raise ArgumentError("system", words, system, got=got)
     return slider, track
 
 

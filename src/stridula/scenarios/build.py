@@ -26,8 +26,8 @@ from ..bodies import (
     SampledDamping,
     Section,
 )
-from ..bodies.ordinary import ORDINARY
-from ..checks import brief, listed, suggestion
+from ..bodies.ordinary import NotOrdinary
+from ..checks import ArgumentError, brief, listed, suggestion
 from ..connections import Dashpot, Spring
 from ..contact import LAWS, PointContact, RigidTrack
 from ..disk import is_there
@@ -54,9 +54,10 @@ TRACKS = {"beam": ModalBeam, "plate": ModalPlate}
 OF_ALL_BODIES = ("gravity", "initial equilibrium")
 Tables = dict[str, Any]
 Place = tuple[str | int, ...]
-# What SciPy says of matrices that have overflowed.
-NOT_FINITE = "must not contain infs or NaNs"
-_ARGUMENT = re.compile(r"([a-z_]\w*(?:[.\[]\w+\]?)*) (must|and) ")
+# How a value that another problem left out looks.
+NOTHING = repr(None)
+# Arguments that are keys of a table, or two of them.
+_KEY = re.compile(r"[a-z_]\w*(?:[.\[]\w+\]?)*(?: and \w+)?")
 
 
 class Builder:
@@ -203,7 +204,7 @@ class Builder:
                 return ReducedBody.read(container, **table)
             for key, words in (("mass", "mass matrix"), ("stiffness", "stiffness matrix"), ("points", "its points")):
                 if table.get(key) is None:
-                    raise ValueError(f"{key} must be given: {words}, unless a file has it")
+                    raise ArgumentError(key, f"be given: {words}, unless a file has it")
             return ReducedBody(**table)
 
     def _beam(self, path: Place, kind: Callable[..., Any], given: Tables) -> Any:
@@ -348,12 +349,14 @@ class Builder:
         if place in names:
             point: BodyPoint = getattr(body, str(place))
             return point
+        key = self.words(path)
         try:
             return body.at(place if isinstance(place, tuple) else quantity(place, "m"))
-        except ValueError as error:
-            key, words = self.words(path), str(error)
-            problem = words.replace("position", key, 1) if words.startswith("position") else ""
-            self.problems.append(problem or f"{key} must be {' or '.join(names)} or a position, got {brief(place)}")
+        except ArgumentError as error:
+            if error.argument == "position":
+                self.problems.append(str(error.renamed(key)))
+            else:
+                self.problems.append(f"{key} must be {' or '.join(names)} or a position, got {brief(place)}")
         return None
 
     @contextmanager
@@ -362,33 +365,25 @@ class Builder:
         known = len(self.problems)
         try:
             yield
-        except (OverflowError, ZeroDivisionError):
+        except (OverflowError, ZeroDivisionError, NotOrdinary):
             self.problems.append(out_of_range(self.words(path)))
         except (ValueError, OSError) as error:
-            if overflows(error):
-                self.problems.append(out_of_range(self.words(path)))
-                return
-            if len(self.problems) == known and "got None" not in str(error):
-                self.problems.append(self._named(path, str(error)))
+            follows = isinstance(error, ArgumentError) and error.got == NOTHING
+            if len(self.problems) == known and not follows:
+                self.problems.append(self._named(path, error))
 
-    def _named(self, path: Place, message: str) -> str:
-        match = _ARGUMENT.match(message)
-        if match is None:
-            return f"{self.words(path)}: {message}" if path else message
-        argument = match[1].replace("[", ".").replace("]", "").replace("path", "file")
+    def _named(self, path: Place, error: ValueError | OSError) -> str:
+        if not isinstance(error, ArgumentError) or error.where or not _KEY.fullmatch(error.argument):
+            return f"{self.words(path)}: {error}" if path else str(error)
+        argument = "file" if error.argument == "path" else error.argument.replace("[", ".").replace("]", "")
         if argument in ("root_support", "tip_support") and not path:
             driven: Tables = next((drive for drive in self.tables["drives"] if drive["kind"] == "imposed velocity"), {})
             path = self.places.get(driven.get("body", "slider"), ("slider",))
-        return self.words((*path, *argument.split("."))) + message[len(match[1]) :]
+        return str(error.renamed(self.words((*path, *argument.split(".")))))
 
     def _stop_at_problems(self) -> None:
         if self.problems:
             raise ScenarioError(self.problems)
-
-
-def overflows(error: Exception) -> bool:
-    """Return whether an error says that numbers are too large or too small to go on with."""
-    return NOT_FINITE in str(error) or ORDINARY in str(error)
 
 
 def out_of_range(key: str) -> str:

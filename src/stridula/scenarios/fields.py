@@ -19,7 +19,7 @@ from pydantic_core.core_schema import no_info_plain_validator_function
 
 from ..bodies import Rayleigh, RisingDamping, SampledDamping
 from ..bodies.modes import Array
-from ..checks import STATUS_WORDS, at_least, at_most
+from ..checks import STATUS_WORDS, ArgumentError, at_least, at_most
 from ..drives import MOST_UNSTABLE
 from ..records.packed import is_packed, unpacked
 from .quantities import UNITS, is_quantity, quantity
@@ -65,7 +65,7 @@ def _texts_in(table: ast.ClassDef) -> dict[str, str]:
 
 
 class _Kind:
-    """A value read by `read`, which raises ValueError with the words that follow the key."""
+    """A value read by `read`, which raises ArgumentError: the key and the value are told by who asks."""
 
     def read(self, value: Any) -> Any:
         raise NotImplementedError
@@ -84,9 +84,9 @@ def _in_words(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
     def validate(value: Any) -> Any:
         try:
             return read(value)
-        except ValueError as error:
+        except ArgumentError as error:
             # The words go in as a value: braces in them are no placeholders.
-            raise PydanticCustomError("words", "{words}", {"words": str(error)}) from None
+            raise PydanticCustomError("words", "{words}", {"words": f"must {error.allowed}"}) from None
 
     return validate
 
@@ -111,11 +111,11 @@ class Quantity(_Kind):
     def read(self, value: Any) -> float:
         number = quantity(value, self.unit)
         if self.above is not None and number <= self.above:
-            raise ValueError(f"must be above {at_least(self.above)}")
+            raise _refused(f"be above {at_least(self.above)}")
         if self.least is not None and number < self.least:
-            raise ValueError(f"must be {at_least(self.least)} or above")
+            raise _refused(f"be {at_least(self.least)} or above")
         if self.below is not None and number >= self.below:
-            raise ValueError(f"must be below {at_most(self.below)}")
+            raise _refused(f"be below {at_most(self.below)}")
         return number
 
     def json_schema(self) -> dict[str, Any]:
@@ -176,20 +176,20 @@ class DampingTable(_Kind):
     def read(self, value: Any) -> Any:
         form = value.get("form", Rayleigh.form)
         if form not in self.forms:
-            raise ValueError(f"must be of a form that is one of {', '.join(self.forms)}")
+            raise _refused(f"be of a form that is one of {', '.join(self.forms)}")
         build, parameters = self.forms[form]
         if value.keys() - {"form"} != parameters.keys():
-            raise ValueError(f"must have, in the form {form}, {' and '.join(parameters)}")
+            raise _refused(f"have, in the form {form}, {' and '.join(parameters)}")
         given = {}
         for key, (kind, _) in parameters.items():
             try:
                 given[key] = kind.read(value[key])
-            except ValueError as error:
-                raise ValueError(f"must have a {key} that {error}") from None
+            except ArgumentError as error:
+                raise _refused(f"have a {key} that must {error.allowed}") from None
         try:
             build(**given)
-        except ValueError as error:
-            raise ValueError(f"must be in order: {error}") from None
+        except ArgumentError as error:
+            raise _refused(f"be in order: {error}") from None
         return {"form": form, **given}
 
     def json_schema(self) -> dict[str, Any]:
@@ -246,7 +246,7 @@ class Words(_Kind):
     def read(self, value: Any) -> Any:
         words = value if self.each and isinstance(value, list) else [value]
         if any(word not in self.allowed for word in words):
-            raise ValueError(f"must be one of {', '.join(self.allowed)}{' or a list of them' if self.each else ''}")
+            raise _refused(f"be one of {', '.join(self.allowed)}{' or a list of them' if self.each else ''}")
         return value
 
     def json_schema(self) -> dict[str, Any]:
@@ -268,9 +268,9 @@ class Whole(_Kind):
 
     def read(self, value: Any) -> int:
         if isinstance(value, bool) or not isinstance(value, Integral):
-            raise ValueError("must be a whole number")
+            raise _refused("be a whole number")
         if value < self.least:
-            raise ValueError(f"must be at least {self.least}")
+            raise _refused(f"be at least {self.least}")
         return int(value)
 
     def json_schema(self) -> dict[str, Any]:
@@ -292,8 +292,8 @@ class NumberOrWord(_Kind):
     def read(self, value: Any) -> int | str:
         try:
             return self.words.read(value) if isinstance(value, str) else Whole(0).read(value)
-        except ValueError:
-            raise ValueError(f"must be a whole number from 0 on or {' or '.join(self.words.allowed)}") from None
+        except ArgumentError:
+            raise _refused(f"be a whole number from 0 on or {' or '.join(self.words.allowed)}") from None
 
     def json_schema(self) -> dict[str, Any]:
         return {"anyOf": [Whole(0).json_schema(), self.words.json_schema()]}
@@ -316,11 +316,12 @@ class Pair(_Kind):
 
     def read(self, value: Any) -> tuple[Any, Any]:
         if not isinstance(value, (list, tuple)) or len(value) != 2:
-            raise ValueError(f"must be two {self.words}, along length and width")
+            raise _refused(f"be two {self.words}, along length and width")
         try:
             first, second = (self.each.read(one) for one in value)
-        except ValueError as error:
-            raise ValueError(f"must be two {self.words}, along length and width, each of which {error}") from None
+        except ArgumentError as error:
+            words = f"be two {self.words}, along length and width, each of which must {error.allowed}"
+            raise _refused(words) from None
         return first, second
 
     def json_schema(self) -> dict[str, Any]:
@@ -343,8 +344,8 @@ class Place(_Kind):
             return DISTANCES.read(value)
         try:
             return quantity(value, "m")
-        except ValueError as error:
-            raise ValueError(f"must be the name of a point or a position, which {error}") from None
+        except ArgumentError as error:
+            raise _refused(f"be the name of a point or a position, which must {error.allowed}") from None
 
     def json_schema(self) -> dict[str, Any]:
         return {"anyOf": [{"enum": list(self.names)}, {"type": "string"}, {"type": "number"}, DISTANCES.json_schema()]}
@@ -381,9 +382,9 @@ class Numbers(_Kind):
         else:
             array = _array(value)
         if array is None or array.ndim not in self.dimensions:
-            raise ValueError(self._words())
+            raise _refused(self._words())
         if not np.isfinite(array).all():
-            raise ValueError("must hold finite numbers only")
+            raise _refused("hold finite numbers only")
         return array
 
     def json_schema(self) -> dict[str, Any]:
@@ -397,7 +398,7 @@ class Numbers(_Kind):
         words = [kinds[dimension] for dimension in self.dimensions]
         words += ["a law of damping"] if self.damping else []
         words += ["a file"] if self.file else []
-        return f"must be {' or '.join(words)}"
+        return f"be {' or '.join(words)}"
 
 
 @dataclass(frozen=True)
@@ -406,7 +407,7 @@ class Points(_Kind):
 
     def read(self, value: Any) -> dict[str, Any]:
         if not isinstance(value, dict):
-            raise ValueError("must be a table of points by name")
+            raise _refused("be a table of points by name")
         return {name: self._point(name, point) for name, point in value.items()}
 
     def json_schema(self) -> dict[str, Any]:
@@ -423,9 +424,9 @@ class Points(_Kind):
             return tuple(tuple(label) if isinstance(label, list) else label for label in point)
         try:
             return Numbers((2,)).read(point)
-        except ValueError:
-            raise ValueError(
-                f"must give the point {name} as rows on the degrees of freedom, shape (2, n), or by the degrees of "
+        except ArgumentError:
+            raise _refused(
+                f"give the point {name} as rows on the degrees of freedom, shape (2, n), or by the degrees of "
                 "freedom that it moves with: {x = 0, y = 1}"
             ) from None
 
@@ -441,6 +442,10 @@ class Motion(_Kind):
 
     def json_schema(self) -> dict[str, Any]:
         return {"anyOf": [{"type": "array", "items": {"type": "integer"}}, *Numbers((2,)).json_schema()["anyOf"]]}
+
+
+def _refused(allowed: str) -> ArgumentError:
+    return ArgumentError("value", allowed)
 
 
 def _array(value: Any) -> Array | None:

@@ -15,7 +15,7 @@ import xarray as xr
 from ..analysis import status_share
 from ..bodies import ReducedBody
 from ..bodies.modes import Array
-from ..checks import brief, count, instance, positive, within
+from ..checks import ArgumentError, brief, count, instance, positive, within
 from ..contact import RigidTrack
 from ..drives import Drive, ImposedVelocity, InitialEquilibrium, InitialVelocity
 from ..drives import InitialState as State
@@ -91,7 +91,7 @@ def ensemble(
         count("workers", workers)
     for word in ("start", "watchers", "reduce"):
         if word in options:
-            raise ValueError(f"{word} must be left out of an ensemble, which sets its own, got {brief(options[word])}")
+            raise ArgumentError(word, "be left out of an ensemble, which sets its own", options[word])
     shares = _shares(runs, perturbation, seed)
     systems = [_perturbed(system, float(share)) for share in shares]
     results = _run_all(systems, duration, named, options, workers or os.cpu_count() or 1)
@@ -165,14 +165,16 @@ def median_and_interval(values: Sequence[float] | Array, confidence: float = 0.9
 def _checked(measures: Any) -> dict[str, Measure]:
     instance("measures", measures, Mapping)
     if not measures:
-        raise ValueError("measures must hold at least one function of a record, got none")
+        raise ArgumentError("measures", "hold at least one function of a record", measures, got="none")
     for name, measure in measures.items():
         if not isinstance(name, str) or not name or not callable(measure):
-            raise ValueError(f"measures must be functions of a record by name, got {brief(name)}: {brief(measure)}")
+            raise ArgumentError(
+                "measures", "be functions of a record by name", name, got=f"{brief(name)}: {brief(measure)}"
+            )
     taken = {*OWN, *(f"{name}{end}" for name in measures for end in ("_mean", "_interval"))}
     clash = next((name for name in measures if name in taken), None)
     if clash is not None:
-        raise ValueError(f"measures must have names other than {', '.join(OWN)} and results of others, got {clash!r}")
+        raise ArgumentError("measures", f"have names other than {', '.join(OWN)} and results of others", clash)
     return dict(measures)
 
 
@@ -241,7 +243,7 @@ def _run_all(
 def _number(name: str, value: Any) -> float:
     plain = value.item() if getattr(value, "size", 0) == 1 and hasattr(value, "item") else value
     if isinstance(plain, bool) or not isinstance(plain, Real):
-        raise ValueError(f"measures[{name!r}] must return a number, got a {type(value).__name__}")
+        raise ArgumentError(f"measures[{name!r}]", "return a number", got=f"a {type(value).__name__}")
     return float(plain)
 
 
