@@ -11,7 +11,8 @@ import scipy.linalg
 import scipy.sparse
 
 from ..checks import ArgumentError, instance
-from .damping import DampingLaw, checked_damping, ratio
+from ..declared import DAMPING_RATIO
+from .damping import DampingLaw, checked_damping
 from .matrix_files import check_size
 from .modes import Array
 
@@ -161,10 +162,10 @@ def damping_of(value: Any, size: int) -> float | Array | DampingLaw:
     if isinstance(value, DampingLaw):
         return value
     if isinstance(value, (Real, str)) or value is None:
-        return ratio("damping", value)
+        return DAMPING_RATIO.check("damping", value)
     damping = value if hasattr(value, "shape") else numbers("damping", value)
     if len(damping.shape) == 0:
-        return ratio("damping", damping.item())
+        return DAMPING_RATIO.check("damping", damping.item())
     if len(damping.shape) == 1:
         return np.array(checked_damping(numbers("damping", damping)))
     matrix = symmetric("damping", square("damping", damping, size))

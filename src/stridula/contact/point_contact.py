@@ -10,16 +10,13 @@ import numpy as np
 from ..bodies import BodyPoint, Track
 from ..bodies.modes import Array
 from ..checks import ArgumentError, brief, finite, instance, non_negative, within
-from .coulomb import Coulomb, StaticKinetic
-from .lugre import LuGre
-from .rate_and_state import RateAndState
+from .coulomb import Coulomb
+from .friction_law import FrictionLaw
+from .laws import LAWS
 from .rigid_track import RigidTrack
-from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
 
-FrictionLaw = Coulomb | StaticKinetic | Stribeck | ExponentialWeakening | LinearWeakening | LuGre | RateAndState
 # Sine or cosine that rounding leaves of a right angle.
 ALONG_AN_AXIS = 1e-15
-LAWS = (Coulomb, StaticKinetic, Stribeck, ExponentialWeakening, LinearWeakening, LuGre, RateAndState)
 
 
 @dataclass(frozen=True)

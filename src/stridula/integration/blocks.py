@@ -12,15 +12,7 @@ from ..assembly import Assembly
 from ..bodies import ModalPlate, Track
 from ..bodies.modes import Array
 from ..checks import ArgumentError
-from ..contact import (
-    Coulomb,
-    ExponentialWeakening,
-    FrictionLaw,
-    LinearWeakening,
-    LuGre,
-    StaticKinetic,
-    Stribeck,
-)
+from ..contact import FrictionLaw
 from .schemes import Scheme
 
 
@@ -152,8 +144,7 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
             numbers = plate.in_plane_numbers.T
             half_waves[:, in_plane] = np.where(numbers == 0, 2 * arrays.mode_count, numbers - 1)
             shares[:, in_plane] = plate.in_plane_shares
-        constants[i, at.LAW], parameters = _law(one.contact.friction)
-        laws[i, : len(parameters)] = parameters
+        constants[i, at.LAW], laws[i] = _law(one.contact.friction)
         if not one.fixed[0].any() and one.bending[0] == one.bending[1]:
             raise ArgumentError(
                 f"contact {one.contact.name or i + 1}",
@@ -175,23 +166,11 @@ def _waves(track: Track) -> tuple[tuple[float, ...], tuple[int, int]]:
     return (*track.ends, along * x, along * cosine, across * y, across * sine, track.amplitude), (most[0], most[1])
 
 
-def _law(law: FrictionLaw) -> tuple[int, tuple[float, ...]]:
+def _law(law: FrictionLaw) -> tuple[int, Array]:
     """Return the code of a law of friction and its parameters, the state of a new contact last."""
-    if isinstance(law, Coulomb):
-        return at.COULOMB, (law.coefficient,)
-    if isinstance(law, StaticKinetic):
-        return at.STATIC_KINETIC, (law.static, law.kinetic)
-    if isinstance(law, Stribeck):
-        return at.STRIBECK, (law.static, law.kinetic, law.velocity, law.exponent, law.viscous)
-    if isinstance(law, ExponentialWeakening):
-        return at.STRIBECK, (law.static, law.kinetic, law.velocity, 1.0, 0.0)
-    if isinstance(law, LinearWeakening):
-        ends = (law.static - law.kinetic) / law.slope if law.slope else 0.0
-        return at.LINEAR_WEAKENING, (law.static, law.slope, law.kinetic, ends or 1.0)
-    if isinstance(law, LuGre):
-        return at.LUGRE, (law.static, law.kinetic, law.velocity, law.stiffness, law.damping, law.viscous)
-    code = at.AGING if law.evolution == "aging" else at.SLIP
-    return code, (law.reference, law.a, law.b, law.slip_distance, law.velocity, 0.0, 0.0, law.state_at_start)
+    found, own = np.zeros(at.LAW_PARAMETERS), list(law.parameters().values())
+    found[: len(own)], found[-1] = own, law.state_at_landing
+    return getattr(at, law.kernel_code), found
 
 
 @dataclass(frozen=True)

@@ -288,7 +288,7 @@ class LiveMarch:
         state.modal[at.D] = velocity * self.step
         law = self.system.contacts[0].friction
         if type(law) is not type(before.contacts[0].friction):
-            state.carried[0, at.FRICTION_STATE] = law.state_at_start if law.state_units else 0.0
+            state.carried[0, at.FRICTION_STATE] = law.state_at_start
         self._put(state, place)
 
     def _start_from(self, position: Array, velocity: Array, place: float, gap: float) -> None:

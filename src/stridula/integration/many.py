@@ -191,7 +191,7 @@ def _kind(arrays: Arrays, most_modes: int | None) -> Hashable | None:
     (one,) = flat.contacts
     if isinstance(one.contact.track, ModalPlate):
         return None
-    law = type(one.contact.friction), getattr(one.contact.friction, "evolution", None)
+    law = one.contact.friction.law, one.contact.friction.kernel_code
     probes = tuple(type(probe) for probe in arrays.probes)
     return flat.mode_count, one.bending, one.axial, law, len(flat.loads), probes
 

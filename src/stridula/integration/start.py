@@ -15,7 +15,7 @@ from ..assembly import Assembly, ContactRows
 from ..bodies import Track
 from ..bodies.modes import Array
 from ..checks import ArgumentError
-from ..contact import FrictionLaw, RateAndState
+from ..contact import FrictionLaw
 from ..records.state import State
 from .blocks import Blocks
 from .contact_solve import GaussSeidel
@@ -126,14 +126,13 @@ class _Start:
 
     def _state_before(self, i: int, law: FrictionLaw, velocity: float) -> float:
         """Return the internal state of a law half a step before the start: the march keeps it between the steps."""
-        if not law.state_units:
+        if not law.has_state:
             return 0.0
         state = float(self.arrays.friction_state[i])
         code = int(self.contacts.constants[i, at.LAW])
         # The mirror image of the half step after it, which does not grow as motion backwards in time does.
         before = 2.0 * state - float(next_state(code, self.contacts.laws, i, state, velocity, self.step / 2.0))
-        # The age of a contact stays above zero.
-        return max(before, state / 2.0) if isinstance(law, RateAndState) else before
+        return max(before, state / 2.0) if law.state_is_positive else before
 
     def pushes(self, closed: Array) -> Array:
         """Return the rows of closed contacts, normal and tangent in turn."""

@@ -10,13 +10,12 @@ import numpy as np
 
 from ..bodies.modes import Array
 from ..checks import ArgumentError
-from ..contact import Coulomb, FrictionLaw, StaticKinetic
+from ..contact import FrictionLaw
 from .structure import SEPARATED, SLIDING, STICKING, UNMOVED, Structure
 
 # Relative size below which a force or an acceleration is round-off.
 ROUND_OFF = 1e-9
 # Laws whose coefficient in sliding is the same at every speed.
-CONSTANT_LAWS = (Coulomb, StaticKinetic)
 # Contacts up to which all minors are looked at.
 MOST_CONTACTS = 10
 HELD, LIFTED_OFF, JAMMED = "held", "lifted off", "jammed"
@@ -93,11 +92,6 @@ def find_equilibrium(structure: Structure, velocity: Array, status: Sequence[str
         tried[contact] = STICKING if kind == HELD else SEPARATED
 
 
-def depends_on_speed(law: FrictionLaw) -> bool:
-    """Return whether friction in sliding depends on its speed."""
-    return not isinstance(law, CONSTANT_LAWS)
-
-
 @dataclass(frozen=True)
 class _Balance:
     """Forces in balance: attributes as those of `Equilibrium`; sign of the determinant of the equations."""
@@ -160,7 +154,7 @@ def _slip_velocities(structure: Structure, velocity: Array, status: Sequence[str
 
 def _ratio_at(speed: float, law: FrictionLaw, contact: str) -> float:
     """Return the ratio of a law in sliding at a speed [m/s], which one that does not depend on it need not know."""
-    if depends_on_speed(law) and not speed:
+    if law.depends_on_speed and not speed:
         raise ArgumentError(
             "velocity",
             f"be given for {contact}: its {law.law} friction depends on the slip speed, and nothing prescribes that",

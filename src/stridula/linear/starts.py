@@ -9,7 +9,7 @@ import numpy as np
 
 from ..bodies.modes import Array
 from ..checks import ArgumentError
-from ..contact import FrictionLaw, LuGre, RateAndState
+from ..contact import FrictionLaw
 from ..drives import MOST_UNSTABLE, InitialEquilibrium
 from ..system import System
 from .equilibrium import HELD, JAMMED, LIFTED_OFF, Equilibrium, find_equilibrium, travelling
@@ -134,7 +134,7 @@ def _mode(structure: Structure, at: Equilibrium, asked: InitialEquilibrium) -> t
         raise ArgumentError("mode", "be one that moves a contact point", got=f"{number}, which moves none")
     shape = shape * (asked.amplitude * np.exp(1.0j * asked.phase) / largest)
     states = np.zeros(len(structure.lines), dtype=complex)
-    known = [k for k, contact in enumerate(structure.system.contacts) if contact.friction.state_units]
+    known = [k for k, contact in enumerate(structure.system.contacts) if contact.friction.has_state]
     rates = motion.from_velocity @ (exponent * shape)
     states[[k for k in known if at.slip_velocity[k]]] = rates / (exponent - motion.state)
     return shape, exponent, states
@@ -170,10 +170,4 @@ def _closed(whole: Structure, status: Sequence[str], position: Array) -> Array:
 
 def _state(law: FrictionLaw, slip: float, change: float) -> float:
     """Return the internal state of a law in steady sliding at a slip velocity [m/s], moved in its sense by a change."""
-    if not law.state_units or not slip:
-        return float(law.state_at_start)
-    if isinstance(law, RateAndState):
-        return law.slip_distance / abs(slip) + change
-    assert isinstance(law, LuGre)
-    bristles = (float(law.coefficient_at(slip)) - law.viscous * abs(slip)) / law.stiffness
-    return float(np.sign(slip) * (bristles + change))
+    return law.state_in_sliding(slip, change) if slip else law.state_at_start

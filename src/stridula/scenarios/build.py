@@ -19,13 +19,11 @@ from ..bodies import (
     ModalBeam,
     ModalPlate,
     PointMass,
-    Rayleigh,
     Rectangle,
     ReducedBody,
-    RisingDamping,
-    SampledDamping,
     Section,
 )
+from ..bodies.damping import DAMPING_LAWS
 from ..bodies.ordinary import NotOrdinary
 from ..checks import ArgumentError, brief, listed, suggestion
 from ..connections import Dashpot, Spring
@@ -39,7 +37,7 @@ from .errors import ScenarioError
 from .quantities import quantity
 
 SECTIONS: dict[str, Callable[..., Any]] = {"rectangle": Rectangle, "circle": Circle, "general": Section}
-DAMPINGS: dict[str, Callable[..., Any]] = {law.form: law for law in (Rayleigh, RisingDamping, SampledDamping)}
+DAMPINGS: dict[str, Callable[..., Any]] = {law.form: law for law in DAMPING_LAWS}
 HISTORIES: dict[str, Callable[..., Any]] = {
     "constant": histories.Constant,
     "ramp": histories.Ramp,

@@ -17,9 +17,11 @@ from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaH
 from pydantic_core import CoreSchema, PydanticCustomError
 from pydantic_core.core_schema import no_info_plain_validator_function
 
-from ..bodies import Rayleigh, RisingDamping, SampledDamping
+from ..bodies import Rayleigh
+from ..bodies.damping import DAMPING_LAWS
 from ..bodies.modes import Array
-from ..checks import STATUS_WORDS, ArgumentError, at_least, at_most
+from ..checks import STATUS_WORDS, ArgumentError
+from ..declared import Choice, Each, Number, declared, texts
 from ..drives import MOST_UNSTABLE
 from ..records.packed import is_packed, unpacked
 from .quantities import UNITS, is_quantity, quantity
@@ -37,7 +39,11 @@ class Table(BaseModel):
         Read when asked for: to take them into the fields costs more than to load a scenario.
         """
         own = [table for table in cls.__mro__[::-1] if issubclass(table, Table)]
-        return {key: text for table in own for key, text in _texts(table.__module__)[table.__name__].items()}
+        return {key: text for table in own for key, text in table._own_descriptions().items()}
+
+    @classmethod
+    def _own_descriptions(cls) -> dict[str, str]:
+        return _texts(cls.__module__)[cls.__name__]
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
@@ -91,32 +97,17 @@ def _in_words(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
     return validate
 
 
-@dataclass(frozen=True)
-class Quantity(_Kind):
-    """A number with an SI unit, in a range.
+class Quantity(Number, _Kind):
+    """A number in a range, or a text with one and a unit.
 
     Attributes
     ----------
-    unit : str
-        SI unit.
-    above, least, below : float or None
-        Strictly above, from here on, strictly below; no bound where None.
+    unit, above, least, below, meaning : str, float or None
+        As of `Number`.
     """
 
-    unit: str
-    above: float | None = None
-    least: float | None = None
-    below: float | None = None
-
     def read(self, value: Any) -> float:
-        number = quantity(value, self.unit)
-        if self.above is not None and number <= self.above:
-            raise _refused(f"be above {at_least(self.above)}")
-        if self.least is not None and number < self.least:
-            raise _refused(f"be {at_least(self.least)} or above")
-        if self.below is not None and number >= self.below:
-            raise _refused(f"be below {at_most(self.below)}")
-        return number
+        return self.check("value", quantity(value, self.unit))
 
     def json_schema(self) -> dict[str, Any]:
         limits = {"exclusiveMinimum": self.above, "minimum": self.least, "exclusiveMaximum": self.below}
@@ -149,56 +140,46 @@ class OneOrEach(_Kind):
 class DampingTable(_Kind):
     """A law of damping: its name and its parameters."""
 
-    forms: ClassVar[dict[str, Any]] = {
-        Rayleigh.form: (
-            Rayleigh,
-            {
-                "mass": (Quantity("1/s", least=0.0), "share of the mass matrix [1/s]"),
-                "stiffness": (Quantity("s", least=0.0), "share of the stiffness matrix [s]"),
-            },
-        ),
-        RisingDamping.form: (
-            RisingDamping,
-            {
-                "ratio": (Quantity("1", least=0.0, below=1.0), "damping ratio at low frequencies"),
-                "rise": (Quantity("1/Hz", least=0.0), "rise of the damping ratio with the frequency of a mode [1/Hz]"),
-            },
-        ),
-        SampledDamping.form: (
-            SampledDamping,
-            {
-                "frequency": (OneOrEach(Quantity("Hz", least=0.0)), "frequencies at which the ratio is given [Hz]"),
-                "ratio": (OneOrEach(Quantity("1", least=0.0, below=1.0)), "damping ratio at each, linear between them"),
-            },
-        ),
-    }
+    forms: ClassVar[dict[str, type]] = {law.form: law for law in DAMPING_LAWS}
 
     def read(self, value: Any) -> Any:
         form = value.get("form", Rayleigh.form)
         if form not in self.forms:
             raise _refused(f"be of a form that is one of {', '.join(self.forms)}")
-        build, parameters = self.forms[form]
-        if value.keys() - {"form"} != parameters.keys():
-            raise _refused(f"have, in the form {form}, {' and '.join(parameters)}")
+        parameters = declared(self.forms[form])
+        if value.keys() - {"form"} != {parameter.name for parameter in parameters}:
+            names = " and ".join(parameter.name for parameter in parameters)
+            raise _refused(f"have, in the form {form}, {names}")
         given = {}
-        for key, (kind, _) in parameters.items():
+        for parameter in parameters:
             try:
-                given[key] = kind.read(value[key])
+                given[parameter.name] = read_as(parameter.kind).read(value[parameter.name])
             except ArgumentError as error:
-                raise _refused(f"have a {key} that must {error.allowed}") from None
+                raise _refused(f"have a {parameter.name} that must {error.allowed}") from None
         try:
-            build(**given)
+            self.forms[form](**given)
         except ArgumentError as error:
             raise _refused(f"be in order: {error}") from None
         return {"form": form, **given}
 
     def json_schema(self) -> dict[str, Any]:
         laws = []
-        for form, (_, parameters) in self.forms.items():
-            keys = {key: kind.json_schema() | {"description": words} for key, (kind, words) in parameters.items()}
+        for form, law in self.forms.items():
             name = {"const": form, "description": f"form of damping: {', '.join(self.forms)}"}
+            words = texts(law)
+            keys = {
+                parameter.name: read_as(parameter.kind).json_schema() | {"description": words[parameter.name]}
+                for parameter in declared(law)
+            }
             laws.append({"type": "object", "properties": {"form": name, **keys}, "additionalProperties": False})
         return {"anyOf": laws}
+
+
+def read_as(kind: Number | Choice | Each) -> _Kind:
+    """Return how a scenario gives what a field may be."""
+    if isinstance(kind, Each):
+        return OneOrEach(Quantity(**vars(kind.one)))
+    return Words(kind.words) if isinstance(kind, Choice) else Quantity(**vars(kind))
 
 
 LAW_OF_DAMPING = DampingTable()

@@ -2,114 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field
 
-from ..contact import LinearWeakening as Linear
-from ..contact import LuGre as Bristles
-from ..contact import PointContact, RigidTrack
-from ..contact import Stribeck as Curve
+from ..contact import LAWS, Coulomb, PointContact, RigidTrack
 from . import fields as is_
+from .derived import one_of, table_of
 from .fields import Table
 from .schema_drives import History
 
-
-class Coulomb(Table):
-    law: Literal["coulomb"] = "coulomb"
-    """law of friction"""
-    coefficient: is_.Friction
-    """coefficient of friction mu, the same in sticking and in sliding"""
-
-
-class StaticKinetic(Table):
-    law: Literal["static-kinetic"]
-    """law of friction"""
-    static: is_.Friction
-    """coefficient of friction of a sticking contact"""
-    kinetic: is_.Friction
-    """coefficient of friction in sliding"""
-
-
-class Stribeck(Table):
-    law: Literal["stribeck"]
-    """law of friction"""
-    static: is_.Friction
-    """coefficient of friction of a sticking contact"""
-    kinetic: is_.Friction
-    """coefficient of friction in fast sliding"""
-    velocity: is_.Speed
-    """slip speed over which it falls [m/s]"""
-    exponent: is_.PositiveRatio = Curve.exponent
-    """exponent: 2 is Gauss's curve, 1 an exponential"""
-    viscous: is_.Slope = Curve.viscous
-    """rise with speed [s/m]"""
-
-
-class ExponentialWeakening(Table):
-    law: Literal["exponential weakening"]
-    """law of friction"""
-    static: is_.Friction
-    """coefficient of friction of a sticking contact"""
-    kinetic: is_.Friction
-    """coefficient of friction in fast sliding"""
-    velocity: is_.Speed
-    """slip speed over which it falls [m/s]"""
-
-
-class LinearWeakening(Table):
-    law: Literal["linear weakening"]
-    """law of friction"""
-    static: is_.Friction
-    """coefficient of friction of a sticking contact"""
-    slope: is_.Slope
-    """fall with slip speed [s/m]"""
-    kinetic: is_.Friction = Linear.kinetic
-    """coefficient of friction at which the fall ends"""
-
-
-class LuGre(Table):
-    law: Literal["lugre"]
-    """law of friction"""
-    static: is_.Friction
-    """coefficient of friction at which the bristles give way at low speed"""
-    kinetic: is_.PositiveRatio
-    """coefficient of friction in fast sliding"""
-    velocity: is_.Speed
-    """Stribeck's velocity [m/s]"""
-    stiffness: is_.Bristles
-    """stiffness of the bristles per unit of normal force [1/m]"""
-    damping: is_.Slope = Bristles.damping
-    """damping of the bristles per unit of normal force [s/m]"""
-    viscous: is_.Slope = Bristles.viscous
-    """rise with speed [s/m]"""
-    initial_state: is_.Position = Bristles.initial_state
-    """deflection of the bristles at the start [m]"""
-
-
-class RateAndState(Table):
-    law: Literal["rate and state"]
-    """law of friction"""
-    reference: is_.PositiveRatio
-    """coefficient of friction in steady sliding at velocity"""
-    a: is_.PositiveRatio
-    """direct effect of the slip velocity"""
-    b: is_.PositiveRatio
-    """effect of the state"""
-    slip_distance: is_.Length
-    """slip over which the state changes [m]"""
-    velocity: is_.Speed
-    """reference slip velocity [m/s]"""
-    evolution: Literal["aging", "slip"] = "aging"
-    """law of evolution of the state: aging or slip"""
-    initial_state: is_.Time | None = None
-    """state at the start, that of steady sliding at velocity if left out [s]"""
-
-
-Friction = Annotated[
-    Coulomb | StaticKinetic | Stribeck | ExponentialWeakening | LinearWeakening | LuGre | RateAndState,
-    Field(discriminator="law"),
-]
+if TYPE_CHECKING:
+    Friction = Any
+else:
+    Friction = one_of("law", (table_of(law, "law", law.law, "law of friction", law is Coulomb) for law in LAWS))
 
 
 class PairContact(Table):

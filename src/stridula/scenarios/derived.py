@@ -1,0 +1,62 @@
+"""Tables of a scenario file that follow from the dataclasses they make."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+from functools import reduce
+from operator import or_
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, create_model
+
+from ..declared import Choice, Declared, declared, texts
+from .fields import Table, read_as
+
+
+class Derived(Table):
+    """A table whose keys are the declared fields of a dataclass, beside one that says which dataclass it is."""
+
+    made: ClassVar[type]
+    own_texts: ClassVar[Mapping[str, str]]
+
+    @classmethod
+    def _own_descriptions(cls) -> dict[str, str]:
+        if cls is Derived:
+            return {}
+        return {**cls.own_texts, **{key: text for key, text in texts(cls.made).items() if key in cls.model_fields}}
+
+
+def table_of(description: type, tag: str, word: str, text: str, is_usual: bool = False) -> type[Table]:
+    """Return the table of a dataclass.
+
+    Parameters
+    ----------
+    description : type
+        The dataclass.
+    tag, word, text : str
+        The key that tells tables of several kinds apart, its value for this one, and what it is.
+    is_usual : bool, optional
+        Whether this is the kind of a table that does not say.
+    """
+    keys: dict[str, Any] = {tag: (Literal[word], word if is_usual else ...)}
+    keys |= {
+        field.name: (_read(field), ... if field.default is dataclasses.MISSING else field.default)
+        for field in declared(description)
+    }
+    table = create_model(description.__name__, __base__=Derived, __module__=__name__, **keys)
+    table.made, table.own_texts = description, {tag: text}
+    return table
+
+
+def one_of(tag: str, tables: Iterable[type[Table]]) -> Any:
+    """Return the type of a table that is of one of several kinds, as its `tag` says."""
+    return Annotated[reduce(or_, tables), Field(discriminator=tag)]
+
+
+def _read(field: Declared) -> Any:
+    """Return the kind of a declared field, as tables read it."""
+    kind: Any = Annotated[Any, read_as(field.kind)]
+    if isinstance(field.kind, Choice):
+        kind = Literal[field.kind.words]
+    return kind | None if field.is_optional else kind
