@@ -13,9 +13,8 @@ from .bodies import BodyPoint, FiniteElementBeam
 from .bodies.modes import Array, Modes
 from .bodies.ordinary import check_coupled_count, of_ordinary_size
 from .checks import ArgumentError, brief
-from .connections import Spring, ends, unit
+from .connections import ends, unit
 from .contact import PointContact, RigidTrack
-from .drives import Force, Gravity, ImposedVelocity, InitialState, InitialVelocity
 from .histories import Constant, History
 from .records.probes import Acceleration, Displacement, Probe, Reaction, Velocity
 from .system import System
@@ -304,10 +303,9 @@ def _matrices(layout: _Layout) -> tuple[Array, Array]:
         row = unit(connection) @ layout.trace(connection.first)[:, :size]
         if connection.second is not None:
             row = row - unit(connection) @ layout.trace(connection.second)[:, :size]
-        if isinstance(connection, Spring):
-            stiffness += connection.stiffness * np.outer(row, row)
-        else:
-            dissipation += connection.coefficient * np.outer(row, row)
+        for matrix, rate in zip((stiffness, dissipation), connection.rates, strict=True):
+            if rate:
+                matrix += rate * np.outer(row, row)
     return stiffness, dissipation
 
 
@@ -381,13 +379,12 @@ def _loads(system: System, layout: _Layout) -> tuple[list[_Load], list[Signal], 
 
     inertia = _inertia(system)
     for drive in system.drives:
-        if isinstance(drive, Force):
-            add(drive.history, *_force(drive.point, _components(drive), layout))
-        elif isinstance(drive, ImposedVelocity):
-            add(Constant(), *_force(drive.point, np.array([0.0, -drive.normal_load]), layout))
-        elif isinstance(drive, Gravity):
+        if drive.push is not None:
+            history, point, components = drive.push
+            add(history, *_force(point, components, layout))
+        if drive.fall:
             modal = sum(layout.translation(body)[1] for body in layout.order)
-            add(Constant(), -drive.acceleration * modal, -drive.acceleration * inertia[:, 1])
+            add(Constant(), -drive.fall * modal, -drive.fall * inertia[:, 1])
     felt = {history: load for history, load in by_history.items() if load.modal.any() or load.root.any()}
     loads = list(felt.values())
     signals = [_factor(history) for history in felt]
@@ -405,7 +402,7 @@ def _loads(system: System, layout: _Layout) -> tuple[list[_Load], list[Signal], 
         # A difference, not the rate: its impulses add up to the change of velocity, kinks or not.
         return velocity * (history.factor(time + step / 2.0) - history.factor(time - step / 2.0)) / step
 
-    if imposed and not isinstance(history, Constant):
+    if imposed and history.settled != 0.0:
         loads.append(_Load(-layout.translation(imposed.point.body)[0], -inertia[:, 0]))
         signals.append(acceleration)
     return loads, [*signals, displacement, speed, acceleration], tuple(felt)
@@ -417,12 +414,6 @@ def _inertia(system: System) -> Array:
     if not isinstance(slider, FiniteElementBeam):
         return np.zeros((3, 2))
     return slider.root_reaction(system.is_held(slider)).inertia
-
-
-def _components(force: Force) -> Array:
-    """Return the world components of a force [N], shape (2,)."""
-    along, across = force.point.body.axes
-    return force.axial * along + force.transverse * across + np.array([force.x, force.y])
 
 
 def _force(point: BodyPoint, components: Array, layout: _Layout) -> tuple[Array, Array]:
@@ -437,12 +428,11 @@ def _start(system: System, layout: _Layout) -> tuple[Array, Array]:
     """Return modal positions and velocities at the start."""
     position, velocity = np.zeros(layout.size), np.zeros(layout.size)
     for drive in system.drives:
-        if isinstance(drive, InitialVelocity):
-            velocity += np.array([drive.x, drive.y]) @ layout.translation(drive.body)
-        elif isinstance(drive, InitialState):
-            for values, given in ((position, drive.displacement), (velocity, drive.velocity)):
-                if given is not None:
-                    values += layout.full(drive.body, drive.body.modal_coordinates(given))
+        if drive.uniform_velocity is not None:
+            velocity += drive.uniform_velocity @ layout.translation(drive.acted_on)
+        for name, given in drive.vectors.items():
+            values = {"displacement": position, "velocity": velocity}[name]
+            values += layout.full(drive.acted_on, drive.acted_on.modal_coordinates(given))
     return position, velocity
 
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from .checks import ArgumentError, at_least, at_most, choice, finite
+from .checks import ArgumentError, at_least, at_most, choice, count, finite, one_or_each
 
 _UNIT = re.compile(r"\s*\[([^\]]*)\]")
 _NAMED_AFTER = re.compile(r"[A-Z]\w*'s\b")
@@ -87,7 +87,43 @@ class Each:
         return tuple(self.one.check(f"{name}[{k}]", one) for k, one in enumerate(np.asarray(value).tolist()))
 
 
-Kind = Number | Choice | Each
+@dataclass(frozen=True)
+class OneOrEach:
+    """One number or word, or a sequence of them.
+
+    Attributes
+    ----------
+    one : Number or Choice
+        What each is.
+    """
+
+    one: Number | Choice
+
+    def check(self, name: str, value: Any) -> Any:
+        """Return one, or a sequence as a tuple, if each is what it may be."""
+        return one_or_each(name, value, self.one.check)
+
+
+@dataclass(frozen=True)
+class NumberOrWord:
+    """A whole number from 0 on, or a word of a choice.
+
+    Attributes
+    ----------
+    words : tuple of str
+        The words.
+    """
+
+    words: tuple[str, ...]
+
+    def check(self, name: str, value: Any) -> int | str:
+        """Return a value if it is such a number or one of the words."""
+        return choice(name, value, self.words) if isinstance(value, str) else count(name, value, low=0)
+
+
+Kind = Number | Choice | Each | OneOrEach | NumberOrWord
+# What is kept as it was checked: sequences as tuples, numbers of NumPy as Python's.
+_KEPT = (Each, OneOrEach, NumberOrWord)
 
 
 @dataclass(frozen=True)
@@ -98,7 +134,7 @@ class Declared:
     ----------
     name : str
         Its name.
-    kind : Number, Choice or Each
+    kind : Number, Choice, Each, OneOrEach or NumberOrWord
         What it may be.
     is_optional : bool
         Whether it may be None, too.
@@ -132,7 +168,7 @@ def check_declared(record: object) -> None:
         value = getattr(record, field.name)
         if value is not None or not field.is_optional:
             checked = field.kind.check(field.name, value)
-            if isinstance(checked, tuple):
+            if isinstance(field.kind, _KEPT):
                 object.__setattr__(record, field.name, checked)
 
 
@@ -171,7 +207,13 @@ DAMPING_RATIO = Number(least=0.0, below=1.0, meaning="critical")
 DampingRatio = Annotated[float, DAMPING_RATIO]
 Coefficient = Annotated[float, Number(least=0.0)]
 Length = Annotated[float, Number("m", above=0.0)]
+Distance = Annotated[float, Number("m", least=0.0)]
 Position = Annotated[float, Number("m")]
+Angle = Annotated[float, Number("rad")]
+Frequency = Annotated[float, Number("Hz", above=0.0)]
+Newtons = Annotated[float, Number("N")]
+Velocity = Annotated[float, Number("m/s")]
+Axis = Annotated[str, Choice(("x", "y"))]
 Time = Annotated[float, Number("s", above=0.0)]
 Speed = Annotated[float, Number("m/s", above=0.0)]
 Slope = Annotated[float, Number("s/m", least=0.0)]

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Annotated, ClassVar, Protocol
 
 import numpy as np
 
 from .bodies.modes import Array
-from .checks import ArgumentError, brief, finite, positive
+from .checks import ArgumentError, brief, finite
+from .declared import Angle, Each, Frequency, Number, Ratio, Time, check_declared
 
 # Share of a time within which it is that of a jump: a step is a whole division of it only up to rounding.
 ROUND_OFF = 1e-12
@@ -36,10 +37,14 @@ class History(Protocol):
         """Time [s] from which it no longer varies, None if it always does."""
         ...
 
+    kind: ClassVar[str]
+
 
 @dataclass(frozen=True)
 class Constant:
     """The stated value from the start to the end."""
+
+    kind: ClassVar[str] = "constant"
 
     @property
     def settled(self) -> float:
@@ -66,13 +71,14 @@ class Ramp:
     Parameters
     ----------
     duration : float
-        Length of the rise [s].
+        Length of the straight rise from zero [s].
     """
 
-    duration: float
+    kind: ClassVar[str] = "ramp"
+    duration: Time
 
     def __post_init__(self) -> None:
-        positive("duration", self.duration)
+        check_declared(self)
 
     @property
     def settled(self) -> float:
@@ -101,22 +107,23 @@ class Harmonic:
     Parameters
     ----------
     frequency : float
-        Frequency [Hz].
-    amplitude, mean : float, optional
-        Amplitude and mean of the factor [1].
+        Frequency of the sine [Hz].
+    amplitude : float, optional
+        Amplitude of the sine, as a factor [1].
+    mean : float, optional
+        Mean about which it swings, as a factor [1].
     phase : float, optional
-        Phase at t = 0 [rad].
+        Phase at the start [rad].
     """
 
-    frequency: float
-    amplitude: float = 1.0
-    mean: float = 0.0
-    phase: float = 0.0
+    kind: ClassVar[str] = "harmonic"
+    frequency: Frequency
+    amplitude: Ratio = 1.0
+    mean: Ratio = 0.0
+    phase: Angle = 0.0
 
     def __post_init__(self) -> None:
-        positive("frequency", self.frequency)
-        for name in ("amplitude", "mean", "phase"):
-            finite(name, getattr(self, name))
+        check_declared(self)
 
     @property
     def settled(self) -> float | None:
@@ -152,13 +159,14 @@ class Sampled:
     Parameters
     ----------
     time : tuple of float
-        Times [s], rising, from 0 on; the same twice at a jump, but not 0.
+        Times [s], rising from 0 on, the same twice at a jump, but not 0.
     value : tuple of float
         Factors at those times [1].
     """
 
-    time: tuple[float, ...]
-    value: tuple[float, ...]
+    kind: ClassVar[str] = "sampled"
+    time: Annotated[tuple[float, ...], Each(Number("s", least=0.0))]
+    value: Annotated[tuple[float, ...], Each(Number())]
 
     def __post_init__(self) -> None:
         for name in ("time", "value"):

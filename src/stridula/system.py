@@ -9,9 +9,9 @@ from typing import Any, TypeVar
 
 from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, ReducedBody, Track
 from .checks import ArgumentError, instance
-from .connections import Connection, Dashpot, Spring, ends
+from .connections import CONNECTIONS, Connection, ends
 from .contact import PointContact, RigidTrack
-from .drives import Drive, Gravity, ImposedVelocity, InitialEquilibrium, InitialState, InitialVelocity
+from .drives import DRIVES, Drive, ImposedVelocity, InitialEquilibrium
 
 T = TypeVar("T")
 
@@ -45,12 +45,8 @@ class System:
             object.__setattr__(self, "contact", _listed("contact", self.contact, (PointContact,)))
             if not self.contacts:
                 raise ArgumentError("contact", "hold at least one PointContact", self.contact, got="none")
-        object.__setattr__(
-            self,
-            "drives",
-            _listed("drives", self.drives, Drive.__args__),
-        )
-        object.__setattr__(self, "connections", _listed("connections", self.connections, (Spring, Dashpot)))
+        object.__setattr__(self, "drives", _listed("drives", self.drives, DRIVES))
+        object.__setattr__(self, "connections", _listed("connections", self.connections, CONNECTIONS))
         self._check_names()
         for number, drive in enumerate(self.drives):
             self._check_body(f"drives[{number}]", drive)
@@ -128,12 +124,13 @@ class System:
                 raise ArgumentError(words, "have different names", twice, got=f"{twice!r} twice")
 
     def _check_body(self, name: str, drive: Drive) -> None:
-        body = getattr(drive, "body", None) or getattr(getattr(drive, "point", None), "body", None)
+        body, moved = drive.acted_on, drive.uniform_velocity
         if body is not None and body not in self.bodies:
             raise ArgumentError(name, "act on a body of this system", body)
-        if isinstance(drive, InitialVelocity) and self.is_held(body) and drive.x:
-            raise ArgumentError(f"{name}.x", "be 0 under an imposed velocity, which already moves the slider", drive.x)
-        if isinstance(drive, Gravity):
+        if moved is not None and self.is_held(body) and moved[0]:
+            words = "be 0 under an imposed velocity, which already moves the slider"
+            raise ArgumentError(f"{name}.x", words, float(moved[0]))
+        if drive.fall:
             for other in self.bodies:
                 if isinstance(other, ReducedBody) and not other.has_translation:
                     raise ArgumentError(
@@ -170,7 +167,7 @@ class System:
         names = self.contact_names if len(self.contacts) > 1 else (self.contacts[0].name or "contact",)
         lines += [_contact_line(name, contact) for name, contact in zip(names, self.contacts, strict=True)]
         lines += [f"joined   {_connection_words(connection, self)}" for connection in self.connections]
-        return "\n".join(lines + [f"drive    {_drive_words(drive)}" for drive in self.drives])
+        return "\n".join(lines + [f"drive    {drive}" for drive in self.drives])
 
 
 def _listed(name: str, given: Any, kinds: tuple[type, ...]) -> tuple[Any, ...]:
@@ -203,33 +200,4 @@ def _contact_line(name: str, contact: PointContact) -> str:
 
 def _connection_words(connection: Connection, system: System) -> str:
     names = [system.body_name(point.body) for point in ends(connection)]
-    value = (
-        f"spring {connection.stiffness:.4g} N/m"
-        if isinstance(connection, Spring)
-        else f"dashpot {connection.coefficient:.4g} N s/m"
-    )
-    return f"{value} along {connection.direction} from {names[0]} to {names[1] if len(names) > 1 else 'the ground'}"
-
-
-def _drive_words(drive: Drive) -> str:
-    if isinstance(drive, Gravity):
-        return f"gravity {drive.acceleration:.4g} m/s² along -y"
-    if isinstance(drive, InitialVelocity):
-        return f"initial velocity ({drive.x:.3g}, {drive.y:.3g}) m/s"
-    if isinstance(drive, InitialState):
-        return "initial state of every degree of freedom"
-    if isinstance(drive, InitialEquilibrium):
-        number = drive.mode if isinstance(drive.mode, str) else f"number {drive.mode}"
-        mode = "" if drive.mode is None else f", mode {number} on top by {drive.amplitude:.3g} m"
-        return f"initial equilibrium{mode}"
-    kind = type(drive.history).__name__.lower()
-    if isinstance(drive, ImposedVelocity):
-        return f"imposed velocity {drive.velocity:.4g} m/s along x under {drive.normal_load:.4g} N, {kind}"
-    parts = [
-        f"{name} {getattr(drive, name):.4g} N" for name in ("axial", "transverse", "x", "y") if getattr(drive, name)
-    ]
-    place = drive.point.position
-    where = f"{place:.4g} m" if isinstance(place, float) else str(place)
-    if isinstance(place, tuple):
-        where = f"({place[0]:.4g}, {place[1]:.4g}) m"
-    return f"force {', '.join(parts) or '0 N'} at {where}, {kind}"
+    return f"{connection} from {names[0]} to {names[1] if len(names) > 1 else 'the ground'}"

@@ -99,7 +99,10 @@ def test_each_field_is_checked(words, problem):
 
 
 READ = TypeAdapter(
-    one_of("turns", [table_of(Brake, "turns", "brake", "a part", True), table_of(Clutch, "turns", "clutch", "a part")])
+    one_of(
+        "turns",
+        [table_of(Brake, "turns", "brake", "a part", is_usual=True), table_of(Clutch, "turns", "clutch", "a part")],
+    )
 )
 
 

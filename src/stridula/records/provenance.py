@@ -15,20 +15,12 @@ from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, Track
 from ..bodies.damping import DampingLaw
 from ..bodies.modes import Array
 from ..contact import PointContact, RigidTrack
-from ..drives import Drive, Force, ImposedVelocity, InitialState, InitialVelocity
+from ..drives import Drive
 from ..histories import Constant
 from ..system import System
 from .packed import LONGEST_LIST, packed
 from .probes import Probe, Reaction
 
-DRIVE_KINDS = {
-    "Force": "force",
-    "ImposedVelocity": "imposed velocity",
-    "Gravity": "gravity",
-    "InitialVelocity": "initial velocity",
-    "InitialState": "initial state",
-    "InitialEquilibrium": "initial equilibrium",
-}
 # A list as tomli_w writes it, one number on a line; texts are on one line each and never match.
 _LIST_OF_NUMBERS = re.compile(r"\[\n((?:\s*[-+.\dinfaeE]+,\n)+)\s*\]")
 BODY_KINDS = {
@@ -100,7 +92,7 @@ def _general(system: System) -> dict[str, Any]:
     if system.connections:
         tables["connections"] = [
             {
-                "kind": type(connection).__name__.lower(),
+                "kind": connection.kind,
                 **_plain(connection, "first", "second"),
                 "first": place(connection.first),
                 **({"second": place(connection.second)} if connection.second is not None else {}),
@@ -123,13 +115,13 @@ def _histories(record: Any) -> dict[str, Any]:
     found = {}
     for name in ("history", "normal_history"):
         history = getattr(record, name, None)
-        if history is not None and not isinstance(history, Constant):
+        if history is not None and history.kind != Constant.kind:
             found[name] = _history(history)
     return found
 
 
 def _history(history: Any) -> dict[str, Any]:
-    return {"kind": type(history).__name__.lower(), **_plain(history)}
+    return {"kind": history.kind, **_plain(history)}
 
 
 def _plain(record: Any, *skipped: str) -> dict[str, Any]:
@@ -210,18 +202,15 @@ def _point(point: BodyPoint) -> Any:
 
 
 def _drive(drive: Drive, system: System) -> dict[str, Any]:
-    table: dict[str, Any] = {"kind": DRIVE_KINDS[type(drive).__name__]}
-    if isinstance(drive, Force):
-        table |= {"body": system.body_name(drive.point.body), "point": _point(drive.point)}
-    elif isinstance(drive, (InitialVelocity, InitialState)):
-        table["body"] = system.body_name(drive.body)
-    elif isinstance(drive, ImposedVelocity) and drive.point.body != system.slider:
-        table["body"] = system.body_name(drive.point.body)
-    table |= _plain(drive, "point", "body", "history")
-    if isinstance(drive, InitialState):
-        given = {name: getattr(drive, name) for name in ("displacement", "velocity")}
-        table |= {name: _value(np.array(values)) for name, values in given.items() if values is not None}
-    if isinstance(drive, (Force, ImposedVelocity)):
+    table: dict[str, Any] = {"kind": drive.kind}
+    body = drive.acted_on
+    if body is not None and (drive.place != "root" or body != system.slider):
+        table["body"] = system.body_name(body)
+    if drive.push is not None and drive.place == "point":
+        table["point"] = _point(drive.push[1])
+    table |= _plain(drive, "point", "body", "history", *drive.vectors)
+    table |= {name: _value(np.array(values)) for name, values in drive.vectors.items()}
+    if hasattr(drive, "history"):
         table["history"] = _history(drive.history)
     return table
 

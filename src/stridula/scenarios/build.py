@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from .. import histories
+from .. import connections, drives, histories
 from ..bodies import (
     BodyPoint,
     Circle,
@@ -26,10 +26,9 @@ from ..bodies import (
 from ..bodies.damping import DAMPING_LAWS
 from ..bodies.ordinary import NotOrdinary
 from ..checks import ArgumentError, brief, listed, suggestion
-from ..connections import Dashpot, Spring
 from ..contact import LAWS, PointContact, RigidTrack
 from ..disk import is_there
-from ..drives import Drive, Force, Gravity, ImposedVelocity, InitialEquilibrium, InitialState, InitialVelocity
+from ..drives import Drive
 from ..integration import GaussSeidel
 from ..records import Acceleration, Displacement, Probe, Reaction, Velocity
 from ..system import System
@@ -38,18 +37,12 @@ from .quantities import quantity
 
 SECTIONS: dict[str, Callable[..., Any]] = {"rectangle": Rectangle, "circle": Circle, "general": Section}
 DAMPINGS: dict[str, Callable[..., Any]] = {law.form: law for law in DAMPING_LAWS}
-HISTORIES: dict[str, Callable[..., Any]] = {
-    "constant": histories.Constant,
-    "ramp": histories.Ramp,
-    "harmonic": histories.Harmonic,
-    "sampled": histories.Sampled,
-}
+HISTORIES: dict[str, Callable[..., Any]] = {history.kind: history for history in histories.HISTORIES}
+DRIVES: dict[str, type[Drive]] = {drive.kind: drive for drive in drives.DRIVES}
 MOTIONS = {"displacement": Displacement, "velocity": Velocity, "acceleration": Acceleration}
 FRICTIONS: dict[str, Callable[..., Any]] = {law.law: law for law in LAWS}
-CONNECTIONS: dict[str, Callable[..., Any]] = {"spring": Spring, "dashpot": Dashpot}
+CONNECTIONS: dict[str, Callable[..., Any]] = {connection.kind: connection for connection in connections.CONNECTIONS}
 TRACKS = {"beam": ModalBeam, "plate": ModalPlate}
-# Drives that act on no body in particular.
-OF_ALL_BODIES = ("gravity", "initial equilibrium")
 Tables = dict[str, Any]
 Place = tuple[str | int, ...]
 # How a value that another problem left out looks.
@@ -278,24 +271,16 @@ class Builder:
     def _drive(self, number: int, table: Tables) -> Any:
         path = ("drives", number)
         table = dict(table)
-        kind = table.pop("kind")
-        body: Any = None
-        if kind not in OF_ALL_BODIES:
-            body = self._named_body((*path, "body"), table.pop("body", "slider"))
+        made: Callable[..., Drive] = DRIVES[table["kind"]]
+        place = DRIVES[table.pop("kind")].place
+        body = self._named_body((*path, "body"), table.pop("body", "slider")) if place else None
         if table.get("history") is not None:
             table["history"] = self._history((*path, "history"), table["history"])
-        if kind == "force":
-            at = self._point((*path, "point"), body, table.pop("point", None), "root")
-        makers: dict[str, Callable[[], Drive]] = {
-            "force": lambda: Force(at, **table),
-            "imposed velocity": lambda: ImposedVelocity(self._root(path, body), **table),
-            "gravity": lambda: Gravity(**table),
-            "initial velocity": lambda: InitialVelocity(body, **table),
-            "initial state": lambda: InitialState(body, **table),
-            "initial equilibrium": lambda: InitialEquilibrium(**table),
-        }
+        where: tuple[Any, ...] = (body,) if place else ()
+        if place == "point":
+            where = (self._point((*path, "point"), body, table.pop("point", None), "root"),)
         with self._within(*path):
-            return makers[kind]()
+            return made(*((self._root(path, body),) if place == "root" else where), **table)
 
     def _root(self, path: Place, body: Any) -> Any:
         if not isinstance(body, FiniteElementBeam):

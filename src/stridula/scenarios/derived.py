@@ -10,8 +10,11 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, create_model
 
-from ..declared import Choice, Declared, declared, texts
+from ..declared import Choice, Declared, Each, declared, texts
 from .fields import Table, read_as
+
+# Type, default (... if it must be given) and text by key.
+Keys = Mapping[str, tuple[Any, Any, str]]
 
 
 class Derived(Table):
@@ -24,10 +27,19 @@ class Derived(Table):
     def _own_descriptions(cls) -> dict[str, str]:
         if cls is Derived:
             return {}
-        return {**cls.own_texts, **{key: text for key, text in texts(cls.made).items() if key in cls.model_fields}}
+        return {key: text for key, text in texts(cls.made).items() if key in cls.model_fields} | dict(cls.own_texts)
 
 
-def table_of(description: type, tag: str, word: str, text: str, is_usual: bool = False) -> type[Table]:
+def table_of(
+    description: type,
+    tag: str,
+    word: str,
+    text: str,
+    *,
+    is_usual: bool = False,
+    before: Keys | None = None,
+    after: Keys | None = None,
+) -> type[Table]:
     """Return the table of a dataclass.
 
     Parameters
@@ -38,14 +50,22 @@ def table_of(description: type, tag: str, word: str, text: str, is_usual: bool =
         The key that tells tables of several kinds apart, its value for this one, and what it is.
     is_usual : bool, optional
         Whether this is the kind of a table that does not say.
+    before, after : mapping, optional
+        Type, default and text of other keys, before and after the declared fields.
     """
+    before, after = before or {}, after or {}
     keys: dict[str, Any] = {tag: (Literal[word], word if is_usual else ...)}
+    keys |= {key: (kind, default) for key, (kind, default, _) in before.items()}
     keys |= {
         field.name: (_read(field), ... if field.default is dataclasses.MISSING else field.default)
         for field in declared(description)
     }
+    keys |= {key: (kind, default) for key, (kind, default, _) in after.items()}
     table = create_model(description.__name__, __base__=Derived, __module__=__name__, **keys)
-    table.made, table.own_texts = description, {tag: text}
+    table.made, table.own_texts = (
+        description,
+        {tag: text} | {key: text for key, (*_, text) in {**before, **after}.items()},
+    )
     return table
 
 
@@ -57,6 +77,9 @@ def one_of(tag: str, tables: Iterable[type[Table]]) -> Any:
 def _read(field: Declared) -> Any:
     """Return the kind of a declared field, as tables read it."""
     kind: Any = Annotated[Any, read_as(field.kind)]
-    if isinstance(field.kind, Choice):
-        kind = Literal[field.kind.words]
+    match field.kind:
+        case Choice(words):
+            kind = Literal[words]
+        case Each(one):
+            kind = list[Annotated[float, read_as(one)]]
     return kind | None if field.is_optional else kind

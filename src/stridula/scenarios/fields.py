@@ -17,11 +17,12 @@ from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaH
 from pydantic_core import CoreSchema, PydanticCustomError
 from pydantic_core.core_schema import no_info_plain_validator_function
 
+from .. import declared as declarations
 from ..bodies import Rayleigh
 from ..bodies.damping import DAMPING_LAWS
 from ..bodies.modes import Array
 from ..checks import STATUS_WORDS, ArgumentError
-from ..declared import Choice, Each, Number, declared, texts
+from ..declared import Kind, Number, declared, texts
 from ..drives import MOST_UNSTABLE
 from ..records.packed import is_packed, unpacked
 from .quantities import UNITS, is_quantity, quantity
@@ -175,11 +176,19 @@ class DampingTable(_Kind):
         return {"anyOf": laws}
 
 
-def read_as(kind: Number | Choice | Each) -> _Kind:
+def read_as(kind: Kind) -> _Kind:
     """Return how a scenario gives what a field may be."""
-    if isinstance(kind, Each):
-        return OneOrEach(Quantity(**vars(kind.one)))
-    return Words(kind.words) if isinstance(kind, Choice) else Quantity(**vars(kind))
+    match kind:
+        case declarations.Number():
+            return Quantity(**vars(kind))
+        case declarations.Choice(words):
+            return Words(words)
+        case declarations.NumberOrWord(words):
+            return NumberOrWord(Words(words))
+        case declarations.OneOrEach(declarations.Choice(words)):
+            return Words(words, each=True)
+        case declarations.OneOrEach(one) | declarations.Each(one):
+            return OneOrEach(Quantity(**vars(one)))
 
 
 LAW_OF_DAMPING = DampingTable()

@@ -6,16 +6,19 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field
 
+from ..connections import CONNECTIONS
 from ..contact import LAWS, Coulomb, PointContact, RigidTrack
 from . import fields as is_
-from .derived import one_of, table_of
+from .derived import Keys, one_of, table_of
 from .fields import Table
 from .schema_drives import History
 
 if TYPE_CHECKING:
     Friction = Any
 else:
-    Friction = one_of("law", (table_of(law, "law", law.law, "law of friction", law is Coulomb) for law in LAWS))
+    Friction = one_of(
+        "law", (table_of(law, "law", law.law, "law of friction", is_usual=law is Coulomb) for law in LAWS)
+    )
 
 
 class PairContact(Table):
@@ -97,30 +100,11 @@ class Contact(Table):
     """friction between tip and track, none if left out"""
 
 
-class Spring(Table):
-    kind: Literal["spring"]
-    """spring or dashpot"""
-    first: Place
-    """one end"""
-    second: Place | None = None
-    """other end, the ground if left out"""
-    stiffness: is_.Stiffness
-    """stiffness [N/m]"""
-    direction: Literal["x", "y"] = "x"
-    """world direction along which it acts: x or y"""
+ENDS: Keys = {"first": (Place, ..., "one end"), "second": (Place | None, None, "other end, the ground if left out")}
 
-
-class Dashpot(Table):
-    kind: Literal["dashpot"]
-    """spring or dashpot"""
-    first: Place
-    """one end"""
-    second: Place | None = None
-    """other end, the ground if left out"""
-    coefficient: is_.Viscosity
-    """force per unit of relative velocity [N s/m]"""
-    direction: Literal["x", "y"] = "x"
-    """world direction along which it acts: x or y"""
-
-
-Connection = Annotated[Spring | Dashpot, Field(discriminator="kind")]
+if TYPE_CHECKING:
+    Connection = Any
+else:
+    Connection = one_of(
+        "kind", [table_of(kind, "kind", kind.kind, "spring or dashpot", before=ENDS) for kind in CONNECTIONS]
+    )

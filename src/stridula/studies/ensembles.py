@@ -17,7 +17,7 @@ from ..bodies import ReducedBody
 from ..bodies.modes import Array
 from ..checks import ArgumentError, brief, count, instance, positive, within
 from ..contact import RigidTrack
-from ..drives import Drive, ImposedVelocity, InitialEquilibrium, InitialVelocity
+from ..drives import Drive, InitialVelocity
 from ..drives import InitialState as State
 from ..integration import simulate_many
 from ..system import System
@@ -197,14 +197,7 @@ def _perturbed(system: System, share: float) -> System:
 
 def _prescribed(system: System) -> float:
     """Return the largest velocity that is prescribed [m/s], 1 if there is none."""
-    found = [0.0]
-    for drive in system.drives:
-        if isinstance(drive, ImposedVelocity):
-            found.append(drive.velocity)
-        elif isinstance(drive, InitialVelocity):
-            found += [drive.x, drive.y]
-        elif isinstance(drive, InitialEquilibrium):
-            found += np.atleast_1d(drive.velocity or 0.0).tolist()
+    found = [velocity for drive in system.drives for velocity in drive.velocities] or [0.0]
     for contact in system.contacts:
         if isinstance(contact.track, RigidTrack):
             found += [contact.track.velocity, contact.track.normal_velocity]

@@ -92,7 +92,7 @@ class Coupled:
     def run(self, friction: float, scheme: Scheme, step: float, duration: float) -> xr.Dataset:
         """March and record every step."""
         system = self.system(friction)
-        point = system.drives[0].point  # type: ignore[union-attr]
+        point = system.drives[0].point  # type: ignore[attr-defined]
         probes = [Displacement(point, "x"), Displacement(point, "y")]
         return simulate(system, duration, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes)
 
