@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from .bodies import BodyPoint, FiniteElementBeam
+from .bodies import BodyPoint, HasRoot
 from .bodies.modes import Array, Modes
 from .bodies.ordinary import check_coupled_count, of_ordinary_size
 from .checks import ArgumentError, brief
 from .connections import ends, unit
-from .contact import PointContact, RigidTrack
+from .contact import PointContact
 from .histories import Constant, History
 from .records.probes import Acceleration, Displacement, Probe, Reaction, Velocity
 from .system import System
@@ -203,7 +203,7 @@ class Prescribed:
     velocity : tuple of float and History, or None
         The imposed velocity.
     contacts : tuple
-        For each contact its frame, whether its tip is held, and its rigid track or whether its track is held.
+        For each contact its frame, whether its tip and its track are held, and its rigid track.
     turns : bool
         Whether it goes on from other motions.
     """
@@ -216,7 +216,7 @@ class Prescribed:
     @property
     def is_steady(self) -> bool:
         """Whether nothing varies in time."""
-        still = all(not isinstance(track, RigidTrack) or track.is_still for *_, track in self.contacts)
+        still = all(track is None or track.is_still for *_, track in self.contacts)
         return (
             still
             and not self.turns
@@ -228,11 +228,15 @@ class Prescribed:
 def _prescribed(system: System, histories: tuple[History, ...]) -> Prescribed:
     contacts = []
     for contact in system.contacts:
-        track = contact.track
-        moved = system.is_held(track.body) if isinstance(track, BodyPoint) else isinstance(track, RigidTrack) and track
-        contacts.append((contact.frame.tobytes(), system.is_held(contact.tip.body), moved))
+        held = system.is_held(contact.tip.body), _touches_held(contact, system)
+        contacts.append((contact.frame.tobytes(), *held, contact.rigid_track))
     imposed = system.imposed_velocity
     return Prescribed(histories, (imposed.velocity, imposed.history) if imposed else None, tuple(contacts))
+
+
+def _touches_held(contact: PointContact, system: System) -> bool:
+    """Return whether a contact is against a point of a body whose root follows an imposed velocity."""
+    return contact.touched_point is not None and system.is_held(contact.touched_point.body)
 
 
 @dataclass(frozen=True)
@@ -322,12 +326,12 @@ def _is_diagonal(matrix: Array) -> bool:
 
 def _contact(contact: PointContact, layout: _Layout) -> ContactRows:
     fixed = contact.frame @ layout.trace(contact.tip)
-    if isinstance(contact.track, BodyPoint):
-        return ContactRows(contact, fixed - contact.frame @ layout.trace(contact.track))
-    if isinstance(contact.track, RigidTrack):
+    if contact.touched_point is not None:
+        return ContactRows(contact, fixed - contact.frame @ layout.trace(contact.touched_point))
+    if contact.path_body is None:
         return ContactRows(contact, fixed)
-    first, end = layout.spans[contact.track]
-    axial = first + contact.track.harmonics[0]
+    first, end = layout.spans[contact.path_body]
+    axial = first + contact.path_body.harmonics[0]
     return ContactRows(contact, fixed, (first, axial), (axial, end))
 
 
@@ -342,13 +346,13 @@ def _motion(system: System, imposed: Signal) -> Signal:
                 moved = imposed(time, step)
                 values[:, number, 0] += tangent_x * moved
                 values[:, number, 2] += normal_x * moved
-            if isinstance(contact.track, BodyPoint) and system.is_held(contact.track.body):
+            if _touches_held(contact, system):
                 moved = imposed(time, step)
                 values[:, number, 1] += tangent_x * moved
                 values[:, number, 2] -= normal_x * moved
-            if isinstance(contact.track, RigidTrack):
-                values[:, number, 1] += contact.track.travel(time)
-                values[:, number, 2] -= contact.track.normal_travel(time)
+            if contact.rigid_track is not None:
+                values[:, number, 1] += contact.rigid_track.travel(time)
+                values[:, number, 2] -= contact.rigid_track.normal_travel(time)
         return values
 
     return motion
@@ -411,16 +415,17 @@ def _loads(system: System, layout: _Layout) -> tuple[list[_Load], list[Signal], 
 def _inertia(system: System) -> Array:
     """Return the slider's inertia as its root feels it, zero for bodies without a root."""
     slider = system.slider
-    if not isinstance(slider, FiniteElementBeam):
+    if not isinstance(slider, HasRoot):
         return np.zeros((3, 2))
-    return slider.root_reaction(system.is_held(slider)).inertia
+    inertia: Array = slider.root_reaction(system.is_held(slider)).inertia
+    return inertia
 
 
 def _force(point: BodyPoint, components: Array, layout: _Layout) -> tuple[Array, Array]:
     slider = layout.system.slider
     root = np.zeros(3)
-    if point.body == slider and isinstance(slider, FiniteElementBeam):
-        root = slider.root_lever(point.position) @ components  # type: ignore[arg-type]
+    if point.body == slider and isinstance(slider, HasRoot):
+        root = slider.root_lever(point.position) @ components
     return components @ layout.trace(point), root
 
 
@@ -473,7 +478,7 @@ def _reaction_rows(probe: Reaction, layout: _Layout, loads: list[_Load], direct:
         if point.tip.body == beam:
             lever = beam.root_lever(point.tip.position)[component]  # type: ignore[arg-type]
             contact[number] += reaction.held[component] * signs * (point.frame @ lever)
-        if isinstance(point.track, BodyPoint) and point.track.body == beam:
-            lever = beam.root_lever(point.track.position)[component]  # type: ignore[arg-type]
+        if point.touched_point is not None and point.touched_point.body == beam:
+            lever = beam.root_lever(point.touched_point.position)[component]  # type: ignore[arg-type]
             contact[number] -= reaction.held[component] * signs * (point.frame @ lever)
     return ProbeRows(matrix, direct, contact)

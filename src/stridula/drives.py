@@ -227,7 +227,7 @@ class InitialVelocity(Drive):
 
     def __post_init__(self) -> None:
         instance("body", self.body, (FiniteElementBeam, ModalBeam, ModalPlate, PointMass, ReducedBody))
-        if isinstance(self.body, ReducedBody) and not self.body.has_translation:
+        if not self.body.has_translation:
             raise ArgumentError(
                 "body", "have its translation given for a uniform velocity", self.body, got="a ReducedBody without"
             )

@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, ReducedBody, Track
 from .checks import ArgumentError, instance
 from .connections import CONNECTIONS, Connection, ends
-from .contact import PointContact, RigidTrack
+from .contact import PointContact
 from .drives import DRIVES, Drive, ImposedVelocity, InitialEquilibrium
 
 T = TypeVar("T")
@@ -78,8 +77,8 @@ class System:
     @property
     def track(self) -> Any:
         """What it slides on: a beam, a rigid track, or the body of the point it touches."""
-        track = self.contacts[0].track
-        return track.body if isinstance(track, BodyPoint) else track
+        first = self.contacts[0]
+        return first.track if first.touched_point is None else first.touched_point.body
 
     @property
     def imposed_velocity(self) -> ImposedVelocity | None:
@@ -132,7 +131,7 @@ class System:
             raise ArgumentError(f"{name}.x", words, float(moved[0]))
         if drive.fall:
             for other in self.bodies:
-                if isinstance(other, ReducedBody) and not other.has_translation:
+                if not other.has_translation:
                     raise ArgumentError(
                         name,
                         "act on bodies whose translation is known",
@@ -181,21 +180,20 @@ def _listed(name: str, given: Any, kinds: tuple[type, ...]) -> tuple[Any, ...]:
 
 def _body_line(name: str, body: Any) -> str:
     modes = body.modes()
-    length = f"{body.length:.4g} m, " if isinstance(body, (FiniteElementBeam, ModalBeam)) else ""
-    if isinstance(body, ModalPlate):
-        length = f"{body.length:.4g} m x {body.width:.4g} m x {body.thickness:.4g} m, "
-    lean = f", leaning {math.degrees(body.angle):.4g} deg" if isinstance(body, FiniteElementBeam) else ""
+    length = f"{body.dimensions}, " if body.dimensions else ""
+    lean = f", {body.posture}" if body.posture else ""
     mass = f"{body.total_mass:.4g} kg" if math.isfinite(body.total_mass) else "given by matrices"
     damping = f", damping {modes.damping.max():.3g}" if modes.damping.any() else ""
     return f"{name:<8} {length}{mass}{lean}{damping}, {modes.count} modes to {modes.frequency.max():.4g} Hz"
 
 
 def _contact_line(name: str, contact: PointContact) -> str:
-    low, high = contact.track.ends if isinstance(contact.track, Track) else (0.0, 0.0)
-    of = f" of {high - low:.4g} m" if high > low else ""
-    kind = {RigidTrack: " on a rigid track", BodyPoint: " against a point"}.get(type(contact.track), "")
+    kind = " on a rigid track" if contact.rigid_track else " against a point"
+    if contact.path_body is not None:
+        low, high = contact.path_body.ends
+        kind = f" of {high - low:.4g} m"
     lean = f", inclined {math.degrees(contact.inclination):.4g} deg" if contact.inclination else ""
-    return f"{name:<8} at {contact.at:.4g} m{of}{kind}, gap {contact.gap:.3g} m, friction {contact.friction}{lean}"
+    return f"{name:<8} at {contact.at:.4g} m{kind}, gap {contact.gap:.3g} m, friction {contact.friction}{lean}"
 
 
 def _connection_words(connection: Connection, system: System) -> str:

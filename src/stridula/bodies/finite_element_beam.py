@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import ClassVar
 
 import numpy as np
 import scipy.linalg
@@ -68,6 +69,10 @@ class FiniteElementBeam:
         If an argument is out of its range, or if no mode is left.
     """
 
+    kind: ClassVar[str] = "finite-element beam"
+    point_names: ClassVar[tuple[str, ...]] = ("tip", "root")
+    has_positions: ClassVar[bool] = True
+    has_translation: ClassVar[bool] = True
     material: Material
     section: Rectangle | Circle | Section
     length: float
@@ -95,6 +100,16 @@ class FiniteElementBeam:
         if self.cutoff is not None:
             positive("cutoff", self.cutoff)
         instance("name", self.name, str)
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words."""
+        return f"{self.length:.4g} m"
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words."""
+        return f"leaning {np.degrees(self.angle):.4g} deg"
 
     @property
     def tip(self) -> BodyPoint:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import ClassVar
 
 import numpy as np
 
@@ -47,6 +48,10 @@ class ModalBeam:
         If an argument is out of its range, or if no bending mode lies below `cutoff`.
     """
 
+    kind: ClassVar[str] = "modal beam"
+    point_names: ClassVar[tuple[str, ...]] = ("centre",)
+    has_positions: ClassVar[bool] = True
+    has_translation: ClassVar[bool] = True
     material: Material
     section: Rectangle | Circle | Section
     length: float
@@ -83,6 +88,16 @@ class ModalBeam:
     def ends(self) -> tuple[float, float]:
         """Abscissas of its two ends [m]."""
         return 0.0, self.length
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words."""
+        return f"{self.length:.4g} m"
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words: tracks lie along world x."""
+        return ""
 
     @property
     def centre(self) -> BodyPoint:

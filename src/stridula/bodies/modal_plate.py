@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -102,6 +102,10 @@ class ModalPlate:
         cross the plate.
     """
 
+    kind: ClassVar[str] = "modal plate"
+    point_names: ClassVar[tuple[str, ...]] = ("centre",)
+    has_positions: ClassVar[bool] = True
+    has_translation: ClassVar[bool] = True
     material: Material
     thickness: float
     length: float
@@ -134,6 +138,16 @@ class ModalPlate:
         if self.line is not None:
             instance("line", self.line, Line)
             self._check_line(self.line)
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words."""
+        return f"{self.length:.4g} m x {self.width:.4g} m x {self.thickness:.4g} m"
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words: tracks lie along world x."""
+        return ""
 
     @property
     def centre(self) -> BodyPoint:

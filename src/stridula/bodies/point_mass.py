@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -32,6 +32,10 @@ class PointMass:
         If an argument is out of its range.
     """
 
+    kind: ClassVar[str] = "point mass"
+    point_names: ClassVar[tuple[str, ...]] = ("centre",)
+    has_positions: ClassVar[bool] = False
+    has_translation: ClassVar[bool] = True
     mass: float
     name: str = ""
 
@@ -39,6 +43,16 @@ class PointMass:
         if positive("mass", self.mass) < SMALLEST_MASS:
             raise ArgumentError("mass", f"be at least {SMALLEST_MASS:g}", self.mass)
         instance("name", self.name, str)
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words, empty without one."""
+        return ""
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words."""
+        return ""
 
     @property
     def centre(self) -> BodyPoint:

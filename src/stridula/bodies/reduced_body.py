@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -71,6 +71,8 @@ class ReducedBody:
         If an argument is out of its range or does not fit the others, or if no mode is left.
     """
 
+    kind: ClassVar[str] = "reduced"
+    has_positions: ClassVar[bool] = False
     mass: Array
     stiffness: Array
     points: Mapping[str, Any]
@@ -223,6 +225,21 @@ class ReducedBody:
     def has_translation(self) -> bool:
         """Whether it is known how a translation moves it, which gravity and uniform initial velocities need."""
         return self.translation is not None
+
+    @property
+    def point_names(self) -> tuple[str, ...]:
+        """Names of its points."""
+        return tuple(self.points)
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words, which matrices do not say."""
+        return ""
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words, which matrices do not say."""
+        return ""
 
     @property
     def total_mass(self) -> float:

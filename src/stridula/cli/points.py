@@ -8,6 +8,7 @@ import math
 import re
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -45,10 +46,40 @@ class Span:
         """Return both ends, as texts where there is a unit."""
         return (f"{self.low!r} {self.unit}", f"{self.high!r} {self.unit}") if self.unit else (self.low, self.high)
 
+    @property
+    def size(self) -> int:
+        """Number of values."""
+        return self.count or 1
+
     def values(self) -> list[float] | list[str]:
         """Return the numbers, ends included, as texts where there is a unit."""
-        numbers: list[float] = np.linspace(self.low, self.high, self.count or 1).tolist()
+        numbers: list[float] = np.linspace(self.low, self.high, self.size).tolist()
         return [f"{number!r} {self.unit}" for number in numbers] if self.unit else numbers
+
+
+@dataclass(frozen=True)
+class Words:
+    """Values one by one.
+
+    Attributes
+    ----------
+    words : list of str
+        The values as written.
+    """
+
+    words: list[str]
+
+    @property
+    def size(self) -> int:
+        """Number of values."""
+        return len(self.words)
+
+    def ends(self) -> None:
+        """Return None: there is no range."""
+
+    def values(self) -> list[str]:
+        """Return the values."""
+        return self.words
 
 
 def points_of(vary: list[str], sample: int | None, seed: int | None, table: str | None, yes: bool) -> Points:
@@ -96,9 +127,9 @@ def numbers_of(text: str) -> tuple[str, list[float], str]:
         If they are not at least 2 rising numbers of one unit, or more than 10 000.
     """
     ((key, asked),) = _asked([text], is_sampled=False).items()
-    if isinstance(asked, Span) and (asked.count or 1) > MANY:
+    if asked.size > MANY:
         raise ArgumentError("--vary", f"have a COUNT of at most {MANY} here", text)
-    known = [parts(value) for value in (asked.values() if isinstance(asked, Span) else asked)]
+    known = [parts(value) for value in asked.values()]
     numbers, units = [one[0] for one in known if one], {one[1] for one in known if one}
     rises = all(one < other for one, other in pairwise(numbers))
     if None in known or len(units) != 1 or len(numbers) < 2 or not rises:
@@ -106,15 +137,15 @@ def numbers_of(text: str) -> tuple[str, list[float], str]:
     return key, numbers, units.pop()
 
 
-def _asked(vary: list[str], is_sampled: bool) -> dict[str, Span | list[str]]:
-    asked: dict[str, Span | list[str]] = {}
+def _asked(vary: list[str], is_sampled: bool) -> dict[str, Span | Words]:
+    asked: dict[str, Span | Words] = {}
     for text in vary:
         key, equals, values = (part.strip() for part in text.partition("="))
         if not equals or not key or not values:
             raise ArgumentError("--vary", "be KEY=START:STOP:COUNT or KEY=A,B,C", text)
         if key in asked:
             raise ArgumentError("--vary", "name each key once", key, got=f"{key!r} twice")
-        asked[key] = _range(text, values, is_sampled) if ":" in values else _list(text, values)
+        asked[key] = _range(text, values, is_sampled) if ":" in values else Words(_list(text, values))
     return asked
 
 
@@ -143,20 +174,20 @@ def ranges_of(vary: list[str]) -> dict[str, Range]:
     return found
 
 
-def _hypercube(asked: dict[str, Span | list[str]], sample: int, seed: int | None, yes: bool) -> LatinHypercube:
+def _hypercube(asked: dict[str, Span | Words], sample: int, seed: int | None, yes: bool) -> LatinHypercube:
     check_count(sample, yes)
+    ranges: dict[str, tuple[Any, Any]] = {}
     for key, given in asked.items():
-        if not isinstance(given, Span):
+        ends = given.ends()
+        if ends is None:
             raise ArgumentError("--vary", "be KEY=START:STOP with --sample", got=f"a list for {key!r}")
-    ranges = {key: given.ends() for key, given in asked.items() if isinstance(given, Span)}
+        ranges[key] = ends
     return LatinHypercube(ranges, sample, seed or 0)
 
 
-def _grid(asked: dict[str, Span | list[str]], yes: bool) -> Grid:
-    check_count(
-        math.prod((given.count or 1) if isinstance(given, Span) else len(given) for given in asked.values()), yes
-    )
-    return Grid({key: given.values() if isinstance(given, Span) else given for key, given in asked.items()})
+def _grid(asked: dict[str, Span | Words], yes: bool) -> Grid:
+    check_count(math.prod(given.size for given in asked.values()), yes)
+    return Grid({key: given.values() for key, given in asked.items()})
 
 
 def check_count(count: int, yes: bool) -> None:

@@ -57,8 +57,8 @@ class PointContact:
     def __post_init__(self) -> None:
         instance("tip", self.tip, BodyPoint)
         instance("track", self.track, (*Track.__args__, RigidTrack, BodyPoint))
-        if isinstance(self.track, Track):
-            within("at", self.at, *self.track.ends, ends=False)
+        if self.path_body is not None:
+            within("at", self.at, *self.path_body.ends, ends=False)
             if self.inclination != 0.0:
                 raise ArgumentError("inclination", f"be 0 on a {type(self.track).__name__}", self.inclination)
         finite("at", self.at)
@@ -74,11 +74,24 @@ class PointContact:
         instance("name", self.name, str)
 
     @property
+    def rigid_track(self) -> RigidTrack | None:
+        """The track if it is rigid."""
+        return self.track if isinstance(self.track, RigidTrack) else None
+
+    @property
+    def touched_point(self) -> BodyPoint | None:
+        """The point that the tip touches, None where it moves along a track."""
+        return self.track if isinstance(self.track, BodyPoint) else None
+
+    @property
+    def path_body(self) -> Track | None:
+        """The body that the tip moves along, None on a rigid track and against a point."""
+        return self.track if isinstance(self.track, Track) else None
+
+    @property
     def track_body(self) -> object | None:
         """The body on the track's side, None for a rigid track."""
-        if isinstance(self.track, RigidTrack):
-            return None
-        return self.track.body if isinstance(self.track, BodyPoint) else self.track
+        return self.path_body or (self.touched_point and self.touched_point.body)
 
     @property
     def frame(self) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -33,6 +34,7 @@ class RigidTrack:
         Acceleration along its tangent, and along its normal towards the tip [m/s²].
     """
 
+    kind: ClassVar[str] = "rigid"
     velocity: float = 0.0
     normal_velocity: float = 0.0
     history: Constant | Ramp | Harmonic | Sampled = field(default_factory=Constant)

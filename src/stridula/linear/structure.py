@@ -11,7 +11,6 @@ import numpy as np
 import scipy.linalg
 
 from ..assembly import ContactRows, assemble
-from ..bodies import BodyPoint, Track
 from ..bodies.modes import Array
 from ..checks import STATUS_WORDS, ArgumentError
 from ..contact import PointContact, RigidTrack
@@ -213,8 +212,8 @@ def settled_time(system: System) -> float:
         if hasattr(drive, "history"):
             histories.append((f"drives[{number}]", drive.history))
     for name, contact in zip(system.contact_names, system.contacts, strict=True):
-        if isinstance(contact.track, RigidTrack):
-            histories += [(f"the track of {name}", history) for history in _varying(contact.track, name)]
+        if contact.rigid_track is not None:
+            histories += [(f"the track of {name}", history) for history in _varying(contact.rigid_track, name)]
     for name, history in histories:
         if history.settled is None:
             raise ArgumentError("time", f"be given for {name}, which never stops varying", history)
@@ -235,15 +234,15 @@ def _varying(track: RigidTrack, name: str) -> list[History]:
 
 def _line(one: ContactRows, system: System, spans: Mapping[str, tuple[int, int]], shift: float = 0.0) -> ContactLine:
     nothing = np.zeros(one.fixed.shape[1])
-    track, points = one.contact.track, np.zeros((2, 2, nothing.size))
+    touched, track, points = one.contact.touched_point, one.contact.path_body, np.zeros((2, 2, nothing.size))
 
     def place(side: int, body: Any, position: Any) -> None:
         points[side][:, slice(*spans[system.body_name(body)])] = body.trace(position, system.is_held(body))
 
     place(0, one.contact.tip.body, one.contact.tip.position)
-    if isinstance(track, BodyPoint):
-        place(1, track.body, track.position)
-    if not isinstance(track, Track):
+    if touched is not None:
+        place(1, touched.body, touched.position)
+    if track is None:
         return ContactLine(one.fixed[0], one.fixed[1], nothing, nothing, nothing, points)
     at = one.contact.at + shift
     place(1, track, at)
@@ -272,10 +271,10 @@ def _prescribed_rates(contact: PointContact, system: System, now: Array) -> tupl
     imposed, (normal, tangent) = system.imposed_velocity, contact.frame
     root = imposed.velocity * float(imposed.history.factor(now)[0]) if imposed else 0.0
     held = float(system.is_held(contact.tip.body))
-    if isinstance(contact.track, BodyPoint):
-        held -= float(system.is_held(contact.track.body))
+    if contact.touched_point is not None:
+        held -= float(system.is_held(contact.touched_point.body))
     slip, opening = held * tangent[0] * root, held * normal[0] * root
-    if isinstance(contact.track, RigidTrack):
-        slip -= float(contact.track.speed(now)[0])
-        opening -= float(contact.track.normal_speed(now)[0])
+    if contact.rigid_track is not None:
+        slip -= float(contact.rigid_track.speed(now)[0])
+        opening -= float(contact.rigid_track.normal_speed(now)[0])
     return float(slip), float(opening)

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, Track
+from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam
 from ..bodies.damping import DampingLaw
 from ..bodies.modes import Array
-from ..contact import PointContact, RigidTrack
+from ..contact import PointContact
 from ..drives import Drive
 from ..histories import Constant
 from ..system import System
@@ -23,13 +23,6 @@ from .probes import Probe, Reaction
 
 # A list as tomli_w writes it, one number on a line; texts are on one line each and never match.
 _LIST_OF_NUMBERS = re.compile(r"\[\n((?:\s*[-+.\dinfaeE]+,\n)+)\s*\]")
-BODY_KINDS = {
-    "FiniteElementBeam": "finite-element beam",
-    "ModalBeam": "modal beam",
-    "ModalPlate": "modal plate",
-    "PointMass": "point mass",
-    "ReducedBody": "reduced",
-}
 
 
 def scenario_toml(system: System, probes: Sequence[Probe], simulation: dict[str, Any]) -> str:
@@ -57,8 +50,9 @@ def _is_pair(system: System) -> bool:
     return (
         len(system.contacts) == 1
         and not system.connections
-        and isinstance(system.slider, FiniteElementBeam)
-        and isinstance(system.contacts[0].track, ModalBeam)
+        and system.slider.kind == FiniteElementBeam.kind
+        and system.track.kind == ModalBeam.kind
+        and system.contacts[0].touched_point is None
     )
 
 
@@ -76,12 +70,12 @@ def _general(system: System) -> dict[str, Any]:
         return {"body": system.body_name(point.body), "point": _point(point)}
 
     def track(contact: PointContact) -> dict[str, Any]:
-        if isinstance(contact.track, RigidTrack):
-            return {"kind": "rigid", **_plain(contact.track, "history", "normal_history"), **_histories(contact.track)}
-        if isinstance(contact.track, BodyPoint):
-            return {"kind": "point", **place(contact.track)}
-        kind = "plate" if isinstance(contact.track, ModalPlate) else "beam"
-        return {"kind": kind, "body": system.body_name(contact.track)}
+        rigid, touched, body = contact.rigid_track, contact.touched_point, contact.path_body
+        if rigid is not None:
+            return {"kind": rigid.kind, **_plain(rigid, "history", "normal_history"), **_histories(rigid)}
+        if body is not None:
+            return {"kind": body.kind.removeprefix("modal "), "body": system.body_name(body)}
+        return {"kind": "point", **(place(touched) if touched is not None else {})}
 
     tables: dict[str, Any] = {
         "bodies": {system.body_name(body): _general_body(body, system) for body in system.bodies},
@@ -155,15 +149,12 @@ def _body(body: Any) -> dict[str, Any]:
         given["points"] = {name: _rows(rows) for name, rows in body.points.items()}
     if not hasattr(body, "section"):
         return given
-    section = {"shape": type(body.section).__name__.lower(), **_plain(body.section)}
-    if section["shape"] == "section":
-        section["shape"] = "general"
-    return {**given, "section": section}
+    return {**given, "section": {"shape": body.section.shape, **_plain(body.section)}}
 
 
 def body_table(body: Any) -> dict[str, Any]:
     """Return the table of a body in a scenario of bodies and contacts."""
-    return {"kind": BODY_KINDS[type(body).__name__], **_body(body)}
+    return {"kind": body.kind, **_body(body)}
 
 
 def _general_body(body: Any, system: System) -> dict[str, Any]:
@@ -192,13 +183,7 @@ def _rows(rows: Array) -> Any:
 
 
 def _point(point: BodyPoint) -> Any:
-    body: Any = point.body
-    if isinstance(point.position, str):
-        return point.position
-    named: dict[str, Any] = {"tip": 0.0, "root": body.length} if isinstance(body, FiniteElementBeam) else {}
-    if isinstance(body, Track):
-        named = {"centre": body.centre.position}
-    return next((name for name, position in named.items() if position == point.position), _value(point.position))
+    return _value(point.position) if point.point_name is None else point.point_name
 
 
 def _drive(drive: Drive, system: System) -> dict[str, Any]:

@@ -12,19 +12,18 @@ from typing import Any
 from .. import connections, drives, histories
 from ..bodies import (
     BodyPoint,
-    Circle,
     FiniteElementBeam,
+    HasRoot,
     Line,
     Material,
     ModalBeam,
     ModalPlate,
     PointMass,
-    Rectangle,
     ReducedBody,
-    Section,
 )
 from ..bodies.damping import DAMPING_LAWS
 from ..bodies.ordinary import NotOrdinary
+from ..bodies.sections import SECTIONS
 from ..checks import ArgumentError, brief, listed, suggestion
 from ..contact import LAWS, PointContact, RigidTrack
 from ..disk import is_there
@@ -35,14 +34,13 @@ from ..system import System
 from .errors import ScenarioError
 from .quantities import quantity
 
-SECTIONS: dict[str, Callable[..., Any]] = {"rectangle": Rectangle, "circle": Circle, "general": Section}
+SHAPES: dict[str, Callable[..., Any]] = {section.shape: section for section in SECTIONS}
 DAMPINGS: dict[str, Callable[..., Any]] = {law.form: law for law in DAMPING_LAWS}
 HISTORIES: dict[str, Callable[..., Any]] = {history.kind: history for history in histories.HISTORIES}
 DRIVES: dict[str, type[Drive]] = {drive.kind: drive for drive in drives.DRIVES}
 MOTIONS = {"displacement": Displacement, "velocity": Velocity, "acceleration": Acceleration}
 FRICTIONS: dict[str, Callable[..., Any]] = {law.law: law for law in LAWS}
 CONNECTIONS: dict[str, Callable[..., Any]] = {connection.kind: connection for connection in connections.CONNECTIONS}
-TRACKS = {"beam": ModalBeam, "plate": ModalPlate}
 Tables = dict[str, Any]
 Place = tuple[str | int, ...]
 # How a value that another problem left out looks.
@@ -80,7 +78,7 @@ class Builder:
             system = System(contacts[0] if len(contacts) == 1 else contacts, drives, connections)
         self._stop_at_problems()
         for name, body in self.bodies.items():
-            if isinstance(body, FiniteElementBeam):
+            if isinstance(body, HasRoot):
                 with self._within(*self.places.get(name, ("bodies", name))):
                     body.modes(system.is_held(body))
         self._stop_at_problems()
@@ -204,7 +202,7 @@ class Builder:
         shape: Any = None
         material: Any = None
         with self._within(*path, "section"):
-            shape = SECTIONS[section.pop("shape")](**section)
+            shape = SHAPES[section.pop("shape")](**section)
         with self._within(*path, "material"):
             material = Material(**table.pop("material"))
         with self._within(*path):
@@ -243,9 +241,9 @@ class Builder:
         kind = table.pop("kind")
         if kind == "point":
             return self._place(path, table)
-        if kind in TRACKS:
+        if kind != RigidTrack.kind:
             body = self.bodies[table["body"]]
-            if not isinstance(body, TRACKS[kind]):
+            if body.kind != f"modal {kind}":
                 self.problems.append(
                     f"{self.words((*path, 'body'))} must be a modal {kind}, got {brief(table['body'])}"
                 )
@@ -283,7 +281,7 @@ class Builder:
             return made(*((self._root(path, body),) if place == "root" else where), **table)
 
     def _root(self, path: Place, body: Any) -> Any:
-        if not isinstance(body, FiniteElementBeam):
+        if not isinstance(body, HasRoot):
             self.problems.append(f"{self.words((*path, 'body'))} must be a finite-element beam, whose root is driven")
             return None
         return body.root
@@ -312,26 +310,24 @@ class Builder:
         """Return a point of a body; without a place the `end` of a slider, the centre or the only point."""
         if body is None:
             return None
-        if isinstance(body, (FiniteElementBeam, ModalBeam, ModalPlate)):
-            return self._point_of_beam(path, body, place, end)
-        known = tuple(body.points) if isinstance(body, ReducedBody) else ("centre",)
-        if place is None and len(known) == 1:
-            place = known[0]
+        names = body.point_names
+        if place is None and len(names) > 1 and body.has_positions:
+            place = end if end in names else names[0]
+        if place is None and len(names) == 1:
+            place = names[0]
+        if place in names:
+            point: BodyPoint = getattr(body, str(place)) if body.has_positions else BodyPoint(body, str(place))
+            return point
+        if body.has_positions:
+            return self._between(path, body, place)
         if place is None:
-            self.problems.append(f"{self.words(path)} must be given: one of {listed(known)}")
-        elif place in known:
-            return BodyPoint(body, place)
+            self.problems.append(f"{self.words(path)} must be given: one of {listed(names)}")
         else:
-            self.problems.append(_unknown(self.words(path), place, known))
+            self.problems.append(_unknown(self.words(path), place, names))
         return None
 
-    def _point_of_beam(self, path: Place, body: Any, place: str | float | tuple[float, float] | None, end: str) -> Any:
-        names = ("tip", "root") if isinstance(body, FiniteElementBeam) else ("centre",)
-        if place is None:
-            place = end if end in names else names[0]
-        if place in names:
-            point: BodyPoint = getattr(body, str(place))
-            return point
+    def _between(self, path: Place, body: Any, place: Any) -> Any:
+        """Return a point between the named ones."""
         key = self.words(path)
         try:
             return body.at(place if isinstance(place, tuple) else quantity(place, "m"))
@@ -339,7 +335,7 @@ class Builder:
             if error.argument == "position":
                 self.problems.append(str(error.renamed(key)))
             else:
-                self.problems.append(f"{key} must be {' or '.join(names)} or a position, got {brief(place)}")
+                self.problems.append(f"{key} must be {' or '.join(body.point_names)} or a position, got {brief(place)}")
         return None
 
     @contextmanager

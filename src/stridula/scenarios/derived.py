@@ -32,9 +32,9 @@ class Derived(Table):
 
 def table_of(
     description: type,
-    tag: str,
-    word: str,
-    text: str,
+    tag: str = "",
+    word: str = "",
+    text: str = "",
     *,
     is_usual: bool = False,
     before: Keys | None = None,
@@ -46,15 +46,16 @@ def table_of(
     ----------
     description : type
         The dataclass.
-    tag, word, text : str
-        The key that tells tables of several kinds apart, its value for this one, and what it is.
+    tag, word, text : str, optional
+        The key that tells tables of several kinds apart, its value for this one, and what it is; empty where there is
+        one kind only.
     is_usual : bool, optional
         Whether this is the kind of a table that does not say.
     before, after : mapping, optional
         Type, default and text of other keys, before and after the declared fields.
     """
     before, after = before or {}, after or {}
-    keys: dict[str, Any] = {tag: (Literal[word], word if is_usual else ...)}
+    keys: dict[str, Any] = {tag: (Literal[word], word if is_usual else ...)} if tag else {}
     keys |= {key: (kind, default) for key, (kind, default, _) in before.items()}
     keys |= {
         field.name: (_read(field), ... if field.default is dataclasses.MISSING else field.default)
@@ -62,10 +63,8 @@ def table_of(
     }
     keys |= {key: (kind, default) for key, (kind, default, _) in after.items()}
     table = create_model(description.__name__, __base__=Derived, __module__=__name__, **keys)
-    table.made, table.own_texts = (
-        description,
-        {tag: text} | {key: text for key, (*_, text) in {**before, **after}.items()},
-    )
+    others = {key: words for key, (*_, words) in {**before, **after}.items()}
+    table.made, table.own_texts = description, ({tag: text} if tag else {}) | others
     return table
 
 

@@ -2,54 +2,29 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field
 
+from .. import bodies
 from ..bodies import FiniteElementBeam, ModalBeam, ModalPlate
 from ..bodies import Line as Straight
-from ..bodies import Material as Solid
+from ..bodies.sections import SECTIONS
 from . import fields as is_
+from .derived import one_of, table_of
 from .fields import Table
 
 Support = Literal["free", "guided", "pinned", "clamped"]
 
 
-class Material(Table):
-    young: is_.Modulus
-    """Young's modulus [Pa]"""
-    density: is_.Density
-    """mass density [kg/m³]"""
-    poisson: is_.Poisson = Solid.poisson
-    """Poisson's ratio, of plates"""
-
-
-class Rectangle(Table):
-    shape: Literal["rectangle"]
-    """rectangle, circle or general"""
-    width: is_.Length
-    """side normal to the plane of motion [m]"""
-    height: is_.Length
-    """side in the plane of motion, the one that bends [m]"""
-
-
-class Circle(Table):
-    shape: Literal["circle"]
-    """rectangle, circle or general"""
-    diameter: is_.Length
-    """diameter [m]"""
-
-
-class General(Table):
-    shape: Literal["general"]
-    """rectangle, circle or general"""
-    area: is_.Area
-    """area [m²]"""
-    second_moment: is_.SecondMoment
-    """second moment of area in the plane of motion [m⁴]"""
-
-
-Section = Annotated[Rectangle | Circle | General, Field(discriminator="shape")]
+if TYPE_CHECKING:
+    Material = Any
+    Section = Any
+else:
+    Material = table_of(bodies.Material)
+    Section = one_of(
+        "shape", [table_of(section, "shape", section.shape, "rectangle, circle or general") for section in SECTIONS]
+    )
 
 
 class Slider(Table):

@@ -13,10 +13,8 @@ import scipy.special
 import xarray as xr
 
 from ..analysis import status_share
-from ..bodies import ReducedBody
 from ..bodies.modes import Array
 from ..checks import ArgumentError, brief, count, instance, positive, within
-from ..contact import RigidTrack
 from ..drives import Drive, InitialVelocity
 from ..drives import InitialState as State
 from ..integration import simulate_many
@@ -199,15 +197,15 @@ def _prescribed(system: System) -> float:
     """Return the largest velocity that is prescribed [m/s], 1 if there is none."""
     found = [velocity for drive in system.drives for velocity in drive.velocities] or [0.0]
     for contact in system.contacts:
-        if isinstance(contact.track, RigidTrack):
-            found += [contact.track.velocity, contact.track.normal_velocity]
+        if contact.rigid_track is not None:
+            found += [contact.rigid_track.velocity, contact.rigid_track.normal_velocity]
     return max(abs(velocity) for velocity in found) or 1.0
 
 
 def _push(system: System, velocity: float) -> Drive:
     """Return what gives the slider a small velocity."""
     slider = system.slider
-    if isinstance(slider, ReducedBody) and not slider.has_translation:
+    if not slider.has_translation:
         return State(slider, velocity=(velocity,) * slider.mass.shape[0])
     held = system.is_held(slider)
     normal, tangent = system.contacts[0].frame
