@@ -12,7 +12,7 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from .checks import ArgumentError, at_least, at_most, choice, count, finite, one_or_each
+from .checks import ArgumentError, at_least, at_most, choice, count, finite, instance, one_or_each
 
 _UNIT = re.compile(r"\s*\[([^\]]*)\]")
 _NAMED_AFTER = re.compile(r"[A-Z]\w*'s\b")
@@ -121,7 +121,51 @@ class NumberOrWord:
         return choice(name, value, self.words) if isinstance(value, str) else count(name, value, low=0)
 
 
-Kind = Number | Choice | Each | OneOrEach | NumberOrWord
+@dataclass(frozen=True)
+class Whole:
+    """A whole number.
+
+    Attributes
+    ----------
+    least : int
+        Smallest one allowed.
+    """
+
+    least: int = 1
+
+    def check(self, name: str, value: Any) -> int:
+        """Return a value as an int if it is such a number."""
+        return count(name, value, low=self.least)
+
+
+@dataclass(frozen=True)
+class Text:
+    """A text."""
+
+    def check(self, name: str, value: Any) -> str:
+        """Return a value if it is a text."""
+        instance(name, value, str)
+        return str(value)
+
+
+@dataclass(frozen=True)
+class Own:
+    """What a description checks itself.
+
+    Attributes
+    ----------
+    what : str
+        What it is, for those who read it.
+    """
+
+    what: str
+
+    def check(self, name: str, value: Any) -> Any:
+        """Return a value as it is."""
+        return value
+
+
+Kind = Number | Choice | Each | OneOrEach | NumberOrWord | Whole | Text | Own
 # What is kept as it was checked: sequences as tuples, numbers of NumPy as Python's.
 _KEPT = (Each, OneOrEach, NumberOrWord)
 
@@ -134,7 +178,7 @@ class Declared:
     ----------
     name : str
         Its name.
-    kind : Number, Choice, Each, OneOrEach or NumberOrWord
+    kind : Number, Choice, Each, OneOrEach, NumberOrWord, Whole, Text or Own
         What it may be.
     is_optional : bool
         Whether it may be None, too.
@@ -215,6 +259,9 @@ Frequency = Annotated[float, Number("Hz", above=0.0)]
 Newtons = Annotated[float, Number("N")]
 Velocity = Annotated[float, Number("m/s")]
 Axis = Annotated[str, Choice(("x", "y"))]
+Count = Annotated[int, Whole(1)]
+CountFrom0 = Annotated[int, Whole(0)]
+Name = Annotated[str, Text()]
 Time = Annotated[float, Number("s", above=0.0)]
 Speed = Annotated[float, Number("m/s", above=0.0)]
 Slope = Annotated[float, Number("s/m", least=0.0)]

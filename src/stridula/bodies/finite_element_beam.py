@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 import scipy.linalg
 
-from ..checks import ArgumentError, choice, count, finite, instance, positive, within
+from ..checks import ArgumentError, instance, within
+from ..declared import Angle, Choice, Count, Frequency, Length, Name, Own, check_declared
 from .damping import DampingLaw, checked_damping, damping_rates
 from .finite_elements import (
     FIXED_BY_SUPPORT,
@@ -25,6 +26,7 @@ from .ordinary import check_overflow, of_ordinary_size
 from .sections import Circle, Material, Rectangle, Section
 
 LARGEST_ELEMENTS = 500
+SUPPORTS = tuple(FIXED_BY_SUPPORT)
 # Beams whose modes are kept: a sweep comes back to the same ones. Of those of many elements fewer, for their memory.
 FEW_ELEMENTS, MANY_BEAMS, FEW_BEAMS = 60, 128, 16
 
@@ -44,21 +46,24 @@ class FiniteElementBeam:
     section : Rectangle, Circle or Section
         Its cross-section.
     length : float
-        Length [m].
+        Length [m], from tip to root.
     angle : float, optional
-        Angle a of its axis from the track's normal [rad], strictly between -pi/2 and pi/2; above zero the root is
-        ahead of the tip in x.
+        Angle from the track's normal [rad], above zero where the root is ahead of the tip in x; that of its axis, a,
+        strictly between -pi/2 and pi/2.
     elements : int, optional
-        Number of equal elements, at most 500.
+        Number of finite elements; they are equal, at most 500.
     damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
-        Damping ratio of every mode [1], from 0 to 1 (1 excluded), one for each mode kept in the order of rising
-        frequency (of no effect on rigid modes), or a law of their frequency.
-    root_support, tip_support : {"free", "guided", "pinned", "clamped"}, optional
-        Support of the root and of the tip. Guided: the section does not rotate, both translations are free.
+        Damping ratio of every mode [1], one for each, or a law of frequency; from 0 to 1 (1 excluded), one for each
+        mode kept in the order of rising frequency, of no effect on rigid modes.
+    root_support : {"free", "guided", "pinned", "clamped"}, optional
+        Support of the root: free, guided (no rotation), pinned or clamped; where it is guided, both translations are
+        free.
+    tip_support : {"free", "guided", "pinned", "clamped"}, optional
+        Support of the tip: free, guided, pinned or clamped.
     mass : {"consistent", "lumped"}, optional
-        Mass matrix of the elements.
+        Mass matrix of the elements: consistent or lumped.
     cutoff : float, optional
-        Keep the modes up to this frequency [Hz], rigid ones always; all modes if left out, which is then exactly the
+        Keep the modes up to this frequency, all if left out [Hz]; rigid ones always. All of them are exactly the
         finite-element model.
     name : str, optional
         What it is called in records; tells equal bodies apart.
@@ -75,31 +80,25 @@ class FiniteElementBeam:
     has_translation: ClassVar[bool] = True
     material: Material
     section: Rectangle | Circle | Section
-    length: float
-    angle: float = 0.0
-    elements: int = 20
-    damping: float | Sequence[float] | DampingLaw = 0.0
-    root_support: str = "guided"
-    tip_support: str = "free"
-    mass: str = "consistent"
-    cutoff: float | None = None
-    name: str = ""
+    length: Length
+    angle: Angle = 0.0
+    elements: Count = 20
+    damping: Annotated[float | Sequence[float] | DampingLaw, Own("damping")] = 0.0
+    root_support: Annotated[str, Choice(SUPPORTS)] = "guided"
+    tip_support: Annotated[str, Choice(SUPPORTS)] = "free"
+    mass: Annotated[str, Choice(("consistent", "lumped"))] = "consistent"
+    cutoff: Frequency | None = None
+    name: Name = ""
 
     def __post_init__(self) -> None:
         instance("material", self.material, Material)
         instance("section", self.section, (Rectangle, Circle, Section))
-        positive("length", self.length)
-        if abs(finite("angle", self.angle)) >= np.pi / 2:
+        check_declared(self)
+        if abs(self.angle) >= np.pi / 2:
             raise ArgumentError("angle", "be strictly between -pi/2 and pi/2 rad (90 deg)", self.angle)
-        if count("elements", self.elements) > LARGEST_ELEMENTS:
+        if self.elements > LARGEST_ELEMENTS:
             raise ArgumentError("elements", f"be at most {LARGEST_ELEMENTS}", self.elements)
         object.__setattr__(self, "damping", checked_damping(self.damping))
-        choice("root_support", self.root_support, tuple(FIXED_BY_SUPPORT))
-        choice("tip_support", self.tip_support, tuple(FIXED_BY_SUPPORT))
-        choice("mass", self.mass, ("consistent", "lumped"))
-        if self.cutoff is not None:
-            positive("cutoff", self.cutoff)
-        instance("name", self.name, str)
 
     @property
     def dimensions(self) -> str:

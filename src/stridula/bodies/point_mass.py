@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from ..checks import ArgumentError, choice, instance, positive
+from ..checks import ArgumentError, choice
+from ..declared import Name, Number, check_declared
 from .modes import Array, BodyPoint, Modes
 
 POINTS = ("centre",)
@@ -22,7 +23,7 @@ class PointMass:
     Parameters
     ----------
     mass : float
-        Mass [kg], at least 1e-100.
+        Mass [kg]; at least 1e-100.
     name : str, optional
         What it is called in records; tells equal bodies apart.
 
@@ -36,13 +37,13 @@ class PointMass:
     point_names: ClassVar[tuple[str, ...]] = ("centre",)
     has_positions: ClassVar[bool] = False
     has_translation: ClassVar[bool] = True
-    mass: float
-    name: str = ""
+    mass: Annotated[float, Number("kg", above=0.0)]
+    name: Name = ""
 
     def __post_init__(self) -> None:
-        if positive("mass", self.mass) < SMALLEST_MASS:
+        check_declared(self)
+        if self.mass < SMALLEST_MASS:
             raise ArgumentError("mass", f"be at least {SMALLEST_MASS:g}", self.mass)
-        instance("name", self.name, str)
 
     @property
     def dimensions(self) -> str:

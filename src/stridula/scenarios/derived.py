@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, create_model
 
-from ..declared import Choice, Declared, Each, declared, texts
+from ..declared import Choice, Declared, Each, Text, declared, texts
 from .fields import Table, read_as
 
 # Type, default (... if it must be given) and text by key.
@@ -36,6 +36,7 @@ def table_of(
     word: str = "",
     text: str = "",
     *,
+    title: str = "",
     is_usual: bool = False,
     before: Keys | None = None,
     after: Keys | None = None,
@@ -49,6 +50,8 @@ def table_of(
     tag, word, text : str, optional
         The key that tells tables of several kinds apart, its value for this one, and what it is; empty where there is
         one kind only.
+    title : str, optional
+        What the schema calls it, as the dataclass if left out.
     is_usual : bool, optional
         Whether this is the kind of a table that does not say.
     before, after : mapping, optional
@@ -62,7 +65,7 @@ def table_of(
         for field in declared(description)
     }
     keys |= {key: (kind, default) for key, (kind, default, _) in after.items()}
-    table = create_model(description.__name__, __base__=Derived, __module__=__name__, **keys)
+    table = create_model(title or description.__name__, __base__=Derived, __module__=__name__, **keys)
     others = {key: words for key, (*_, words) in {**before, **after}.items()}
     table.made, table.own_texts = description, ({tag: text} if tag else {}) | others
     return table
@@ -75,10 +78,14 @@ def one_of(tag: str, tables: Iterable[type[Table]]) -> Any:
 
 def _read(field: Declared) -> Any:
     """Return the kind of a declared field, as tables read it."""
-    kind: Any = Annotated[Any, read_as(field.kind)]
+    kind: Any
     match field.kind:
         case Choice(words):
             kind = Literal[words]
         case Each(one):
             kind = list[Annotated[float, read_as(one)]]
+        case Text():
+            kind = str
+        case one:
+            kind = Annotated[Any, read_as(one)]
     return kind | None if field.is_optional else kind

@@ -185,10 +185,15 @@ def read_as(kind: Kind) -> _Kind:
             return Words(words)
         case declarations.NumberOrWord(words):
             return NumberOrWord(Words(words))
+        case declarations.Whole(least):
+            return Whole(least)
+        case declarations.Own("damping"):
+            return RatioOrLaw(each=True)
         case declarations.OneOrEach(declarations.Choice(words)):
             return Words(words, each=True)
         case declarations.OneOrEach(one) | declarations.Each(one):
             return OneOrEach(Quantity(**vars(one)))
+    raise TypeError(f"no scenario can give {kind}")
 
 
 LAW_OF_DAMPING = DampingTable()
