@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from .arrays import Array
 from .bodies import BodyPoint, HasRoot
-from .bodies.modes import Array, Modes
+from .bodies.modes import Modes
 from .bodies.ordinary import check_coupled_count, of_ordinary_size
 from .checks import ArgumentError, brief
 from .connections import ends, unit

@@ -7,8 +7,8 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
+from .arrays import Array
 from .bodies import BodyPoint
-from .bodies.modes import Array
 from .checks import ArgumentError, brief, instance
 from .declared import Axis, Number, check_declared
 

@@ -8,8 +8,8 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
+from .arrays import Array
 from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, PointMass, ReducedBody
-from .bodies.modes import Array
 from .checks import STATUS_WORDS, ArgumentError, instance, positive
 from .declared import (
     Angle,

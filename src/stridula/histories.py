@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar, Protocol
 
 import numpy as np
 
-from .bodies.modes import Array
+from .arrays import Array
 from .checks import ArgumentError, brief, finite
 from .declared import Angle, Each, Frequency, Number, Ratio, Time, check_declared
 

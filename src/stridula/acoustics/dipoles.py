@@ -7,8 +7,8 @@ from math import cos, pi
 import numpy as np
 from scipy.optimize import brentq
 
+from ..arrays import Array
 from ..bodies import Circle, Rectangle, Section
-from ..bodies.modes import Array
 from ..checks import ArgumentError
 from .air import Air
 from .delays import Interpolation, Response, add, response, span

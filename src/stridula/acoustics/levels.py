@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy.fft import next_fast_len, rfft, rfftfreq
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, choice, positive
 from .pressures import channels, check_length, check_rate, of_listeners
 from .weighting import TIME_CONSTANTS, a_weighted, time_weighted

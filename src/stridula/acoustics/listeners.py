@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
-from ..bodies.modes import Array
 from ..checks import ArgumentError, at_least, at_most, finite, positive
 
 FARTHEST = 1000.0

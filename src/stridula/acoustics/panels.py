@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate, Rectangle
-from ..bodies.modes import Array
 from ..checks import ArgumentError
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, at_least, at_most, instance
 
 # Share of the sample interval by which samples may be off an even grid: rounding of times leaves far less.

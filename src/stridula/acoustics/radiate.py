@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
-from ..bodies.modes import Array
 from ..checks import instance
 from ..records.changes import check_one_track
 from .air import Air

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, at_least, at_most, count
 from ..records.checked import record
 from .panels import Panel

@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 from scipy.signal import oaconvolve, resample_poly
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, at_least, at_most, positive
 from .sample_rates import low_pass
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
-from ..bodies.modes import Array
 from ..checks import ArgumentError, at_most, instance, positive
 from .air import Air
 from .panels import Panel, panel_of

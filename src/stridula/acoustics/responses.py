@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
-from ..bodies.modes import Array
 from .air import Air
 from .delays import Interpolation, Response, interpolation
 from .dipoles import dipole_response, moved_area

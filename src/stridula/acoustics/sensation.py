@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, choice
 from .pressures import channels, check_length, check_rate, of_listeners, over_time
 from .sample_rates import resampled

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, at_least, positive, within
 from .heard import Frames, frames, strongest_tone
 from .phases import ROUND_OFF, SMOOTHING

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, at_most, listed
 from ..records import checked
 

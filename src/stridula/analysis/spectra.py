@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, at_most, positive
 from .signals import blocks, checked_intervals, pieces, samples
 

@@ -7,8 +7,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..arrays import Array
 from ..bodies import FiniteElementBeam, ModalBeam
-from ..bodies.modes import Array
 from ..histories import Constant
 from ..integration.live import LiveChunk, LiveMarch
 from .last_seconds import LastSeconds

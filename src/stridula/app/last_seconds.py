@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from ..acoustics.wav import encoded, normalised_scale, scale_comment
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError
 from ..records.variables import (
     CONTACT,

@@ -9,9 +9,9 @@ from typing import Annotated, Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
+from ..arrays import Array
 from ..checks import ArgumentError
 from ..declared import DAMPING_RATIO, DampingRatio, Each, Number, check_declared
-from .modes import Array
 
 
 @runtime_checkable

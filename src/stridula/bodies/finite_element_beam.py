@@ -10,6 +10,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 import scipy.linalg
 
+from ..arrays import Array
 from ..checks import ArgumentError, instance, within
 from ..declared import Angle, Choice, Count, Frequency, Length, Name, Own, check_declared
 from .damping import DampingLaw, checked_damping, damping_rates
@@ -21,7 +22,7 @@ from .finite_elements import (
     element_mass,
     element_stiffness,
 )
-from .modes import Array, BodyPoint, Modes
+from .modes import BodyPoint, Modes
 from .ordinary import check_overflow, of_ordinary_size
 from .sections import Circle, Material, Rectangle, Section
 

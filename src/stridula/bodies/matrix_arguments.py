@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
+from ..arrays import Array
 from ..checks import ArgumentError
 from .damping import Rayleigh
 from .matrix_files import AlignedMatrices, check_size
 from .matrix_input import check_mass, is_pair, point_rows, rows_of, square, symmetric
-from .modes import Array
 
 
 def from_container(held: dict[str, Any]) -> dict[str, Any]:

@@ -18,10 +18,10 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
+from ..arrays import Array
 from ..checks import ArgumentError, at_least, in_one_line, listed
 from ..disk import one_line, write
 from .matlab import read_matlab
-from .modes import Array
 
 LARGEST_FILE = 2 * 1024**3
 LARGEST_SIZE = 4000

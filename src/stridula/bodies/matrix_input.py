@@ -10,11 +10,11 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse
 
+from ..arrays import Array
 from ..checks import ArgumentError, instance
 from ..declared import DAMPING_RATIO
 from .damping import DampingLaw, checked_damping
 from .matrix_files import check_size
-from .modes import Array
 
 SYMMETRY = 1e-8
 

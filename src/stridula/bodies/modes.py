@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..checks import ArgumentError
-
-Array = NDArray[Any]
 
 
 @dataclass(frozen=True)

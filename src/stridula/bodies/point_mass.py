@@ -7,9 +7,10 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
+from ..arrays import Array
 from ..checks import ArgumentError, choice
 from ..declared import Name, Number, check_declared
-from .modes import Array, BodyPoint, Modes
+from .modes import BodyPoint, Modes
 
 POINTS = ("centre",)
 # Below, stiffness over mass overflows.

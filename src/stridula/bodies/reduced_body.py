@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ..arrays import Array
 from ..checks import ArgumentError, choice, instance, positive
 from .damping import DampingLaw, Rayleigh
 from .matrix_arguments import from_container, from_matrices
@@ -27,7 +28,7 @@ from .matrix_input import (
     square,
     symmetric,
 )
-from .modes import Array, BodyPoint, Modes
+from .modes import BodyPoint, Modes
 from .ordinary import of_ordinary_size
 from .reduction import Reduction, reduce_body
 

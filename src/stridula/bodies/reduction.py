@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
+from ..arrays import Array
 from ..checks import ArgumentError, at_least, at_most
 from .damping import damping_rates
 from .matrix_input import ROUND_OFF, smallest_eigenvalue
-from .modes import Array, Modes
+from .modes import Modes
 
 COUPLING = 1e-10
 

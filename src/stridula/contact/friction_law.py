@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError
 from ..declared import check_declared
 from .linearised import Linearised

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..declared import Coefficient, Number, Position, PositiveRatio, Slope, Speed
 from .friction_law import StaticAndKinetic
 from .linearised import Linearised

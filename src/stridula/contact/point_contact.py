@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..arrays import Array
 from ..bodies import BodyPoint, Track
-from ..bodies.modes import Array
 from ..checks import ArgumentError, brief, finite, instance, non_negative, within
 from .coulomb import Coulomb
 from .friction_law import FrictionLaw

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..declared import Choice, Length, PositiveRatio, Speed, Time
 from .friction_law import FrictionLaw
 from .linearised import Linearised

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import finite, instance
 from ..histories import HISTORIES, Constant, Harmonic, History, Ramp, Sampled
 

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..declared import Coefficient, PositiveRatio, Slope, Speed
 from .friction_law import StaticAndKinetic
 from .linearised import Linearised

@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError
 from ..contact import FrictionLaw
 from .structure import SEPARATED, SLIDING, STICKING, UNMOVED, Structure

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import STATUS_WORDS, ArgumentError, choice, finite, one_or_each
 from ..system import System
 from .structure import SLIDING, Structure

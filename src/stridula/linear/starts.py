@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError
 from ..contact import FrictionLaw
 from ..drives import MOST_UNSTABLE, InitialEquilibrium

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
+from ..arrays import Array
 from ..assembly import ContactRows, assemble
-from ..bodies.modes import Array
 from ..checks import STATUS_WORDS, ArgumentError
 from ..contact import PointContact, RigidTrack
 from ..histories import History

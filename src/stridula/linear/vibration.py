@@ -12,7 +12,7 @@ import scipy.linalg
 import scipy.sparse
 import scipy.sparse.linalg
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..contact.linearised import Linearised
 from .equilibrium import Equilibrium, held_rows
 from .structure import Structure

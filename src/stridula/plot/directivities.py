@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ..acoustics.levels import equivalent_level, third_octave_levels
 from ..acoustics.pressures import positions
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, choice, finite, positive
 from .colours import LINES
 

@@ -18,7 +18,7 @@ from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, positive
 from ..disk import check_writable, read, write
 from ..integration.schemes import Scheme

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, instance
 from ..contact import LAWS, FrictionLaw
 from .colours import LINE, LINES

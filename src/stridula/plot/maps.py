@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, instance
 from .colours import FAILED_COLOUR, REGIME_COLOURS
 

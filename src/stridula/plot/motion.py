@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..arrays import Array
 from ..assembly import assemble
 from ..bodies import FiniteElementBeam, ModalBeam, ModalPlate
-from ..bodies.modes import Array
 from ..checks import ArgumentError, at_most, instance, non_negative, positive
 from ..contact import RigidTrack
 from ..integration import simulate

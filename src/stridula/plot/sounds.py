@@ -9,7 +9,7 @@ import xarray as xr
 
 from ..acoustics.levels import REFERENCE
 from ..analysis.signals import samples
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, instance
 
 # Levels of silence [dB] below the reference, in place of minus infinity, which has no colour.

@@ -10,7 +10,7 @@ from scipy.signal import ShortTimeFFT
 from scipy.signal.windows import hann
 
 from ..analysis.signals import record_of_one
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, bounds, positive
 from .sounds import Reference, one_signal, reference
 from .timelines import draw_line, draw_status

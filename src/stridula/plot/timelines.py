@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, finite, listed
 from ..records.checked import record
 from ..records.variables import STATUS_WORDS

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..arrays import Array
 from ..bodies import BodyPoint
-from ..bodies.modes import Array
 from ..system import System
 from .probes import Probe, Reaction
 from .state import State

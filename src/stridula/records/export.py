@@ -14,7 +14,7 @@ import numpy as np
 import scipy.io
 import xarray as xr
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, at_least, instance
 from ..disk import check_writable, named, write
 from .checked import check_real, record

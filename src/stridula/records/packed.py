@@ -9,7 +9,7 @@ import zlib
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError
 
 PREFIX = "float64 "

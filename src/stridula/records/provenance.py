@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import tomli_w
 
+from ..arrays import Array
 from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam
 from ..bodies.damping import DampingLaw
-from ..bodies.modes import Array
 from ..contact import PointContact
 from ..drives import Drive
 from ..histories import Constant

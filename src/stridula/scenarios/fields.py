@@ -18,12 +18,11 @@ from pydantic_core import CoreSchema, PydanticCustomError
 from pydantic_core.core_schema import no_info_plain_validator_function
 
 from .. import declared as declarations
+from ..arrays import Array
 from ..bodies import Rayleigh
 from ..bodies.damping import DAMPING_LAWS
-from ..bodies.modes import Array
-from ..checks import STATUS_WORDS, ArgumentError
+from ..checks import ArgumentError
 from ..declared import Kind, Number, declared, texts
-from ..drives import MOST_UNSTABLE
 from ..records.packed import is_packed, unpacked
 from .quantities import UNITS, is_quantity, quantity
 
@@ -469,41 +468,21 @@ def _is_label_or_none(value: Any) -> bool:
     return value is None or _is_whole(value) or is_label
 
 
-Ratio = Annotated[float, Quantity("1")]
-Poisson = Annotated[float, Quantity("1", above=-1.0, below=0.5)]
-Friction = Annotated[float, Quantity("1", least=0.0)]
 Damping = Annotated[Any, RatioOrLaw(each=False)]
 Length = Annotated[float, Quantity("m", above=0.0)]
 Distance = Annotated[float, Quantity("m", least=0.0)]
-Area = Annotated[float, Quantity("m2", above=0.0)]
-SecondMoment = Annotated[float, Quantity("m4", above=0.0)]
 Angle = Annotated[float, Quantity("rad")]
-Modulus = Annotated[float, Quantity("Pa", above=0.0)]
-Density = Annotated[float, Quantity("kg/m3", above=0.0)]
 Frequency = Annotated[float, Quantity("Hz", above=0.0)]
 Time = Annotated[float, Quantity("s", above=0.0)]
-Instant = Annotated[float, Quantity("s", least=0.0)]
-Newtons = Annotated[float, Quantity("N")]
 Velocity = Annotated[float, Quantity("m/s")]
-Velocities = Annotated[Any, OneOrEach(Quantity("m/s"))]
-Statuses = Annotated[Any, Words(STATUS_WORDS, each=True)]
-Mode = Annotated[int | str, NumberOrWord(Words((MOST_UNSTABLE,)))]
-Acceleration = Annotated[float, Quantity("m/s2", above=0.0)]
 AnyAcceleration = Annotated[float, Quantity("m/s2")]
 Count = Annotated[int, Whole(1)]
-CountOrNone = Annotated[int, Whole(0)]
 Counts = Annotated[tuple[int, int], Pair(Whole(1), "whole numbers")]
 CountsOrNone = Annotated[tuple[int, int], Pair(Whole(0), "whole numbers")]
 Point = Annotated[str | float | tuple[float, float], Place()]
 Spot = Annotated[tuple[float, float], DISTANCES]
 Position = Annotated[float, Quantity("m")]
-Mass = Annotated[float, Quantity("kg", above=0.0)]
-Stiffness = Annotated[float, Quantity("N/m", above=0.0)]
-Viscosity = Annotated[float, Quantity("N s/m", above=0.0)]
-Speed = Annotated[float, Quantity("m/s", above=0.0)]
 PositiveRatio = Annotated[float, Quantity("1", above=0.0)]
-Bristles = Annotated[float, Quantity("1/m", above=0.0)]
-Slope = Annotated[float, Quantity("s/m", least=0.0)]
 Matrix = Annotated[Any, Numbers((2,), file=True)]
 ModalDamping = Annotated[Any, RatioOrLaw(each=True)]
 ReducedDamping = Annotated[Any, Numbers((0, 1, 2), file=True, damping=True)]

@@ -15,7 +15,7 @@ import scipy.stats
 import xarray as xr
 
 from ..analysis.regimes import REGIMES
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, brief, choice, count, finite, instance, listed, non_negative, positive, suggestion
 from ..linear.equilibrium import HELD, JAMMED, LIFTED_OFF
 from ..linear.structure import SLIDING

@@ -13,7 +13,7 @@ import scipy.special
 import xarray as xr
 
 from ..analysis import status_share
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, brief, count, instance, positive, within
 from ..drives import Drive, InitialVelocity
 from ..drives import InitialState as State

@@ -11,7 +11,7 @@ import xarray as xr
 from scipy.optimize import linear_sum_assignment
 
 from ..analysis.stability import sliding_stability
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, brief, by_key, finite, instance, positive
 from ..records.provenance import toml
 from ..records.variables import described

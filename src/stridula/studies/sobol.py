@@ -12,7 +12,7 @@ import scipy.stats
 import xarray as xr
 
 from ..analysis.regimes import REGIMES
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import ArgumentError, count, within
 from ..records.variables import described
 from .points import Range, range_of

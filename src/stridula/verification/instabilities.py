@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 from scipy.optimize import brentq
 
+from ..arrays import Array
 from ..bodies import ReducedBody
-from ..bodies.modes import Array
 from ..contact import Coulomb, PointContact, RigidTrack
 from ..drives import Force, InitialState
 from ..integration import simulate

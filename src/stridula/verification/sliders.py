@@ -8,8 +8,8 @@ from math import atan, cos, hypot, pi, sin, sqrt
 import numpy as np
 import xarray as xr
 
+from ..arrays import Array
 from ..bodies import PointMass
-from ..bodies.modes import Array
 from ..connections import Spring
 from ..contact import Coulomb, FrictionLaw, PointContact, RigidTrack, StaticKinetic
 from ..drives import Force, InitialState
