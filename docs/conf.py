@@ -110,6 +110,7 @@ MODULES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
 HOMES = {
     "bodies": "Bodies",
     "contact": "Contacts and friction",
+    "checks": "Refused arguments",
     "connections": "Connections",
     "acoustics.levels": "Sound levels",
     "acoustics.sensation": "Psychoacoustics",

@@ -36,6 +36,7 @@ _HOME = {
         "StaticKinetic",
         "Stribeck",
     ),
+    "checks": ("ArgumentError",),
     "connections": ("Dashpot", "Spring"),
     "drives": ("Force", "Gravity", "ImposedVelocity", "InitialEquilibrium", "InitialState", "InitialVelocity"),
     "histories": ("Constant", "Harmonic", "Ramp", "Sampled"),

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from .bodies import BodyPoint, FiniteElementBeam
-from .bodies.modes import Array, Modes
+from .arrays import Array
+from .bodies import BodyPoint, HasRoot
+from .bodies.modes import Modes
 from .bodies.ordinary import check_coupled_count, of_ordinary_size
-from .checks import brief
-from .connections import Spring, ends, unit
-from .contact import PointContact, RigidTrack
-from .drives import Force, Gravity, ImposedVelocity, InitialState, InitialVelocity
+from .checks import ArgumentError, brief
+from .connections import ends, unit
+from .contact import PointContact
 from .histories import Constant, History
 from .records.probes import Acceleration, Displacement, Probe, Reaction, Velocity
 from .system import System
@@ -204,7 +204,7 @@ class Prescribed:
     velocity : tuple of float and History, or None
         The imposed velocity.
     contacts : tuple
-        For each contact its frame, whether its tip is held, and its rigid track or whether its track is held.
+        For each contact its frame, whether its tip and its track are held, and its rigid track.
     turns : bool
         Whether it goes on from other motions.
     """
@@ -217,7 +217,7 @@ class Prescribed:
     @property
     def is_steady(self) -> bool:
         """Whether nothing varies in time."""
-        still = all(not isinstance(track, RigidTrack) or track.is_still for *_, track in self.contacts)
+        still = all(track is None or track.is_still for *_, track in self.contacts)
         return (
             still
             and not self.turns
@@ -229,11 +229,15 @@ class Prescribed:
 def _prescribed(system: System, histories: tuple[History, ...]) -> Prescribed:
     contacts = []
     for contact in system.contacts:
-        track = contact.track
-        moved = system.is_held(track.body) if isinstance(track, BodyPoint) else isinstance(track, RigidTrack) and track
-        contacts.append((contact.frame.tobytes(), system.is_held(contact.tip.body), moved))
+        held = system.is_held(contact.tip.body), _touches_held(contact, system)
+        contacts.append((contact.frame.tobytes(), *held, contact.rigid_track))
     imposed = system.imposed_velocity
     return Prescribed(histories, (imposed.velocity, imposed.history) if imposed else None, tuple(contacts))
+
+
+def _touches_held(contact: PointContact, system: System) -> bool:
+    """Return whether a contact is against a point of a body whose root follows an imposed velocity."""
+    return contact.touched_point is not None and system.is_held(contact.touched_point.body)
 
 
 @dataclass(frozen=True)
@@ -304,10 +308,9 @@ def _matrices(layout: _Layout) -> tuple[Array, Array]:
         row = unit(connection) @ layout.trace(connection.first)[:, :size]
         if connection.second is not None:
             row = row - unit(connection) @ layout.trace(connection.second)[:, :size]
-        if isinstance(connection, Spring):
-            stiffness += connection.stiffness * np.outer(row, row)
-        else:
-            dissipation += connection.coefficient * np.outer(row, row)
+        for matrix, rate in zip((stiffness, dissipation), connection.rates, strict=True):
+            if rate:
+                matrix += rate * np.outer(row, row)
     return stiffness, dissipation
 
 
@@ -324,12 +327,12 @@ def _is_diagonal(matrix: Array) -> bool:
 
 def _contact(contact: PointContact, layout: _Layout) -> ContactRows:
     fixed = contact.frame @ layout.trace(contact.tip)
-    if isinstance(contact.track, BodyPoint):
-        return ContactRows(contact, fixed - contact.frame @ layout.trace(contact.track))
-    if isinstance(contact.track, RigidTrack):
+    if contact.touched_point is not None:
+        return ContactRows(contact, fixed - contact.frame @ layout.trace(contact.touched_point))
+    if contact.path_body is None:
         return ContactRows(contact, fixed)
-    first, end = layout.spans[contact.track]
-    axial = first + contact.track.harmonics[0]
+    first, end = layout.spans[contact.path_body]
+    axial = first + contact.path_body.harmonics[0]
     return ContactRows(contact, fixed, (first, axial), (axial, end))
 
 
@@ -344,13 +347,13 @@ def _motion(system: System, imposed: Signal) -> Signal:
                 moved = imposed(time, step)
                 values[:, number, 0] += tangent_x * moved
                 values[:, number, 2] += normal_x * moved
-            if isinstance(contact.track, BodyPoint) and system.is_held(contact.track.body):
+            if _touches_held(contact, system):
                 moved = imposed(time, step)
                 values[:, number, 1] += tangent_x * moved
                 values[:, number, 2] -= normal_x * moved
-            if isinstance(contact.track, RigidTrack):
-                values[:, number, 1] += contact.track.travel(time)
-                values[:, number, 2] -= contact.track.normal_travel(time)
+            if contact.rigid_track is not None:
+                values[:, number, 1] += contact.rigid_track.travel(time)
+                values[:, number, 2] -= contact.rigid_track.normal_travel(time)
         return values
 
     return motion
@@ -381,13 +384,12 @@ def _loads(system: System, layout: _Layout) -> tuple[list[_Load], list[Signal], 
 
     inertia = _inertia(system)
     for drive in system.drives:
-        if isinstance(drive, Force):
-            add(drive.history, *_force(drive.point, _components(drive), layout))
-        elif isinstance(drive, ImposedVelocity):
-            add(Constant(), *_force(drive.point, np.array([0.0, -drive.normal_load]), layout))
-        elif isinstance(drive, Gravity):
+        if drive.push is not None:
+            history, point, components = drive.push
+            add(history, *_force(point, components, layout))
+        if drive.fall:
             modal = sum(layout.translation(body)[1] for body in layout.order)
-            add(Constant(), -drive.acceleration * modal, -drive.acceleration * inertia[:, 1])
+            add(Constant(), -drive.fall * modal, -drive.fall * inertia[:, 1])
     felt = {history: load for history, load in by_history.items() if load.modal.any() or load.root.any()}
     loads = list(felt.values())
     signals = [_factor(history) for history in felt]
@@ -405,7 +407,7 @@ def _loads(system: System, layout: _Layout) -> tuple[list[_Load], list[Signal], 
         # A difference, not the rate: its impulses add up to the change of velocity, kinks or not.
         return velocity * (history.factor(time + step / 2.0) - history.factor(time - step / 2.0)) / step
 
-    if imposed and not isinstance(history, Constant):
+    if imposed and history.settled != 0.0:
         loads.append(_Load(-layout.translation(imposed.point.body)[0], -inertia[:, 0]))
         signals.append(acceleration)
     return loads, [*signals, displacement, speed, acceleration], tuple(felt)
@@ -414,22 +416,17 @@ def _loads(system: System, layout: _Layout) -> tuple[list[_Load], list[Signal], 
 def _inertia(system: System) -> Array:
     """Return the slider's inertia as its root feels it, zero for bodies without a root."""
     slider = system.slider
-    if not isinstance(slider, FiniteElementBeam):
+    if not isinstance(slider, HasRoot):
         return np.zeros((3, 2))
-    return slider.root_reaction(system.is_held(slider)).inertia
-
-
-def _components(force: Force) -> Array:
-    """Return the world components of a force [N], shape (2,)."""
-    along, across = force.point.body.axes
-    return force.axial * along + force.transverse * across + np.array([force.x, force.y])
+    inertia: Array = slider.root_reaction(system.is_held(slider)).inertia
+    return inertia
 
 
 def _force(point: BodyPoint, components: Array, layout: _Layout) -> tuple[Array, Array]:
     slider = layout.system.slider
     root = np.zeros(3)
-    if point.body == slider and isinstance(slider, FiniteElementBeam):
-        root = slider.root_lever(point.position) @ components  # type: ignore[arg-type]
+    if point.body == slider and isinstance(slider, HasRoot):
+        root = slider.root_lever(point.position) @ components
     return components @ layout.trace(point), root
 
 
@@ -437,12 +434,11 @@ def _start(system: System, layout: _Layout) -> tuple[Array, Array]:
     """Return modal positions and velocities at the start."""
     position, velocity = np.zeros(layout.size), np.zeros(layout.size)
     for drive in system.drives:
-        if isinstance(drive, InitialVelocity):
-            velocity += np.array([drive.x, drive.y]) @ layout.translation(drive.body)
-        elif isinstance(drive, InitialState):
-            for values, given in ((position, drive.displacement), (velocity, drive.velocity)):
-                if given is not None:
-                    values += layout.full(drive.body, drive.body.modal_coordinates(given))
+        if drive.uniform_velocity is not None:
+            velocity += drive.uniform_velocity @ layout.translation(drive.acted_on)
+        for name, given in drive.vectors.items():
+            values = {"displacement": position, "velocity": velocity}[name]
+            values += layout.full(drive.acted_on, drive.acted_on.modal_coordinates(given))
     return position, velocity
 
 
@@ -452,7 +448,7 @@ def _probe(probe: Probe, layout: _Layout, loads: list[_Load]) -> ProbeRows:
     if isinstance(probe, Reaction):
         return _reaction_rows(probe, layout, loads, direct, contact)
     if probe.point.body not in system.bodies:
-        raise ValueError(f"probe must be on a body of this system, got one on {brief(probe.point.body)}")
+        raise ArgumentError("probe", "be on a body of this system", probe, got=f"one on {brief(probe.point.body)}")
     kind = (Displacement, Velocity, Acceleration).index(type(probe))
     along, across = probe.point.body.axes
     direction = {"x": np.array([1.0, 0.0]), "y": np.array([0.0, 1.0]), "axial": along, "transverse": across}
@@ -468,11 +464,11 @@ def _reaction_rows(probe: Reaction, layout: _Layout, loads: list[_Load], direct:
     system, beam = layout.system, probe.body
     component = ("x", "y", "moment").index(probe.component)
     if beam != system.slider:
-        raise ValueError(f"probe must be on the slider of this system, got one on {brief(beam)}")
+        raise ArgumentError("probe", "be on the slider of this system", probe, got=f"one on {brief(beam)}")
     if beam.tip_support != "free":
-        raise ValueError(f"tip_support must be free where a Reaction is recorded, got {beam.tip_support!r}")
+        raise ArgumentError("tip_support", "be free where a Reaction is recorded", beam.tip_support)
     if any(point.body == beam for connection in system.connections for point in ends(connection)):
-        raise ValueError(f"connections must leave a body whose Reaction is recorded, got one on {brief(beam)}")
+        raise ArgumentError("connections", "leave a body whose Reaction is recorded", got=f"one on {brief(beam)}")
     reaction = beam.root_reaction(system.is_held(beam))
     matrix = np.zeros((3, layout.size))
     matrix[2] = layout.full(beam, reaction.mass[component])
@@ -483,7 +479,7 @@ def _reaction_rows(probe: Reaction, layout: _Layout, loads: list[_Load], direct:
         if point.tip.body == beam:
             lever = beam.root_lever(point.tip.position)[component]  # type: ignore[arg-type]
             contact[number] += reaction.held[component] * signs * (point.frame @ lever)
-        if isinstance(point.track, BodyPoint) and point.track.body == beam:
-            lever = beam.root_lever(point.track.position)[component]  # type: ignore[arg-type]
+        if point.touched_point is not None and point.touched_point.body == beam:
+            lever = beam.root_lever(point.touched_point.position)[component]  # type: ignore[arg-type]
             contact[number] -= reaction.held[component] * signs * (point.frame @ lever)
     return ProbeRows(matrix, direct, contact)

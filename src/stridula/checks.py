@@ -16,15 +16,66 @@ STATUS_WORDS = ("separated", "sticking", "sliding")
 LONGEST = 80
 # Longest list of names in a message, but for one that is longer.
 LONGEST_LIST = 160
+_UNSAID: Any = object()
+
+
+class ArgumentError(ValueError):
+    """An argument that is refused: ``"<argument> must <allowed>, got <value>"``.
+
+    Parameters
+    ----------
+    argument : str
+        Its name.
+    allowed : str
+        What it must do or be, the words after "must".
+    value : object, optional
+        What was given; left out where there is nothing to show.
+    got : object, optional
+        What the message shows in place of the value.
+    where : str, optional
+        Where the argument is, one of several that have it: a prefix of the message.
+
+    Attributes
+    ----------
+    argument, allowed, got, where : str
+        As given; `got` is empty where there is nothing to show.
+    value : object
+        What was given, None if the message does not say.
+    """
+
+    def __init__(self, argument: str, allowed: str, value: Any = _UNSAID, *, got: Any = None, where: str = "") -> None:
+        self.argument, self.allowed, self.where = argument, allowed, where
+        self.value = None if value is _UNSAID else value
+        self.got = str(got) if got is not None else "" if value is _UNSAID else brief(value)
+        words = f"{argument} must {allowed}" + (f", got {self.got}" if self.got else "")
+        super().__init__(f"{where}: {words}" if where else words)
+
+    def renamed(self, argument: str) -> ArgumentError:
+        """Return the same under another name: that of an option, a key or the argument of another function."""
+        return ArgumentError(argument, self.allowed, self.value, got=self.got, where=self.where)
+
+    def inside(self, where: str) -> ArgumentError:
+        """Return the same, of one of several things that have such an argument."""
+        inner = f"{where}: {self.where}" if self.where else where
+        return ArgumentError(self.argument, self.allowed, self.value, got=self.got, where=inner)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A value that another process may not be able to read goes as its words.
+        value = self.value if isinstance(self.value, (str, Real, type(None))) else self.got
+        return _argument_error, (self.argument, self.allowed, value, self.got, self.where)
+
+
+def _argument_error(argument: str, allowed: str, value: Any, got: str, where: str) -> ArgumentError:
+    return ArgumentError(argument, allowed, value, got=got, where=where)
 
 
 def finite(name: str, value: Any) -> float:
     """Return `value` as a float if it is a finite real number."""
     # Asking whether a thing is a Real takes ten times as long.
     if type(value) is not float and (isinstance(value, bool) or not isinstance(value, Real)):
-        raise ValueError(f"{name} must be a number, got {brief(value)}")
+        raise ArgumentError(name, "be a number", value)
     if not _is_finite(value):
-        raise ValueError(f"{name} must be finite, got {brief(value)}")
+        raise ArgumentError(name, "be finite", value)
     return float(value)
 
 
@@ -39,7 +90,7 @@ def positive(name: str, value: Any) -> float:
     """Return `value` as a float if it is finite and above zero."""
     number = finite(name, value)
     if number <= 0.0:
-        raise ValueError(f"{name} must be above 0, got {brief(value)}")
+        raise ArgumentError(name, "be above 0", value)
     return number
 
 
@@ -47,7 +98,7 @@ def non_negative(name: str, value: Any) -> float:
     """Return `value` as a float if it is finite and not below zero."""
     number = finite(name, value)
     if number < 0.0:
-        raise ValueError(f"{name} must be 0 or above, got {brief(value)}")
+        raise ArgumentError(name, "be 0 or above", value)
     return number
 
 
@@ -58,25 +109,26 @@ def within(name: str, value: Any, low: float, high: float, *, ends: bool = True)
     if not inside:
         least, most = bounds(low, high)
         words = f"from {least} to {most}" if ends else f"strictly between {least} and {most}"
-        raise ValueError(f"{name} must be {words}, got {brief(value)}")
+        raise ArgumentError(name, f"be {words}", value)
     return number
 
 
 def count(name: str, value: Any, low: int = 1, high: int | None = None) -> int:
     """Return `value` as an int if it is a whole number of at least `low`, and at most `high` if that is given."""
     if isinstance(value, bool) or not isinstance(value, Integral):
-        raise ValueError(f"{name} must be a whole number, got {brief(value)}")
+        raise ArgumentError(name, "be a whole number", value)
     if value < low:
-        raise ValueError(f"{name} must be at least {low}, got {brief(value)}")
+        raise ArgumentError(name, f"be at least {low}", value)
     if high is not None and int(value) > high:
-        raise ValueError(f"{name} must be at most {high}, got {brief(value)}")
+        raise ArgumentError(name, f"be at most {high}", value)
     return int(value)
 
 
 def choice(name: str, value: Any, allowed: Sequence[str]) -> str:
     """Return `value` if it is one of the words in `allowed`."""
     if value not in allowed:
-        raise ValueError(f"{name} must be one of {', '.join(allowed)}, got {brief(value)}{suggestion(value, allowed)}")
+        got = f"{brief(value)}{suggestion(value, allowed)}"
+        raise ArgumentError(name, f"be one of {', '.join(allowed)}", value, got=got)
     return str(value)
 
 
@@ -85,7 +137,7 @@ def one_or_each(name: str, value: Any, check: Callable[[str, Any], T], size: int
     if isinstance(value, str) or not (hasattr(value, "__len__") and hasattr(value, "__getitem__")):
         return check(name, value)
     if size is not None and len(value) != size:
-        raise ValueError(f"{name} must hold one for each contact, {size} in all, got {brief(value)}")
+        raise ArgumentError(name, f"hold one for each contact, {size} in all", value)
     return tuple(check(f"{name}[{number}]", one) for number, one in enumerate(value))
 
 
@@ -93,7 +145,7 @@ def instance(name: str, value: Any, kinds: type | tuple[type, ...]) -> None:
     """Raise if `value` is not an instance of one of `kinds`."""
     if not isinstance(value, kinds):
         words = " or ".join(kind.__name__ for kind in (kinds if isinstance(kinds, tuple) else (kinds,)))
-        raise ValueError(f"{name} must be {_article(words)} {words}, got {brief(value)}")
+        raise ArgumentError(name, f"be {_article(words)} {words}", value)
 
 
 def by_key(name: str, value: Any) -> Mapping[str, Any]:
@@ -101,10 +153,10 @@ def by_key(name: str, value: Any) -> Mapping[str, Any]:
     if value is None:
         return {}
     if not isinstance(value, Mapping):
-        raise ValueError(f"{name} must be values by key, got {brief(value)}")
+        raise ArgumentError(name, "be values by key", value)
     for key in value:
         if not isinstance(key, str):
-            raise ValueError(f"{name} must have keys that are text, got {brief(key)}")
+            raise ArgumentError(name, "have keys that are text", key)
     return value
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Annotated, ClassVar
 
 import numpy as np
 
+from .arrays import Array
 from .bodies import BodyPoint
-from .bodies.modes import Array
-from .checks import brief, choice, instance, positive
+from .checks import ArgumentError, brief, instance
+from .declared import Axis, Number, check_declared
 
 
 @dataclass(frozen=True)
@@ -22,19 +24,28 @@ class Spring:
     second : BodyPoint, optional
         The other end, of the same or another body; the ground if left out.
     stiffness : float
-        Force per unit of relative displacement [N/m].
+        Stiffness [N/m]; force per unit of relative displacement.
     direction : {"x", "y"}, optional
-        World direction along which it acts.
+        World direction along which it acts: x or y.
     """
 
     first: BodyPoint
     second: BodyPoint | None = None
-    stiffness: float = field(kw_only=True)
-    direction: str = field(default="x", kw_only=True)
+    kind: ClassVar[str] = "spring"
+    stiffness: Annotated[float, Number("N/m", above=0.0)] = field(kw_only=True)
+    direction: Axis = field(default="x", kw_only=True)
 
     def __post_init__(self) -> None:
-        _check_ends(self.first, self.second, self.direction)
-        positive("stiffness", self.stiffness)
+        _check_ends(self.first, self.second)
+        check_declared(self)
+
+    @property
+    def rates(self) -> tuple[float, float]:
+        """Force per unit of relative displacement [N/m] and per unit of relative velocity [N s/m]."""
+        return self.stiffness, 0.0
+
+    def __str__(self) -> str:
+        return f"spring {self.stiffness:.4g} N/m along {self.direction}"
 
 
 @dataclass(frozen=True)
@@ -50,20 +61,30 @@ class Dashpot:
     coefficient : float
         Force per unit of relative velocity [N s/m].
     direction : {"x", "y"}, optional
-        World direction along which it acts.
+        World direction along which it acts: x or y.
     """
 
     first: BodyPoint
     second: BodyPoint | None = None
-    coefficient: float = field(kw_only=True)
-    direction: str = field(default="x", kw_only=True)
+    kind: ClassVar[str] = "dashpot"
+    coefficient: Annotated[float, Number("N s/m", above=0.0)] = field(kw_only=True)
+    direction: Axis = field(default="x", kw_only=True)
 
     def __post_init__(self) -> None:
-        _check_ends(self.first, self.second, self.direction)
-        positive("coefficient", self.coefficient)
+        _check_ends(self.first, self.second)
+        check_declared(self)
+
+    @property
+    def rates(self) -> tuple[float, float]:
+        """Force per unit of relative displacement [N/m] and per unit of relative velocity [N s/m]."""
+        return 0.0, self.coefficient
+
+    def __str__(self) -> str:
+        return f"dashpot {self.coefficient:.4g} N s/m along {self.direction}"
 
 
 Connection = Spring | Dashpot
+CONNECTIONS = (Spring, Dashpot)
 
 
 def unit(connection: Connection) -> Array:
@@ -76,11 +97,10 @@ def ends(connection: Connection) -> tuple[BodyPoint, ...]:
     return (connection.first,) if connection.second is None else (connection.first, connection.second)
 
 
-def _check_ends(first: BodyPoint, second: BodyPoint | None, direction: str) -> None:
+def _check_ends(first: BodyPoint, second: BodyPoint | None) -> None:
     instance("first", first, BodyPoint)
     if second is not None:
         instance("second", second, BodyPoint)
         if second == first:
-            words = "second must be another point than first (equal bodies need names)"
-            raise ValueError(f"{words}, got {brief(second)} for both")
-    choice("direction", direction, ("x", "y"))
+            words = "be another point than first (equal bodies need names)"
+            raise ArgumentError("second", words, second, got=f"{brief(second)} for both")

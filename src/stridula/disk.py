@@ -9,6 +9,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
+from .checks import ArgumentError
+
 try:
     import fcntl
 except ImportError:
@@ -32,7 +34,7 @@ def check_path(name: str, path: object) -> None:
     text = os.fspath(path) if isinstance(path, (str, os.PathLike)) else None
     if not isinstance(text, str) or "\0" in text:
         got = repr(path) if isinstance(path, (str, float)) else f"a {type(path).__name__}"
-        raise ValueError(f"{name} must be the name of a file, got {got[:LONGEST_NAME]}")
+        raise ArgumentError(name, "be the name of a file", got=got[:LONGEST_NAME])
 
 
 def is_there(path: str | os.PathLike[str]) -> bool:

@@ -4,19 +4,80 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
+from .arrays import Array
 from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, PointMass, ReducedBody
-from .checks import STATUS_WORDS, choice, count, finite, instance, one_or_each, positive
+from .checks import STATUS_WORDS, ArgumentError, instance, positive
+from .declared import (
+    Angle,
+    Choice,
+    Distance,
+    Newtons,
+    Number,
+    NumberOrWord,
+    OneOrEach,
+    Velocity,
+    check_declared,
+)
 from .histories import HISTORIES, Constant, History
 
 # The mode whose amplitude grows fastest.
 MOST_UNSTABLE = "most unstable"
 
 
+class Drive:
+    """What every drive says of itself: a frozen dataclass with range and unit beside each number.
+
+    Attributes
+    ----------
+    kind : str
+        Its name in scenarios.
+    place : str
+        Where it acts: a ``body``, a ``point`` of one, the ``root`` of one, or empty for the whole system.
+    """
+
+    kind: ClassVar[str]
+    place: ClassVar[str] = ""
+
+    def __post_init__(self) -> None:
+        check_declared(self)
+
+    @property
+    def acted_on(self) -> Any:
+        """Body that it acts on, None for the whole system."""
+        return None
+
+    @property
+    def push(self) -> tuple[History, BodyPoint, Array] | None:
+        """Force on a point: its history, the point, and its components along world x and y [N]."""
+        return None
+
+    @property
+    def fall(self) -> float:
+        """Acceleration of every body along -y [m/s²]."""
+        return 0.0
+
+    @property
+    def uniform_velocity(self) -> Array | None:
+        """Velocity of its body at the start, along world x and y [m/s]."""
+        return None
+
+    @property
+    def vectors(self) -> dict[str, Sequence[float]]:
+        """Displacement and velocity of every degree of freedom of its body at the start, by name."""
+        return {}
+
+    @property
+    def velocities(self) -> tuple[float, ...]:
+        """Velocities that it prescribes [m/s]."""
+        return ()
+
+
 @dataclass(frozen=True)
-class Force:
+class Force(Drive):
     """A force at a point of a body, the sum of its components, times its history.
 
     Parameters
@@ -24,32 +85,51 @@ class Force:
     point : BodyPoint
         Where it acts.
     axial : float, optional
-        Component along the body's axis [N]: for a slider from its tip to its root, so that a push towards the track is
-        negative.
+        Component along the body's axis [N], tip to root: a push towards the track is negative.
     transverse : float, optional
-        Component along the body's transverse direction [N]: ``(cos a, -sin a)`` for a slider.
-    x, y : float, optional
-        Components along the world's axes [N].
+        Component along the body's transverse direction [N], of a slider (cos angle, -sin angle).
+    x : float, optional
+        Component along world x [N].
+    y : float, optional
+        Component along world y [N], from the track towards the slider.
     history : Constant, Ramp, Harmonic or Sampled, optional
         Factor over time.
     """
 
+    kind: ClassVar[str] = "force"
+    place: ClassVar[str] = "point"
     point: BodyPoint
-    axial: float = 0.0
-    transverse: float = 0.0
-    x: float = 0.0
-    y: float = 0.0
+    axial: Newtons = 0.0
+    transverse: Newtons = 0.0
+    x: Newtons = 0.0
+    y: Newtons = 0.0
     history: History = field(default_factory=Constant)
 
     def __post_init__(self) -> None:
         instance("point", self.point, BodyPoint)
-        for name in ("axial", "transverse", "x", "y"):
-            finite(name, getattr(self, name))
+        super().__post_init__()
         instance("history", self.history, HISTORIES)
+
+    @property
+    def acted_on(self) -> Any:
+        """Body that it acts on."""
+        return self.point.body
+
+    @property
+    def push(self) -> tuple[History, BodyPoint, Array]:
+        """Its history, its point, and its components along world x and y [N]."""
+        along, across = self.point.body.axes
+        components = self.axial * along + self.transverse * across + np.array([self.x, self.y])
+        return self.history, self.point, components
+
+    def __str__(self) -> str:
+        names = ("axial", "transverse", "x", "y")
+        parts = [f"{name} {getattr(self, name):.4g} N" for name in names if getattr(self, name)]
+        return f"force {', '.join(parts) or '0 N'} at {_where(self.point)}, {self.history.kind}"
 
 
 @dataclass(frozen=True)
-class ImposedVelocity:
+class ImposedVelocity(Drive):
     """The root of the slider moves along x at a prescribed velocity, under a load along the track's normal.
 
     The whole body moves at this velocity from the start; the root stays free along y.
@@ -59,30 +139,52 @@ class ImposedVelocity:
     point : BodyPoint
         The root of the slider.
     velocity : float
-        Velocity along x [m/s].
+        Velocity of the root along x [m/s].
     normal_load : float, optional
         Force on the root towards the track, along -y [N], constant.
     history : Constant, Ramp, Harmonic or Sampled, optional
         Factor on the velocity over time.
     """
 
+    kind: ClassVar[str] = "imposed velocity"
+    place: ClassVar[str] = "root"
     point: BodyPoint
-    velocity: float
-    normal_load: float = 0.0
+    velocity: Velocity
+    normal_load: Newtons = 0.0
     history: History = field(default_factory=Constant)
 
     def __post_init__(self) -> None:
         instance("point", self.point, BodyPoint)
         instance("point.body", self.point.body, FiniteElementBeam)
         if self.point != self.point.body.root:  # type: ignore[attr-defined]
-            raise ValueError(f"point must be the root of the slider, got position {self.point.position!r} m")
-        finite("velocity", self.velocity)
-        finite("normal_load", self.normal_load)
+            raise ArgumentError(
+                "point", "be the root of the slider", self.point, got=f"position {self.point.position!r} m"
+            )
+        super().__post_init__()
         instance("history", self.history, HISTORIES)
+
+    @property
+    def acted_on(self) -> Any:
+        """Body whose root moves."""
+        return self.point.body
+
+    @property
+    def push(self) -> tuple[History, BodyPoint, Array]:
+        """The load on the root, which is constant."""
+        return Constant(), self.point, np.array([0.0, -self.normal_load])
+
+    @property
+    def velocities(self) -> tuple[float, ...]:
+        """The velocity along x [m/s]."""
+        return (self.velocity,)
+
+    def __str__(self) -> str:
+        under = f"under {self.normal_load:.4g} N, {self.history.kind}"
+        return f"imposed velocity {self.velocity:.4g} m/s along x {under}"
 
 
 @dataclass(frozen=True)
-class Gravity:
+class Gravity(Drive):
     """Weight of every body, along -y (from the slider towards the track).
 
     Parameters
@@ -91,38 +193,67 @@ class Gravity:
         Acceleration of free fall [m/s²].
     """
 
-    acceleration: float = 9.80665
+    kind: ClassVar[str] = "gravity"
+    acceleration: Annotated[float, Number("m/s2", above=0.0)] = 9.80665
 
-    def __post_init__(self) -> None:
-        positive("acceleration", self.acceleration)
+    @property
+    def fall(self) -> float:
+        """Acceleration of every body along -y [m/s²]."""
+        return self.acceleration
+
+    def __str__(self) -> str:
+        return f"gravity {self.acceleration:.4g} m/s² along -y"
 
 
 @dataclass(frozen=True)
-class InitialVelocity:
+class InitialVelocity(Drive):
     """A uniform velocity of a body at the start.
 
     Parameters
     ----------
     body : FiniteElementBeam, ModalBeam, ModalPlate, PointMass or ReducedBody
         The body; a ReducedBody needs its `translation`.
-    x, y : float, optional
-        Velocity along the world's axes [m/s].
+    x : float, optional
+        Velocity along world x [m/s].
+    y : float, optional
+        Velocity along world y [m/s].
     """
 
+    kind: ClassVar[str] = "initial velocity"
+    place: ClassVar[str] = "body"
     body: FiniteElementBeam | ModalBeam | ModalPlate | PointMass | ReducedBody
-    x: float = 0.0
-    y: float = 0.0
+    x: Velocity = 0.0
+    y: Velocity = 0.0
 
     def __post_init__(self) -> None:
         instance("body", self.body, (FiniteElementBeam, ModalBeam, ModalPlate, PointMass, ReducedBody))
-        if isinstance(self.body, ReducedBody) and not self.body.has_translation:
-            raise ValueError("body must have its translation given for a uniform velocity, got a ReducedBody without")
-        finite("x", self.x)
-        finite("y", self.y)
+        if not self.body.has_translation:
+            raise ArgumentError(
+                "body", "have its translation given for a uniform velocity", self.body, got="a ReducedBody without"
+            )
+        super().__post_init__()
+
+    @property
+    def acted_on(self) -> Any:
+        """Body that moves."""
+        return self.body
+
+    @property
+    def uniform_velocity(self) -> Array:
+        """Velocity along world x and y [m/s]."""
+        return np.array([self.x, self.y])
+
+    @property
+    def velocities(self) -> tuple[float, ...]:
+        """Its two components [m/s]."""
+        return self.x, self.y
+
+    def __str__(self) -> str:
+        return f"initial velocity ({self.x:.3g}, {self.y:.3g}) m/s"
 
 
 @dataclass(frozen=True)
-class InitialState:
+class InitialState(Drive):
     """Displacement and velocity of every degree of freedom of a body at the start.
 
     Parameters
@@ -134,6 +265,8 @@ class InitialState:
         body's cutoff would carry is left out.
     """
 
+    kind: ClassVar[str] = "initial state"
+    place: ClassVar[str] = "body"
     body: PointMass | ReducedBody
     displacement: Sequence[float] | None = None
     velocity: Sequence[float] | None = None
@@ -148,13 +281,27 @@ class InitialState:
     def _checked(self, name: str, given: Sequence[float]) -> tuple[float, ...]:
         try:
             self.body.modal_coordinates(given)
-        except ValueError as error:
-            raise ValueError(str(error).replace("vector", name, 1)) from None
+        except ArgumentError as error:
+            raise error.renamed(name) from None
         return tuple(float(value) for value in np.asarray(given))
+
+    @property
+    def acted_on(self) -> Any:
+        """Body that starts so."""
+        return self.body
+
+    @property
+    def vectors(self) -> dict[str, Sequence[float]]:
+        """What is given of displacement and velocity."""
+        given = {"displacement": self.displacement, "velocity": self.velocity}
+        return {name: values for name, values in given.items() if values is not None}
+
+    def __str__(self) -> str:
+        return "initial state of every degree of freedom"
 
 
 @dataclass(frozen=True)
-class InitialEquilibrium:
+class InitialEquilibrium(Drive):
     """The whole system starts in equilibrium, as it is or with a mode of its vibration on top.
 
     The equilibrium is the one of `sliding_stability` under the drives as they are at the start: bodies are deflected,
@@ -165,18 +312,19 @@ class InitialEquilibrium:
     Parameters
     ----------
     status : str or sequence of str, optional
-        ``separated``, ``sticking`` or ``sliding``, one for all contacts or one for each; if left out all must slide.
+        Separated, sticking or sliding, one for all contacts or a list with one for each, all slide if left out.
     velocity : float or sequence of float, optional
-        Slip velocity at the start [m/s] of contacts for which nothing prescribes it, one for all of them, or one for
-        each contact and 0 for the others; its sign is the sense of sliding.
+        Slip velocity at the start where nothing prescribes it [m/s], one for all contacts or a list with one for each;
+        0 for those that are prescribed. Its sign is the sense of sliding.
     mode : int or "most unstable", optional
-        Number of the mode on top, as `sliding_stability` counts at time 0; or, of the modes that vibrate, the one with
-        the largest growth rate, though it be below 0. Of more than 600 degrees of freedom it is among the lowest 100.
+        Mode of vibration on top: its number from 0 on, by rising frequency, or most unstable, none if left out. The
+        number is that of `sliding_stability` at time 0; most unstable is the one with the largest growth rate among
+        those that vibrate, though it be below 0. Of more than 600 degrees of freedom it is among the lowest 100.
     amplitude : float, optional
-        Largest displacement of a contact point in that mode [m]: of the tips and of the points of the tracks that they
+        Largest displacement of a contact point in that mode [m]; of the tips and of the points of the tracks that they
         touch, along x or along y.
     phase : float, optional
-        Phase of that displacement at the start [rad]: at 0 it is at its positive peak, at pi/2 it falls through zero.
+        Phase of that displacement at the start [rad]; at 0 it is at its positive peak, at pi/2 it falls through zero.
 
     Raises
     ------
@@ -184,28 +332,47 @@ class InitialEquilibrium:
         If an argument is out of its range. Where there is no such equilibrium a run says so.
     """
 
-    status: str | Sequence[str] | None = None
-    velocity: float | Sequence[float] | None = None
-    mode: int | str | None = None
-    amplitude: float = 0.0
-    phase: float = 0.0
+    kind: ClassVar[str] = "initial equilibrium"
+    status: Annotated[str | Sequence[str], OneOrEach(Choice(STATUS_WORDS))] | None = None
+    velocity: Annotated[float | Sequence[float], OneOrEach(Number("m/s"))] | None = None
+    mode: Annotated[int | str, NumberOrWord((MOST_UNSTABLE,))] | None = None
+    amplitude: Distance = 0.0
+    phase: Angle = 0.0
 
     def __post_init__(self) -> None:
-        if self.status is not None:
-            words = one_or_each("status", self.status, lambda name, word: choice(name, word, STATUS_WORDS))
-            object.__setattr__(self, "status", words)
-        if self.velocity is not None:
-            object.__setattr__(self, "velocity", one_or_each("velocity", self.velocity, finite))
-        finite("phase", self.phase)
+        super().__post_init__()
+        if self.mode is not None:
+            positive("amplitude", self.amplitude)
+        elif self.amplitude:
+            raise ArgumentError("amplitude", "be 0 without a mode that has it", self.amplitude)
+
+    @property
+    def velocities(self) -> tuple[float, ...]:
+        """Slip velocities that are given [m/s]."""
+        return () if self.velocity is None else tuple(np.atleast_1d(self.velocity).tolist())
+
+    def __str__(self) -> str:
         if self.mode is None:
-            if finite("amplitude", self.amplitude):
-                raise ValueError(f"amplitude must be 0 without a mode that has it, got {self.amplitude!r}")
-            return
-        if isinstance(self.mode, str):
-            choice("mode", self.mode, (MOST_UNSTABLE,))
-        else:
-            object.__setattr__(self, "mode", count("mode", self.mode, low=0))
-        positive("amplitude", self.amplitude)
+            return "initial equilibrium"
+        number = self.mode if self.mode == MOST_UNSTABLE else f"number {self.mode}"
+        return f"initial equilibrium, mode {number} on top by {self.amplitude:.3g} m"
 
 
-Drive = Force | ImposedVelocity | Gravity | InitialVelocity | InitialState | InitialEquilibrium
+DRIVES: tuple[type[Drive], ...] = (
+    Force,
+    ImposedVelocity,
+    Gravity,
+    InitialVelocity,
+    InitialState,
+    InitialEquilibrium,
+)
+
+
+def _where(point: BodyPoint) -> str:
+    match point.position:
+        case (along, across):
+            return f"({along:.4g}, {across:.4g}) m"
+        case float(place):
+            return f"{place:.4g} m"
+        case place:
+            return str(place)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Annotated, ClassVar, Protocol
 
 import numpy as np
 
-from .bodies.modes import Array
-from .checks import brief, finite, positive
+from .arrays import Array
+from .checks import ArgumentError, brief, finite
+from .declared import Angle, Each, Frequency, Number, Ratio, Time, check_declared
 
 # Share of a time within which it is that of a jump: a step is a whole division of it only up to rounding.
 ROUND_OFF = 1e-12
@@ -36,10 +37,14 @@ class History(Protocol):
         """Time [s] from which it no longer varies, None if it always does."""
         ...
 
+    kind: ClassVar[str]
+
 
 @dataclass(frozen=True)
 class Constant:
     """The stated value from the start to the end."""
+
+    kind: ClassVar[str] = "constant"
 
     @property
     def settled(self) -> float:
@@ -66,13 +71,14 @@ class Ramp:
     Parameters
     ----------
     duration : float
-        Length of the rise [s].
+        Length of the straight rise from zero [s].
     """
 
-    duration: float
+    kind: ClassVar[str] = "ramp"
+    duration: Time
 
     def __post_init__(self) -> None:
-        positive("duration", self.duration)
+        check_declared(self)
 
     @property
     def settled(self) -> float:
@@ -101,22 +107,23 @@ class Harmonic:
     Parameters
     ----------
     frequency : float
-        Frequency [Hz].
-    amplitude, mean : float, optional
-        Amplitude and mean of the factor [1].
+        Frequency of the sine [Hz].
+    amplitude : float, optional
+        Amplitude of the sine, as a factor [1].
+    mean : float, optional
+        Mean about which it swings, as a factor [1].
     phase : float, optional
-        Phase at t = 0 [rad].
+        Phase at the start [rad].
     """
 
-    frequency: float
-    amplitude: float = 1.0
-    mean: float = 0.0
-    phase: float = 0.0
+    kind: ClassVar[str] = "harmonic"
+    frequency: Frequency
+    amplitude: Ratio = 1.0
+    mean: Ratio = 0.0
+    phase: Angle = 0.0
 
     def __post_init__(self) -> None:
-        positive("frequency", self.frequency)
-        for name in ("amplitude", "mean", "phase"):
-            finite(name, getattr(self, name))
+        check_declared(self)
 
     @property
     def settled(self) -> float | None:
@@ -152,40 +159,43 @@ class Sampled:
     Parameters
     ----------
     time : tuple of float
-        Times [s], rising, from 0 on; the same twice at a jump, but not 0.
+        Times [s], rising from 0 on, the same twice at a jump, but not 0.
     value : tuple of float
         Factors at those times [1].
     """
 
-    time: tuple[float, ...]
-    value: tuple[float, ...]
+    kind: ClassVar[str] = "sampled"
+    time: Annotated[tuple[float, ...], Each(Number("s", least=0.0))]
+    value: Annotated[tuple[float, ...], Each(Number())]
 
     def __post_init__(self) -> None:
         for name in ("time", "value"):
             numbers = getattr(self, name)
             if isinstance(numbers, str) or not isinstance(numbers, Iterable):
-                raise ValueError(f"{name} must be a sequence of numbers, got {brief(numbers)}")
+                raise ArgumentError(name, "be a sequence of numbers", numbers)
             checked = tuple(finite(f"{name}[{k}]", number) for k, number in enumerate(numbers))
             object.__setattr__(self, name, checked)
         if len(self.time) < 2 or len(self.time) != len(self.value):
-            raise ValueError(
-                f"time and value must have the same length, at least 2, got {len(self.time)} and {len(self.value)}"
+            raise ArgumentError(
+                "time and value", "have the same length, at least 2", got=f"{len(self.time)} and {len(self.value)}"
             )
         self._check_times()
 
     def _check_times(self) -> None:
         times = np.array(self.time)
         if self.time[0] < 0.0:
-            raise ValueError(f"time must rise from 0 or above, got {brief(self.time)}, from {self.time[0]!r}")
+            raise ArgumentError(
+                "time", "rise from 0 or above", self.time, got=f"{brief(self.time)}, from {self.time[0]!r}"
+            )
         falls = np.flatnonzero(times[1:] < times[:-1]) + 1
         thrice = np.flatnonzero(times[2:] == times[:-2]) + 2
         for allowed, wrong in (("rise", falls), ("have no more than two points, a jump, at a time", thrice)):
             if wrong.size:
                 k = int(wrong[0])
                 got = f"time[{k}] = {self.time[k]!r} after {self.time[k - 1]!r}"
-                raise ValueError(f"time must {allowed}, got {brief(self.time)}, with {got}")
+                raise ArgumentError("time", allowed, self.time, got=f"{brief(self.time)}, with {got}")
         if self.time[1] == 0.0:
-            raise ValueError(f"time must be above 0 at a jump, got {brief(self.time)}")
+            raise ArgumentError("time", "be above 0 at a jump", self.time)
 
     @property
     def settled(self) -> float:

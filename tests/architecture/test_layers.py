@@ -52,6 +52,47 @@ def roots(names: set[str]) -> set[str]:
     return {name.split(".")[0] for name in names}
 
 
+def messages_read(source: str) -> list[int]:
+    """Return the lines on which a handler looks into the text of an exception, but for a cut of its spaces."""
+    found = []
+    for handler in ast.walk(ast.parse(source)):
+        for node in ast.walk(handler) if isinstance(handler, ast.ExceptHandler) and handler.name else ():
+            looked_into = [node.value] if isinstance(node, ast.Attribute | ast.Subscript) else []
+            if isinstance(node, ast.Compare):
+                looked_into = [node.left, *node.comparators]
+            texts = [f"str({handler.name})", f"{handler.name}.args[0]"]
+            found += [node.lineno for part in looked_into if ast.unparse(part) in texts]
+    return found
+
+
+# The message of TOML's parser has no parts: where the end of the document is, is told in it.
+READS_MESSAGES = {"scenarios.read"}
+
+
+@pytest.mark.parametrize("path", FILES, ids=[module_of(path) or "stridula" for path in FILES])
+def test_nothing_reads_a_message(path):
+    if module_of(path) not in READS_MESSAGES:
+        assert not messages_read(path.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("use", ["str(error).replace('a', 'b')", "'got None' in str(error)", "str(error)[0]"])
+def test_message_harness_sees_one_that_is_read(use):
+    """Negative control."""
+    assert messages_read(f"try:\n    f()\nexcept ValueError as error:\n    g({use})")
+    assert not messages_read("try:\n    f()\nexcept ValueError as error:\n    g(str(error), error.argument)")
+
+
+def test_arguments_are_refused_with_their_name_value_and_range():
+    """A ValueError of another kind has no argument: a file or a scenario as a whole."""
+    left = [
+        f"{module_of(path)}:{number}"
+        for path in FILES
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
+        if re.search(r"raise ValueError\(f?\"(\{?[\w.]+\}?(\[.*\])?) must ", line)
+    ]
+    assert left == [] or all(one.startswith("bodies.mat") for one in left), left
+
+
 def sees_kernels(names: set[str]) -> bool:
     return any(name.startswith("stridula._kernels") for name in names)
 

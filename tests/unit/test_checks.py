@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import re
 
 import numpy as np
@@ -40,6 +41,31 @@ def test_a_limit_is_rounded_to_its_own_side_and_no_farther(limit, digits):
     assert low <= limit <= high
     assert high - low <= 10.0 ** (1 - digits) * abs(limit) * (1.0 + 1e-9) or digits > 10
     assert float(at_most(high, 12)) == high or digits > 11
+
+
+def test_a_refused_argument_tells_its_name_value_and_what_is_allowed():
+    with pytest.raises(st.ArgumentError, match=r"^young must be above 0, got -1\.0$") as caught:
+        st.Material(-1.0, 1.0)
+    error = caught.value
+    assert isinstance(error, ValueError)
+    assert (error.argument, error.allowed, error.value) == ("young", "be above 0", -1.0)
+
+
+def test_a_refused_argument_takes_another_name_and_place():
+    error = st.ArgumentError("full_scale", "be above 0", -1.0).renamed("--full-scale")
+    assert str(error) == "--full-scale must be above 0, got -1.0"
+    assert str(error.inside("sounds[2]").inside("all")) == "all: sounds[2]: --full-scale must be above 0, got -1.0"
+    assert str(st.ArgumentError("mass", "be given")) == "mass must be given"
+    assert str(st.ArgumentError("mass", "be finite", None)) == "mass must be finite, got None"
+    assert str(st.ArgumentError("mass", "be symmetric", [1.0], got="rows")) == "mass must be symmetric, got rows"
+
+
+@pytest.mark.parametrize("value", [-1.0, "text", None, lambda: None])
+def test_a_refused_argument_goes_to_another_process(value):
+    error = st.ArgumentError("mass", "be above 0", value).inside("systems[1]")
+    copy = pickle.loads(pickle.dumps(error))
+    assert (type(copy), str(copy), copy.argument, copy.where) == (type(error), str(error), "mass", "systems[1]")
+    assert copy.value == (error.got if callable(value) else value)
 
 
 def test_short_numbers_stay_as_they_are():

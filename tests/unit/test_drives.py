@@ -10,6 +10,7 @@ from physics.cases import SCHEMES, every_step, pair, slider, track
 
 import stridula as st
 from stridula.checks import brief
+from stridula.drives import DRIVES
 
 NAN, INF = float("nan"), float("inf")
 ROD, BAR = slider(30.0), track()
@@ -175,3 +176,41 @@ def test_frozen_and_replaceable():
     assert replace(force, x=2.0).x == 2.0
     with pytest.raises(AttributeError):
         force.x = 3.0
+
+
+EVERY_DRIVE = {
+    "force": st.Force(ROD.root, x=1.0, y=-2.0),
+    "imposed velocity": st.ImposedVelocity(ROD.root, 0.1, normal_load=3.0),
+    "gravity": st.Gravity(),
+    "initial velocity": st.InitialVelocity(ROD, 0.2, 0.3),
+    "initial state": st.InitialState(st.PointMass(1.0), velocity=[0.4, 0.0]),
+    "initial equilibrium": st.InitialEquilibrium(velocity=0.5),
+}
+
+
+def test_each_drive_is_there():
+    assert {drive.kind: type(drive) for drive in EVERY_DRIVE.values()} == {kind.kind: kind for kind in DRIVES}
+    assert list(EVERY_DRIVE) == [kind.kind for kind in DRIVES]
+
+
+def test_a_drive_says_what_it_does_and_to_what():
+    said = {name: (drive.place, drive.acted_on, drive.velocities) for name, drive in EVERY_DRIVE.items()}
+    assert said == {
+        "force": ("point", ROD, ()),
+        "imposed velocity": ("root", ROD, (0.1,)),
+        "gravity": ("", None, ()),
+        "initial velocity": ("body", ROD, (0.2, 0.3)),
+        "initial state": ("body", st.PointMass(1.0), ()),
+        "initial equilibrium": ("", None, (0.5,)),
+    }
+    pushes = {name: drive.push[2].tolist() for name, drive in EVERY_DRIVE.items() if drive.push is not None}
+    assert pushes == {"force": [1.0, -2.0], "imposed velocity": [0.0, -3.0]}
+    assert [name for name, drive in EVERY_DRIVE.items() if drive.fall] == ["gravity"]
+    assert [name for name, drive in EVERY_DRIVE.items() if drive.uniform_velocity is not None] == ["initial velocity"]
+    assert [name for name, drive in EVERY_DRIVE.items() if drive.vectors] == ["initial state"]
+
+
+@pytest.mark.parametrize("drive", EVERY_DRIVE.values(), ids=EVERY_DRIVE)
+def test_a_drive_is_named_in_one_line(drive):
+    assert str(drive).startswith(drive.kind)
+    assert "\n" not in str(drive)

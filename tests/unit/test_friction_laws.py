@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 
 import stridula as st
+from stridula._kernels import friction
+from stridula._kernels import layout as at
+from stridula.contact import LAWS
+from stridula.scenarios.schema import json_schema
 
 NAN, INF = float("nan"), float("inf")
 NUMBERS = [NAN, INF, True, "1", None]
@@ -111,3 +117,41 @@ def test_laws_are_values_and_say_what_they_are():
 def test_a_contact_takes_laws_only(law):
     with pytest.raises(ValueError, match=r"^friction must be a Coulomb or StaticKinetic or Stribeck"):
         st.PointContact(st.PointMass(1.0).centre, st.RigidTrack(), friction=law)
+
+
+def every_law():
+    laws = [st.Coulomb(0.4), *(kind(**words) for kind, words in SOUND.items())]
+    return [*laws, st.RateAndState(**STATE, evolution="slip")]
+
+
+def test_each_law_is_there():
+    assert {type(law) for law in every_law()} == set(LAWS)
+
+
+@pytest.mark.parametrize("law", every_law(), ids=str)
+def test_what_a_law_says_of_itself_is_what_the_march_knows(law):
+    code = getattr(at, law.kernel_code)
+    assert law.set_valued == friction.set_valued.py_func(code)
+    assert len(law.parameters()) < at.LAW_PARAMETERS
+    assert law.has_state == (not law.set_valued) == bool(law.state_units)
+    slow, fast = law.coefficient_at(np.array([0.01, 0.1]))
+    assert law.depends_on_speed == (slow != fast)
+    assert law.linearised_at(0.1).slope == 0.0 or law.depends_on_speed
+    assert (law.state_in_sliding(0.1) == law.state_in_sliding(0.2)) != law.has_state
+
+
+@pytest.mark.parametrize("law", [law for law in every_law() if law.has_state], ids=str)
+def test_a_state_in_steady_sliding_stays(law):
+    code, numbers = getattr(at, law.kernel_code), np.array([[*law.parameters().values()]])
+    state = law.state_in_sliding(-0.02)
+    assert friction.next_state(code, numbers, 0, state, -0.02, 1e-4) == pytest.approx(state, rel=1e-12)
+
+
+def test_the_schema_has_what_a_law_declares():
+    known = json_schema()["$defs"]
+    for law in LAWS:
+        assert list(known[law.__name__]["properties"]) == ["law", *(field.name for field in fields(law))]
+    velocity = known["Stribeck"]["properties"]["velocity"]
+    assert velocity["anyOf"][0] == {"type": "number", "exclusiveMinimum": 0.0}
+    assert velocity["description"] == "slip speed over which it falls, Stribeck's velocity [m/s]"
+    assert known["RateAndState"]["properties"]["evolution"]["enum"] == ["aging", "slip"]

@@ -150,7 +150,7 @@ def test_errors_may_take_the_place_of_results():
     words = {**WORDS, "workers": 1, "errors": "return"}
     found = st.simulate_many([good[0], 1, *good[1:3], overlap, *good[3:]], 100 * STEP, third_fails, **words)
     kinds = [type(one).__name__ for one in found]
-    assert kinds == ["float", "ValueError", "float", "KeyError", "ValueError", "float", "float", "float"]
+    assert kinds == ["float", "ArgumentError", "float", "KeyError", "ArgumentError", "float", "float", "float"]
     assert "system must be a System" in str(found[1])
     assert "overlap" in str(found[4])
     alone = st.simulate_many(good, 100 * STEP, lambda run: float(run.normal_force.mean()), **WORDS)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..checks import within
+from ..checks import ArgumentError, within
 
 ZERO_CELSIUS = 273.15
 # Mole fraction of carbon dioxide of standard air.
@@ -44,7 +44,7 @@ class Air:
     def __post_init__(self) -> None:
         within("temperature", self.temperature, *TEMPERATURES)
         if not PRESSURES[0] <= within("pressure", self.pressure, 0.0, math.inf) <= PRESSURES[1]:
-            raise ValueError(f"pressure must be from {PRESSURES[0]:.0f} to {PRESSURES[1]:.0f}, got {self.pressure!r}")
+            raise ArgumentError("pressure", f"be from {PRESSURES[0]:.0f} to {PRESSURES[1]:.0f}", self.pressure)
         within("humidity", self.humidity, 0.0, 1.0)
 
     @property

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import scipy.fft
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from .delays import Response
 
 SHORTEST_TRANSFORM = 4096

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse
 import scipy.special
 
-from ..bodies.modes import Array
+from ..arrays import Array
 
 # Largest error of a delay within the bandwidth [dB].
 ATTENUATION = 100.0

@@ -7,9 +7,9 @@ from math import cos, pi
 import numpy as np
 from scipy.optimize import brentq
 
+from ..arrays import Array
 from ..bodies import Circle, Rectangle, Section
-from ..bodies.modes import Array
-from ..checks import brief
+from ..checks import ArgumentError
 from .air import Air
 from .delays import Interpolation, Response, add, response, span
 from .panels import Panel
@@ -34,7 +34,7 @@ def moved_area(section: Rectangle | Circle | Section) -> float:
     if isinstance(section, Circle):
         return 2.0 * section.area
     if not isinstance(section, Rectangle):
-        raise ValueError(f"track must have a Rectangle or a Circle as section without a baffle, got {brief(section)}")
+        raise ArgumentError("track", "have a Rectangle or a Circle as section without a baffle", section)
     half = section.height / section.width
     corner = brentq(lambda a: _side(0.0, a) - half * _side(pi / 2.0, a), 1e-9, pi / 2.0 - 1e-9, xtol=1e-14)
     radius = section.width / (2.0 * _side(pi / 2.0, corner))

@@ -24,7 +24,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.signal import lfilter
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from .panels import Panel
 from .recorded import Pressing
 

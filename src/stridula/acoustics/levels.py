@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 from scipy.fft import next_fast_len, rfft, rfftfreq
 
-from ..bodies.modes import Array
-from ..checks import choice, positive
+from ..arrays import Array
+from ..checks import ArgumentError, choice, positive
 from .pressures import channels, check_length, check_rate, of_listeners
 from .weighting import TIME_CONSTANTS, a_weighted, time_weighted
 
@@ -105,7 +105,7 @@ def third_octave_levels(pressure: xr.DataArray, lowest: float = 25.0, highest: f
     """
     numbers = np.arange(_band("lowest", lowest), _band("highest", highest) + 1)
     if not numbers.size:
-        raise ValueError(f"highest must be at or above the lowest band of {lowest!r} Hz, got {highest!r}")
+        raise ArgumentError("highest", f"be at or above the lowest band of {lowest!r} Hz", highest)
     centres = 10.0 ** (numbers / 10.0)
     values, rate = channels(pressure)
     narrowest = centres[0] * (10.0**0.05 - 10.0**-0.05)
@@ -156,8 +156,10 @@ def _band(name: str, nominal: float) -> int:
     known = NOMINAL[BANDS - 10]
     nearest = int(np.argmin(np.abs(np.log(known) - np.log(nominal))))
     if abs(known[nearest] - nominal) > 1e-6 * nominal:
-        raise ValueError(
-            f"{name} must be the nominal centre of a third-octave band from 25 to 20000 Hz, got {nominal!r}; "
-            f"the nearest is {known[nearest]:g}"
+        raise ArgumentError(
+            name,
+            "be the nominal centre of a third-octave band from 25 to 20000 Hz",
+            nominal,
+            got=f"{nominal!r}; the nearest is {known[nearest]:g}",
         )
     return int(BANDS[nearest])

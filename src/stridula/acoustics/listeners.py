@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
-from ..bodies.modes import Array
-from ..checks import at_least, at_most, brief, finite, positive
+from ..checks import ArgumentError, at_least, at_most, finite, positive
 
 FARTHEST = 1000.0
 
@@ -48,13 +48,13 @@ def listeners_of(listener: Any) -> Array:
     if isinstance(listener, np.ndarray):
         listener = listener.tolist()
     if not isinstance(listener, Sequence) or isinstance(listener, (str, bytes)) or not listener:
-        raise ValueError(f"listener must be (x, y, z) or a list of such, got {brief(listener)}")
+        raise ArgumentError("listener", "be (x, y, z) or a list of such", listener)
     several = listener if isinstance(listener[0], (Sequence, np.ndarray)) else [listener]
     found = []
     for number, place in enumerate(several):
         name = "listener" if several is not listener else f"listener[{number}]"
         if not isinstance(place, (Sequence, np.ndarray)) or isinstance(place, (str, bytes)) or len(place) != 3:
-            raise ValueError(f"{name} must be three distances x, y, z, got {brief(place)}")
+            raise ArgumentError(name, "be three distances x, y, z", place)
         found.append([_distance(f"{name}.{axis}", value) for axis, value in zip("xyz", place, strict=True)])
     return np.array(found)
 
@@ -62,7 +62,7 @@ def listeners_of(listener: Any) -> Array:
 def _distance(name: str, value: Any) -> float:
     number = finite(name, value.item() if isinstance(value, np.generic) else value)
     if abs(number) > FARTHEST:
-        raise ValueError(f"{name} must be within {FARTHEST:g} m, got {brief(value)}")
+        raise ArgumentError(name, f"be within {FARTHEST:g} m", value)
     return number
 
 
@@ -71,7 +71,7 @@ def check_in_front(listeners: Array) -> None:
     for place in listeners:
         if place[2] <= 0.0:
             where = "in the surface" if place[2] == 0.0 else "behind the baffle"
-            raise ValueError(f"listener must be in front of the baffle, z above 0, got z = {place[2]:g} {where}")
+            raise ArgumentError("listener", "be in front of the baffle, z above 0", got=f"z = {place[2]:g} {where}")
 
 
 def check_off_beam(listeners: Array, length: float, radius: float) -> None:
@@ -80,7 +80,8 @@ def check_off_beam(listeners: Array, length: float, radius: float) -> None:
         along = place[0] - min(max(place[0], 0.0), length)
         distance = float(np.hypot(along, np.hypot(place[1], place[2])))
         if distance <= radius:
-            raise ValueError(
-                f"listener must be farther than {at_least(radius, 4)} m from the beam's axis, "
-                f"got {tuple(place.tolist())} at {at_most(distance, 4)} m"
+            raise ArgumentError(
+                "listener",
+                f"be farther than {at_least(radius, 4)} m from the beam's axis",
+                got=f"{tuple(place.tolist())} at {at_most(distance, 4)} m",
             )

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate, Rectangle
-from ..bodies.modes import Array
-from ..checks import brief
+from ..checks import ArgumentError
 
 
 @dataclass(frozen=True)
@@ -83,16 +83,14 @@ def panel_of(track: ModalBeam | ModalPlate) -> Panel:
     if isinstance(track, ModalBeam) and isinstance(track.section, Rectangle):
         return _bent(track, track.section.width)
     if isinstance(track, ModalBeam):
-        raise ValueError(
-            f"track must have a Rectangle as section to have a flat surface in a baffle, got {brief(track.section)}"
-        )
-    raise ValueError(f"track must be a ModalBeam or a ModalPlate, got {brief(track)}")
+        raise ArgumentError("track", "have a Rectangle as section to have a flat surface in a baffle", track.section)
+    raise ArgumentError("track", "be a ModalBeam or a ModalPlate", track)
 
 
 def line_of(track: ModalBeam) -> Panel:
     """Return the bending modes of a beam as a panel without width."""
     if not isinstance(track, ModalBeam):
-        raise ValueError(f"track must be a ModalBeam to radiate without a baffle, got {brief(track)}")
+        raise ArgumentError("track", "be a ModalBeam to radiate without a baffle", track)
     return _bent(track, 0.0)
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
-from ..checks import at_least, at_most, brief, instance
+from ..arrays import Array
+from ..checks import ArgumentError, at_least, at_most, instance
 
 # Share of the sample interval by which samples may be off an even grid: rounding of times leaves far less.
 EVEN = 1e-3
@@ -37,25 +37,27 @@ def channels(pressure: xr.DataArray) -> tuple[Array, float]:
     """
     instance("pressure", pressure, xr.DataArray)
     if pressure.dims not in (("time",), ("time", "listener")) or pressure.sizes["time"] < 2 or not pressure.size:
-        raise ValueError(
-            f"pressure must have the dimensions time (at least 2 samples) and listener, got {dict(pressure.sizes)}"
+        raise ArgumentError(
+            "pressure", "have the dimensions time (at least 2 samples) and listener", pressure, got=dict(pressure.sizes)
         )
     units = pressure.attrs.get("units", "Pa")
     if units != "Pa":
-        raise ValueError(f"pressure must be in Pa, got {brief(units)}")
+        raise ArgumentError("pressure", "be in Pa", units)
     values = pressure.values.astype(float).reshape(pressure.shape[0], -1)
     if not np.isfinite(values).all():
-        raise ValueError(f"pressure must be finite, got {np.count_nonzero(~np.isfinite(values))} values that are not")
+        raise ArgumentError(
+            "pressure", "be finite", pressure, got=f"{np.count_nonzero(~np.isfinite(values))} values that are not"
+        )
     return values, 1.0 / _interval(pressure)
 
 
 def _interval(pressure: xr.DataArray) -> float:
     if "time" not in pressure.coords:
-        raise ValueError("pressure must have the coordinate time [s], got none")
+        raise ArgumentError("pressure", "have the coordinate time [s]", pressure, got="none")
     time = pressure["time"].values.astype(float)
     interval = float((time[-1] - time[0]) / (time.size - 1))
     if not interval > 0.0 or np.abs(np.diff(time) - interval).max() > EVEN * interval:
-        raise ValueError("pressure must be evenly sampled over time, got uneven times")
+        raise ArgumentError("pressure", "be evenly sampled over time", pressure, got="uneven times")
     return interval
 
 
@@ -122,12 +124,12 @@ def check_length(pressure: xr.DataArray, shortest: float, what: str) -> None:
     lasts = pressure.sizes["time"] * _interval(pressure)
     if not is_enough(lasts, shortest):
         got = at_most(lasts * (1.0 + ROUNDING), 3)
-        raise ValueError(f"pressure must last at least {at_least(shortest, 3)} s for {what}, got {got} s")
+        raise ArgumentError("pressure", f"last at least {at_least(shortest, 3)} s for {what}", pressure, got=f"{got} s")
 
 
 def check_rate(rate: float, lowest: float, what: str) -> None:
     """Raise ValueError if a sample rate is below `lowest` [Hz], which `what` takes."""
     if not is_enough(rate, lowest):
-        raise ValueError(
-            f"pressure must be sampled at {at_least(lowest)} Hz or more for {what}, got {at_most(rate)} Hz"
+        raise ArgumentError(
+            "pressure", f"be sampled at {at_least(lowest)} Hz or more for {what}", got=f"{at_most(rate)} Hz"
         )

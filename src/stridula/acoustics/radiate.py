@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..bodies import ModalBeam, ModalPlate, Rectangle
-from ..bodies.modes import Array
+from ..arrays import Array
+from ..bodies import ModalBeam, ModalPlate
 from ..checks import instance
 from ..records.changes import check_one_track
 from .air import Air
@@ -146,9 +146,7 @@ def _distances(listeners: Array, panel: Panel) -> Array:
 
 def _slim_below(track: Any, air: Air) -> float:
     """Return the frequency [Hz] below which a beam is slim: its width is a sixth of the wavelength."""
-    section = track.section
-    width = max(section.width, section.height) if isinstance(section, Rectangle) else section.diameter
-    return float(air.speed / (6.0 * width))
+    return float(air.speed / (6.0 * track.section.largest_side))
 
 
 def _first_press(pressed: Pressing) -> float:

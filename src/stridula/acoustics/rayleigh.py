@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from .air import Air
 from .convolution import Convolution
 from .delays import Interpolation, Response, add, interpolation, response, span

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
-from ..checks import at_least, at_most, count
+from ..arrays import Array
+from ..checks import ArgumentError, at_least, at_most, count
 from ..records.checked import record
 from .panels import Panel
 
@@ -57,16 +57,16 @@ def pressing(run: xr.Dataset, panel: Panel) -> Pressing:
     run = record("run", run).transpose("time", ...)
     record("run", run, "normal_force", "contact_position", least=2)
     if run.attrs.get("ended") in DIVERGED:
-        raise ValueError(f"run must be one that can be believed, got one that ended {run.attrs['ended']!r}")
+        raise ArgumentError("run", "be one that can be believed", run, got=f"one that ended {run.attrs['ended']!r}")
     time = run["time"].values
     interval = float((time[-1] - time[0]) / (time.size - 1))
     if not (interval > 0.0 and np.allclose(np.diff(time), interval, rtol=1e-3, atol=0.0)):
-        raise ValueError("run must be evenly sampled in rising time, got uneven times")
+        raise ArgumentError("run", "be evenly sampled in rising time", run, got="uneven times")
     force, position = (_by_contact(run[name]) for name in ("normal_force", "contact_position"))
     for name, values in (("normal_force", force), ("contact_position", position)):
         if not np.isfinite(values).all():
             bad = time[np.flatnonzero(~np.isfinite(values).all(axis=0))[0]]
-            raise ValueError(f"{name} must be finite, got {values[~np.isfinite(values)][0]} at {bad:.6g} s")
+            raise ArgumentError(name, "be finite", got=f"{values[~np.isfinite(values)][0]} at {bad:.6g} s")
     _check_on_track(position, panel)
     before = np.concatenate([position[:, :1], position[:, :-1]], axis=1)
     steps = count("steps_per_sample", run.attrs.get("steps_per_sample", 1_000_000))
@@ -84,7 +84,8 @@ def _check_on_track(position: Array, panel: Panel) -> None:
     low, high = float(position.min()), float(position.max())
     if low < panel.ends[0] - slack or high > panel.ends[1] + slack:
         worst = low if low < panel.ends[0] - slack else high
-        raise ValueError(
-            f"track must be the one the run presses on, here from {at_least(panel.ends[0])} to "
-            f"{at_most(panel.ends[1])} m, got a contact_position of {worst:.6g} m"
+        raise ArgumentError(
+            "track",
+            f"be the one the run presses on, here from {at_least(panel.ends[0])} to {at_most(panel.ends[1])} m",
+            got=f"a contact_position of {worst:.6g} m",
         )

@@ -7,8 +7,8 @@ from fractions import Fraction
 import numpy as np
 from scipy.signal import oaconvolve, resample_poly
 
-from ..bodies.modes import Array
-from ..checks import at_least, at_most, positive
+from ..arrays import Array
+from ..checks import ArgumentError, at_least, at_most, positive
 from .sample_rates import low_pass
 
 # Share of the lower of both sample rates up to which sound is kept whole.
@@ -34,14 +34,13 @@ def ratio_of(sample_rate: float | None, recorded: float, samples: int) -> Fracti
     wanted = positive("sample_rate", sample_rate)
     highest = recorded * (1.0 + 1e-9)
     if wanted > highest:
-        raise ValueError(f"sample_rate must be at most the record's {at_most(highest, 8)} Hz, got {sample_rate!r}")
+        raise ArgumentError("sample_rate", f"be at most the record's {at_most(highest, 8)} Hz", sample_rate)
     if wanted < min(LOWEST, recorded):
-        raise ValueError(f"sample_rate must be at least {at_least(min(LOWEST, recorded))} Hz, got {sample_rate!r}")
+        raise ArgumentError("sample_rate", f"be at least {at_least(min(LOWEST, recorded))} Hz", sample_rate)
     found = Fraction(wanted / recorded).limit_denominator(LARGEST)
     if found == 0 or abs(float(found) * recorded / wanted - 1.0) * samples > DRIFT:
-        raise ValueError(
-            f"sample_rate must be to the record's {recorded:.8g} Hz as whole numbers up to {LARGEST}, "
-            f"got {sample_rate!r}"
+        raise ArgumentError(
+            "sample_rate", f"be to the record's {recorded:.8g} Hz as whole numbers up to {LARGEST}", sample_rate
         )
     return found
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
-from ..bodies.modes import Array
-from ..checks import at_most, instance, positive
+from ..checks import ArgumentError, at_most, instance, positive
 from .air import Air
 from .panels import Panel, panel_of
 
@@ -49,14 +49,12 @@ def radiation_efficiency(track: ModalBeam | ModalPlate, frequency: float | Array
     panel = panel_of(track)
     given = np.atleast_1d(np.asarray(frequency, dtype=float))
     if given.shape not in ((1,), panel.angular_frequency.shape):
-        raise ValueError(f"frequency must be one number or {panel.angular_frequency.size}, got {given.size}")
+        raise ArgumentError("frequency", f"be one number or {panel.angular_frequency.size}", frequency, got=given.size)
     longest, area = max(panel.length, panel.width), panel.length * panel.width
     highest = air.speed * min(MOST_WAVES / longest, float(np.sqrt(MOST_WAVES / area)))
     for value in given:
         if positive("frequency", float(value)) > highest:
-            raise ValueError(
-                f"frequency must be at most {at_most(highest)} Hz for a track of this size, got {float(value)!r}"
-            )
+            raise ArgumentError("frequency", f"be at most {at_most(highest)} Hz for a track of this size", float(value))
     each = np.broadcast_to(2.0 * np.pi * given / air.speed, panel.angular_frequency.shape)
     return np.array([_efficiency(panel.only([k]), float(wavenumber)) for k, wavenumber in enumerate(each)])
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ..bodies import ModalBeam, ModalPlate, Rectangle
-from ..bodies.modes import Array
+from ..arrays import Array
+from ..bodies import ModalBeam, ModalPlate
 from .air import Air
 from .delays import Interpolation, Response, interpolation
 from .dipoles import dipole_response, moved_area
@@ -24,8 +24,7 @@ def check_listeners(listeners: Array, track: ModalBeam | ModalPlate, baffled: bo
         return
     section: Any = track.section  # type: ignore[union-attr]
     moved_area(section)
-    size = np.hypot(section.width, section.height) if isinstance(section, Rectangle) else section.diameter
-    check_off_beam(listeners, track.length, float(size) / 2.0)
+    check_off_beam(listeners, track.length, section.across / 2.0)
 
 
 def responses(

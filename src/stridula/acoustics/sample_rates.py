@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 from scipy.signal import firwin, kaiserord, resample_poly
 
-from ..bodies.modes import Array
+from ..arrays import Array
 
 # Attenuation from half of the lower rate on [dB], and how far below that the pass band ends: 20 kHz at 44.1 kHz.
 STOP_BAND = 110.0

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
-from ..checks import choice
+from ..arrays import Array
+from ..checks import ArgumentError, choice
 from .pressures import channels, check_length, check_rate, of_listeners, over_time
 from .sample_rates import resampled
 
@@ -156,7 +156,7 @@ def roughness(pressure: xr.DataArray) -> xr.DataArray:
 
 def _metrics() -> Any:
     if not is_available():
-        raise ValueError("sensation must have the package mosqito, got none: pip install .[psycho] in the sources")
+        raise ArgumentError("sensation", "have the package mosqito", got="none: pip install .[psycho] in the sources")
     with _quiet():
         import mosqito.sq_metrics
     return mosqito.sq_metrics

@@ -8,8 +8,8 @@ import numpy as np
 import scipy.fft
 from scipy.signal import lfilter
 
+from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
-from ..bodies.modes import Array
 from .air import Air
 from .driven import DEGREE, FASTEST, LEAD, filters, undo_mean
 from .listeners import listeners_of

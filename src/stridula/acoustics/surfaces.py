@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from .panels import Panel
 
 # Gauss-Legendre points along each side of a cell.

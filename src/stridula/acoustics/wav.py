@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
-from ..checks import at_least, brief, choice, positive
+from ..arrays import Array
+from ..checks import ArgumentError, at_least, choice, positive
 from ..disk import check_writable, read, write
 from .pressures import channels
 from .sample_rates import resampled
@@ -106,7 +106,7 @@ def write_wav(
         If the file cannot be written.
     """
     if sample_rate not in RATES:
-        raise ValueError(f"sample_rate must be one of {', '.join(map(str, RATES))} Hz, got {brief(sample_rate)}")
+        raise ArgumentError("sample_rate", f"be one of {', '.join(map(str, RATES))} Hz", sample_rate)
     choice("subtype", subtype, SUBTYPES)
     scale = full_scale if isinstance(full_scale, str) else positive("full_scale", full_scale)
     if isinstance(scale, str):
@@ -120,8 +120,11 @@ def write_wav(
     largest = scale * (1.0 - 1.0 / STEPS)
     if subtype == "PCM_24" and peak > largest:
         least = at_least(peak / (1.0 - 1.0 / STEPS))
-        raise ValueError(
-            f"full_scale must be at least {least} Pa for a peak of {peak:.6g} Pa, got {scale!r} Pa: it would be clipped"
+        raise ArgumentError(
+            "full_scale",
+            f"be at least {least} Pa for a peak of {peak:.6g} Pa",
+            scale,
+            got=f"{scale!r} Pa: it would be clipped",
         )
     comment = scale_comment(scale, float(pressure["time"][0]))
     write(path, encoded(sound / scale, sample_rate, subtype, comment))
@@ -183,10 +186,12 @@ def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
     except (soundfile.SoundFileError, TypeError) as error:
         # The whole of its words names the bytes in memory, too.
         reason = getattr(error, "error_string", error)
-        raise ValueError(f"path must be a sound file, got {str(path)!r}: {reason}") from error
+        raise ArgumentError("path", "be a sound file", str(path), got=f"{str(path)!r}: {reason}") from error
     found = SCALE.search(comment)
     if full_scale is None and found is None:
-        raise ValueError(f"full_scale must be given for a file that does not say its own, got {str(path)!r} alone")
+        raise ArgumentError(
+            "full_scale", "be given for a file that does not say its own", str(path), got=f"{str(path)!r} alone"
+        )
     scale = float(found[1]) if full_scale is None and found else positive("full_scale", full_scale)
     start = float(found[2]) if found else 0.0
     return xr.DataArray(

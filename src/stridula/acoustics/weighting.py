@@ -6,7 +6,7 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.signal import lfilter
 
-from ..bodies.modes import Array
+from ..arrays import Array
 
 # Poles of IEC 61672-1:2013, annex E [Hz]; those at the ends are double. The gain at 1 kHz is one.
 POLES = (20.598997, 107.65265, 737.86223, 12194.217)

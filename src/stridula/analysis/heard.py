@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 
 # Samples below which a frame says nothing.
 FEWEST = 8

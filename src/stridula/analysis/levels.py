@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import positive, within
 from .signals import blocks, pieces, samples
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..bodies.modes import Array
-from ..checks import at_least, positive, within
+from ..arrays import Array
+from ..checks import ArgumentError, at_least, positive, within
 from .heard import Frames, frames, strongest_tone
 from .phases import ROUND_OFF, SMOOTHING
 from .status_changes import (
@@ -95,8 +95,8 @@ class Thresholds:
         within("lowest_tone", self.lowest_tone, 1e-3, 1e6)
         within("frame", self.frame, 1e-6, 1e4)
         if self.rate < 2.0 * self.lowest_tone:
-            raise ValueError(
-                f"rate must be at least twice the lowest tone, {at_least(2.0 * self.lowest_tone)} Hz, got {self.rate!r}"
+            raise ArgumentError(
+                "rate", f"be at least twice the lowest tone, {at_least(2.0 * self.lowest_tone)} Hz", self.rate
             )
 
 

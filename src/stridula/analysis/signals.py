@@ -7,8 +7,8 @@ from typing import Any, TypeVar
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
-from ..checks import at_most, brief, listed
+from ..arrays import Array
+from ..checks import ArgumentError, at_most, listed
 from ..records import checked
 
 Recorded = TypeVar("Recorded", xr.Dataset, xr.DataArray)
@@ -19,7 +19,9 @@ def samples(signal: xr.DataArray) -> tuple[Array, float]:
     of_one_contact(signal)
     checked.signal("signal", signal)
     if signal.dims != ("time",) or signal.size < 2:
-        raise ValueError(f"signal must have the one dimension time and at least 2 samples, got {dict(signal.sizes)}")
+        raise ArgumentError(
+            "signal", "have the one dimension time and at least 2 samples", signal, got=dict(signal.sizes)
+        )
     time = signal["time"].values
     return signal.values.astype(float), float((time[-1] - time[0]) / (time.size - 1))
 
@@ -35,9 +37,7 @@ def of_one_contact(recorded: Recorded) -> Recorded:
     if "contact" in getattr(recorded, "dims", ()):
         names = listed(repr(str(name)) for name in recorded["contact"].values)
         kind = "run" if isinstance(recorded, xr.Dataset) else "signal"
-        raise ValueError(
-            f"{kind} must be of one contact, got those of {names}: choose one with {kind}.sel(contact=...)"
-        )
+        raise ArgumentError(kind, "be of one contact", got=f"those of {names}: choose one with {kind}.sel(contact=...)")
     return recorded
 
 
@@ -59,7 +59,7 @@ def checked_intervals(intervals: Any) -> Array:
     except (TypeError, ValueError):
         pairs = np.empty(0)
     if pairs.ndim != 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
-        raise ValueError(f"intervals must be pairs of start and end in s, got {brief(intervals)}")
+        raise ArgumentError("intervals", "be pairs of start and end in s", intervals)
     return pairs
 
 
@@ -76,5 +76,5 @@ def blocks(values: Array, window: float, interval: float) -> Array:
     """Return the values in successive blocks of a window, shape (blocks, samples)."""
     size = max(1, round(window / interval))
     if values.size < size:
-        raise ValueError(f"window must be at most the signal's {at_most(values.size * interval)} s, got {window!r}")
+        raise ArgumentError("window", f"be at most the signal's {at_most(values.size * interval)} s", window)
     return values[: values.size // size * size].reshape(-1, size)

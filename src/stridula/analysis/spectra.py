@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
-from ..checks import at_most, brief, positive
+from ..arrays import Array
+from ..checks import ArgumentError, at_most, positive
 from .signals import blocks, checked_intervals, pieces, samples
 
 PERIODS = 10.0
@@ -36,7 +36,7 @@ def spectrum(signal: xr.DataArray, intervals: Array | None = None) -> tuple[Arra
     """
     values, interval = samples(signal)
     if interval * FASTEST < 1.0:
-        raise ValueError(f"signal must be sampled at {FASTEST:g} Hz at most, got {1.0 / interval:.6g} Hz")
+        raise ArgumentError("signal", f"be sampled at {FASTEST:g} Hz at most", signal, got=f"{1.0 / interval:.6g} Hz")
     chosen = pieces(signal, values, intervals)
     longest = max((piece.size for piece in chosen), default=0)
     size = 2 ** int(np.ceil(np.log2(max(longest, 1.0 / (FINEST * interval), 2))))
@@ -114,7 +114,7 @@ def tones(
     positive("prominence", prominence)
     frequency, energy = spectrum(signal, intervals)
     if positive("resolution", resolution) > frequency[-1]:
-        raise ValueError(f"resolution must be at most {at_most(float(frequency[-1]))} Hz, got {brief(resolution)}")
+        raise ArgumentError("resolution", f"be at most {at_most(float(frequency[-1]))} Hz", resolution)
     width = max(1, round(resolution / frequency[1]))
     smooth = np.convolve(energy, np.full(width, 1.0 / width), "same")
     level = 10.0 * np.log10(smooth / max(float(smooth.max()), 1e-300) + 1e-30)
@@ -139,7 +139,7 @@ def envelope_correlation(first: xr.DataArray, second: xr.DataArray, window: floa
     """Return the correlation coefficient [1] of the envelopes of two signals on one time axis, NaN of a steady one."""
     one, other = envelope(first, window), envelope(second, window)
     if one.shape != other.shape:
-        raise ValueError(f"second must have as many windows as first, {one.size}, got {other.size}")
+        raise ArgumentError("second", f"have as many windows as first, {one.size}", second, got=other.size)
     if one.size < 2 or not np.ptp(one) > 0.0 or not np.ptp(other) > 0.0:
         return float("nan")
     return float(np.corrcoef(one, other)[0, 1])

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import count, instance, non_negative
 from ..linear.equilibrium import JAMMED, Equilibrium, find_equilibrium
 from ..linear.given import Status, Velocity, given_status, given_velocity

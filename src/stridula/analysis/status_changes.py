@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from .phases import ROUND_OFF, moving_mean
 
 MIXED = -1

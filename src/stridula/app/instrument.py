@@ -7,8 +7,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..arrays import Array
 from ..bodies import FiniteElementBeam, ModalBeam
-from ..bodies.modes import Array
 from ..histories import Constant
 from ..integration.live import LiveChunk, LiveMarch
 from .last_seconds import LastSeconds
@@ -121,7 +121,7 @@ class Instrument:
     def _at_rest(self, chunk: LiveChunk) -> str:
         """Return why nothing more will come of this stroke, or nothing."""
         drives = self.live.system.drives
-        is_constant = all(isinstance(getattr(drive, "history", Constant()), Constant) for drive in drives)
+        is_constant = all(getattr(drive, "history", Constant()).settled == 0.0 for drive in drives)
         sticks = chunk.status_share[:, 1].min() == 1.0 and self.live.system.imposed_velocity is None
         is_still = is_constant and (sticks or chunk.status_share[:, 0].min() == 1.0)
         self._still = self._still + len(chunk.time) if is_still else min(self._still, 0)

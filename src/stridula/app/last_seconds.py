@@ -12,7 +12,8 @@ import numpy as np
 import xarray as xr
 
 from ..acoustics.wav import encoded, normalised_scale, scale_comment
-from ..bodies.modes import Array
+from ..arrays import Array
+from ..checks import ArgumentError
 from ..records.variables import (
     CONTACT,
     PROBES,
@@ -160,4 +161,4 @@ class LastSeconds:
 
     def _check(self) -> None:
         if not self._parts:
-            raise ValueError("something must have been played before it can be saved, got nothing yet")
+            raise ArgumentError("something", "have been played before it can be saved", got="nothing yet")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..integration.live import LiveChunk
 from ..records.variables import dominant_status
 

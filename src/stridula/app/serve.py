@@ -14,6 +14,7 @@ from contextlib import suppress
 
 import uvicorn
 
+from ..checks import ArgumentError
 from ..studies.task import use_one_thread
 from .caller import Caller, is_news
 from .instrument import RATE, Instrument
@@ -53,8 +54,8 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
         If the host is not this machine's own and `is_open` does not say that it may be, or the port cannot be had.
     """
     if not (is_open or is_loopback(host)):
-        raise ValueError(
-            f"host must be this machine's own, such as 127.0.0.1, unless --open lets other machines in, got {host!r}"
+        raise ArgumentError(
+            "host", "be this machine's own, such as 127.0.0.1, unless --open lets other machines in", host
         )
     listening = _bound(host, port)
     use_one_thread()
@@ -152,7 +153,7 @@ def is_loopback(host: str) -> bool:
 
 def _bound(host: str, port: int) -> socket.socket:
     if not 0 <= port <= 65535:
-        raise ValueError(f"port must be from 0 to 65535, got {port!r}")
+        raise ArgumentError("port", "be from 0 to 65535", port)
     try:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         found = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
@@ -162,5 +163,5 @@ def _bound(host: str, port: int) -> socket.socket:
         found.listen()
     except OSError as error:
         taken = " (another program listens there: choose another --port)" if error.errno == errno.EADDRINUSE else ""
-        raise ValueError(f"host and port must be free, got {host}:{port}: {error.strerror}{taken}") from error
+        raise ArgumentError("host and port", "be free", got=f"{host}:{port}: {error.strerror}{taken}") from error
     return found

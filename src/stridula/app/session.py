@@ -10,6 +10,7 @@ from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from ..checks import ArgumentError
 from ..integration.live import LiveMarch
 from ..plot.colours import REGIME_COLOURS
 from ..scenarios.errors import ScenarioError
@@ -88,7 +89,7 @@ class Session:
         try:
             return await self.socket.receive_text()
         except KeyError:
-            raise ValueError("message must be text, got bytes") from None
+            raise ArgumentError("message", "be text", got="bytes") from None
 
     async def _tell(self, what: str, **words: Any) -> None:
         await _sent(self.socket.send_json({"type": what, **words}))
@@ -105,7 +106,7 @@ class Session:
             if self.instrument is not None:
                 self.instrument.repeat(message.on)
         elif self.instrument is None:
-            raise ValueError("scene must be given first")
+            raise ArgumentError("scene", "be given first")
         elif isinstance(message, Pull):
             await self._pull(self.instrument, message)
         elif isinstance(message, Restart):
@@ -183,9 +184,9 @@ class Session:
         for side in ("x", "y"):
             axis = getattr(message, side)
             if axis.key not in known or not axis.low < axis.high:
-                raise ValueError(f"{side} must be a number of the page that rises from low to high, got {axis.key!r}")
+                raise ArgumentError(side, "be a number of the page that rises from low to high", axis.key)
         if message.x.key == message.y.key:
-            raise ValueError(f"y must be another number than x, got {message.y.key!r} for both")
+            raise ArgumentError("y", "be another number than x", message.y.key, got=f"{message.y.key!r} for both")
         self._do("map", self._rows(played, message))
 
     async def _rows(self, played: Playable, wanted: Map) -> None:

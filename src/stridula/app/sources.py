@@ -9,8 +9,8 @@ from functools import lru_cache
 import numpy as np
 
 from ..acoustics.streamed import StreamedSound
+from ..arrays import Array
 from ..bodies import ModalBeam
-from ..bodies.modes import Array
 from ..integration.live import LiveChunk, LiveMarch
 
 

@@ -4,7 +4,7 @@ from .damping import Rayleigh, RisingDamping, SampledDamping
 from .finite_element_beam import FiniteElementBeam
 from .modal_beam import ModalBeam
 from .modal_plate import Line, ModalPlate
-from .modes import Body, BodyPoint, Modes
+from .modes import Body, BodyPoint, HasRoot, Modes
 from .point_mass import PointMass
 from .reduced_body import ReducedBody
 from .sections import Circle, Material, Rectangle, Section
@@ -17,6 +17,7 @@ __all__ = [
     "BodyPoint",
     "Circle",
     "FiniteElementBeam",
+    "HasRoot",
     "Line",
     "Material",
     "ModalBeam",

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, ClassVar, Protocol, runtime_checkable
+from typing import Annotated, Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
-from ..checks import brief, non_negative
-from .modes import Array
+from ..arrays import Array
+from ..checks import ArgumentError
+from ..declared import DAMPING_RATIO, DampingRatio, Each, Number, check_declared
 
 
 @runtime_checkable
@@ -43,13 +44,12 @@ class Rayleigh:
         If a share is negative or not finite.
     """
 
-    mass: float
-    stiffness: float
+    mass: Annotated[float, Number("1/s", least=0.0)]
+    stiffness: Annotated[float, Number("s", least=0.0)]
     form: ClassVar[str] = "rayleigh"
 
     def __post_init__(self) -> None:
-        non_negative("mass", self.mass)
-        non_negative("stiffness", self.stiffness)
+        check_declared(self)
 
     def rates(self, angular_frequency: Array) -> Array:
         """Return ``2 zeta w = alpha + beta w²`` [1/s]."""
@@ -68,7 +68,7 @@ class RisingDamping:
     ratio : float
         Damping ratio at low frequencies [1].
     rise : float
-        Rise of the ratio with frequency [1/Hz].
+        Rise of the damping ratio with the frequency of a mode [1/Hz].
 
     Raises
     ------
@@ -76,13 +76,12 @@ class RisingDamping:
         If an argument is negative or not finite, or if the ratio is not below 1.
     """
 
-    ratio: float
-    rise: float
+    ratio: DampingRatio
+    rise: Annotated[float, Number("1/Hz", least=0.0)]
     form: ClassVar[str] = "rising"
 
     def __post_init__(self) -> None:
-        ratio("ratio", self.ratio)
-        non_negative("rise", self.rise)
+        check_declared(self)
 
     def rates(self, angular_frequency: Array) -> Array:
         """Return ``2 zeta w`` [1/s]."""
@@ -99,9 +98,9 @@ class SampledDamping:
     Parameters
     ----------
     frequency : sequence of float
-        Frequencies [Hz], rising.
+        Frequencies at which the ratio is given [Hz], rising.
     ratio : sequence of float
-        Damping ratio at each [1], from 0 to 1 (1 excluded).
+        Damping ratio at each [1], linear between them; from 0 to 1 (1 excluded).
 
     Raises
     ------
@@ -109,22 +108,23 @@ class SampledDamping:
         If frequencies do not rise, an argument is out of its range, or there are not as many of both.
     """
 
-    frequency: Sequence[float]
-    ratio: Sequence[float]
+    frequency: Annotated[Sequence[float], Each(Number("Hz", least=0.0))]
+    ratio: Annotated[Sequence[float], Each(DAMPING_RATIO)]
     form: ClassVar[str] = "sampled"
 
     def __post_init__(self) -> None:
-        frequencies = _each("frequency", self.frequency, non_negative)
-        ratios = _each("ratio", self.ratio, ratio)
+        check_declared(self)
+        frequencies, ratios = self.frequency, self.ratio
         if not frequencies or len(frequencies) != len(ratios):
-            raise ValueError(
-                f"ratio must have as many values as frequency, one or more, got {len(ratios)} and {len(frequencies)}"
+            raise ArgumentError(
+                "ratio",
+                "have as many values as frequency, one or more",
+                self.ratio,
+                got=f"{len(ratios)} and {len(frequencies)}",
             )
         for number, (before, after) in enumerate(pairwise(frequencies), start=1):
             if after <= before:
-                raise ValueError(f"frequency[{number}] must be above {before!r}, the one before it, got {after!r}")
-        object.__setattr__(self, "frequency", frequencies)
-        object.__setattr__(self, "ratio", ratios)
+                raise ArgumentError(f"frequency[{number}]", f"be above {before!r}, the one before it", after)
 
     def rates(self, angular_frequency: Array) -> Array:
         """Return ``2 zeta w`` [1/s]."""
@@ -133,19 +133,7 @@ class SampledDamping:
 
 
 Damping = float | Sequence[float] | Array | DampingLaw
-
-
-def ratio(name: str, value: Any) -> float:
-    """Return a damping ratio as a float.
-
-    Raises
-    ------
-    ValueError
-        If it is not from 0 to 1, 1 excluded.
-    """
-    if non_negative(name, value) >= 1.0:
-        raise ValueError(f"{name} must be below 1 (critical), got {brief(value)}")
-    return float(value)
+DAMPING_LAWS = (Rayleigh, RisingDamping, SampledDamping)
 
 
 def checked_damping(given: Any) -> float | tuple[float, ...] | DampingLaw:
@@ -160,17 +148,15 @@ def checked_damping(given: Any) -> float | tuple[float, ...] | DampingLaw:
         return given
     if isinstance(given, (Sequence, np.ndarray)) and not isinstance(given, str):
         if np.ndim(given) != 1:
-            raise ValueError(
-                f"damping must be one ratio, a list of one for each mode or a law such as Rayleigh, got {brief(given)}"
-            )
-        return _each("damping", given, ratio)
-    return ratio("damping", given)
+            raise ArgumentError("damping", "be one ratio, a list of one for each mode or a law such as Rayleigh", given)
+        return Each(DAMPING_RATIO).check("damping", given)
+    return DAMPING_RATIO.check("damping", given)
 
 
 def check_damping_count(damping: Any, modes: int) -> None:
     """Raise ValueError if damping is a list with not as many ratios as there are modes."""
     if isinstance(damping, (tuple, np.ndarray)) and len(damping) != modes:
-        raise ValueError(f"damping must have one ratio or {modes}, one for each mode kept, got {len(damping)}")
+        raise ArgumentError("damping", f"have one ratio or {modes}, one for each mode kept", damping, got=len(damping))
 
 
 def damping_rates(damping: Any, angular_frequency: Array) -> Array:
@@ -179,9 +165,3 @@ def damping_rates(damping: Any, angular_frequency: Array) -> Array:
         return damping.rates(angular_frequency)
     check_damping_count(damping, angular_frequency.size)
     return np.asarray(2.0 * np.asarray(damping) * angular_frequency)
-
-
-def _each(name: str, given: Any, check: Any) -> tuple[float, ...]:
-    if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)):
-        raise ValueError(f"{name} must be a list of numbers, got {brief(given)}")
-    return tuple(float(check(f"{name}[{k}]", value)) for k, value in enumerate(np.asarray(given).tolist()))

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Annotated, ClassVar
 
 import numpy as np
 import scipy.linalg
 
-from ..checks import choice, count, finite, instance, positive, within
+from ..arrays import Array
+from ..checks import ArgumentError, instance, within
+from ..declared import Angle, Choice, Count, Frequency, Length, Name, Own, check_declared
 from .damping import DampingLaw, checked_damping, damping_rates
 from .finite_elements import (
     FIXED_BY_SUPPORT,
@@ -19,11 +22,12 @@ from .finite_elements import (
     element_mass,
     element_stiffness,
 )
-from .modes import Array, BodyPoint, Modes
-from .ordinary import of_ordinary_size
+from .modes import BodyPoint, Modes
+from .ordinary import check_overflow, of_ordinary_size
 from .sections import Circle, Material, Rectangle, Section
 
 LARGEST_ELEMENTS = 500
+SUPPORTS = tuple(FIXED_BY_SUPPORT)
 # Beams whose modes are kept: a sweep comes back to the same ones. Of those of many elements fewer, for their memory.
 FEW_ELEMENTS, MANY_BEAMS, FEW_BEAMS = 60, 128, 16
 
@@ -43,21 +47,24 @@ class FiniteElementBeam:
     section : Rectangle, Circle or Section
         Its cross-section.
     length : float
-        Length [m].
+        Length [m], from tip to root.
     angle : float, optional
-        Angle a of its axis from the track's normal [rad], strictly between -pi/2 and pi/2; above zero the root is
-        ahead of the tip in x.
+        Angle from the track's normal [rad], above zero where the root is ahead of the tip in x; that of its axis, a,
+        strictly between -pi/2 and pi/2.
     elements : int, optional
-        Number of equal elements, at most 500.
+        Number of finite elements; they are equal, at most 500.
     damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
-        Damping ratio of every mode [1], from 0 to 1 (1 excluded), one for each mode kept in the order of rising
-        frequency (of no effect on rigid modes), or a law of their frequency.
-    root_support, tip_support : {"free", "guided", "pinned", "clamped"}, optional
-        Support of the root and of the tip. Guided: the section does not rotate, both translations are free.
+        Damping ratio of every mode [1], one for each, or a law of frequency; from 0 to 1 (1 excluded), one for each
+        mode kept in the order of rising frequency, of no effect on rigid modes.
+    root_support : {"free", "guided", "pinned", "clamped"}, optional
+        Support of the root: free, guided (no rotation), pinned or clamped; where it is guided, both translations are
+        free.
+    tip_support : {"free", "guided", "pinned", "clamped"}, optional
+        Support of the tip: free, guided, pinned or clamped.
     mass : {"consistent", "lumped"}, optional
-        Mass matrix of the elements.
+        Mass matrix of the elements: consistent or lumped.
     cutoff : float, optional
-        Keep the modes up to this frequency [Hz], rigid ones always; all modes if left out, which is then exactly the
+        Keep the modes up to this frequency, all if left out [Hz]; rigid ones always. All of them are exactly the
         finite-element model.
     name : str, optional
         What it is called in records; tells equal bodies apart.
@@ -68,33 +75,41 @@ class FiniteElementBeam:
         If an argument is out of its range, or if no mode is left.
     """
 
+    kind: ClassVar[str] = "finite-element beam"
+    point_names: ClassVar[tuple[str, ...]] = ("tip", "root")
+    has_positions: ClassVar[bool] = True
+    has_translation: ClassVar[bool] = True
     material: Material
     section: Rectangle | Circle | Section
-    length: float
-    angle: float = 0.0
-    elements: int = 20
-    damping: float | Sequence[float] | DampingLaw = 0.0
-    root_support: str = "guided"
-    tip_support: str = "free"
-    mass: str = "consistent"
-    cutoff: float | None = None
-    name: str = ""
+    length: Length
+    angle: Angle = 0.0
+    elements: Count = 20
+    damping: Annotated[float | Sequence[float] | DampingLaw, Own("damping")] = 0.0
+    root_support: Annotated[str, Choice(SUPPORTS)] = "guided"
+    tip_support: Annotated[str, Choice(SUPPORTS)] = "free"
+    mass: Annotated[str, Choice(("consistent", "lumped"))] = "consistent"
+    cutoff: Frequency | None = None
+    name: Name = ""
 
     def __post_init__(self) -> None:
         instance("material", self.material, Material)
         instance("section", self.section, (Rectangle, Circle, Section))
-        positive("length", self.length)
-        if abs(finite("angle", self.angle)) >= np.pi / 2:
-            raise ValueError(f"angle must be strictly between -pi/2 and pi/2 rad (90 deg), got {self.angle!r}")
-        if count("elements", self.elements) > LARGEST_ELEMENTS:
-            raise ValueError(f"elements must be at most {LARGEST_ELEMENTS}, got {self.elements!r}")
+        check_declared(self)
+        if abs(self.angle) >= np.pi / 2:
+            raise ArgumentError("angle", "be strictly between -pi/2 and pi/2 rad (90 deg)", self.angle)
+        if self.elements > LARGEST_ELEMENTS:
+            raise ArgumentError("elements", f"be at most {LARGEST_ELEMENTS}", self.elements)
         object.__setattr__(self, "damping", checked_damping(self.damping))
-        choice("root_support", self.root_support, tuple(FIXED_BY_SUPPORT))
-        choice("tip_support", self.tip_support, tuple(FIXED_BY_SUPPORT))
-        choice("mass", self.mass, ("consistent", "lumped"))
-        if self.cutoff is not None:
-            positive("cutoff", self.cutoff)
-        instance("name", self.name, str)
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words."""
+        return f"{self.length:.4g} m"
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words."""
+        return f"leaning {np.degrees(self.angle):.4g} deg"
 
     @property
     def tip(self) -> BodyPoint:
@@ -206,6 +221,7 @@ def _reduce(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
         beam.elements,
     )
     mass = assemble(element_mass(material.density * section.area, le, beam.mass), beam.angle, beam.elements)
+    check_overflow(stiffness, mass)
     fixed = _fixed(beam, held_x)
     free = np.setdiff1d(np.arange(mass.shape[0]), fixed)
     rigid = _rigid_shapes(beam, mass, fixed)
@@ -224,7 +240,7 @@ def _reduce(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
         kept = angular <= 2.0 * np.pi * beam.cutoff
         angular, shapes = angular[kept], shapes[:, kept]
     if angular.size == 0:
-        raise ValueError(f"cutoff must leave at least one mode, got {beam.cutoff!r} Hz")
+        raise ArgumentError("cutoff", "leave at least one mode", beam.cutoff, got=f"{beam.cutoff!r} Hz")
     directions = np.zeros((2, mass.shape[0]))
     directions[0, 0::3] = directions[1, 1::3] = 1.0
     modes = Modes(angular, damping_rates(beam.damping, angular), directions @ mass @ shapes)

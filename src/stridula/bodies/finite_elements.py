@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .modes import Array
+from ..arrays import Array
 
 # Degrees of freedom of a node, in the world frame: displacement along x and y, and the section's rotation.
 X, Y, ROTATION = 0, 1, 2

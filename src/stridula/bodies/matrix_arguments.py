@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from ..checks import brief
+from ..arrays import Array
+from ..checks import ArgumentError
 from .damping import Rayleigh
 from .matrix_files import AlignedMatrices, check_size
 from .matrix_input import check_mass, is_pair, point_rows, rows_of, square, symmetric
-from .modes import Array
 
 
 def from_container(held: dict[str, Any]) -> dict[str, Any]:
@@ -51,7 +51,7 @@ def _by_number(word: str, value: Any, labels: Array | None) -> Any:
     if labels is None or isinstance(value, np.ndarray):
         return value
     if not is_pair(value, (tuple, list)) or not all(entry is None or is_pair(entry, Integral) for entry in value):
-        raise ValueError(f"{word} must be a pair of labels (node, degree of freedom), got {brief(value)}")
+        raise ArgumentError(word, "be a pair of labels (node, degree of freedom)", value)
     return tuple(None if label is None else _number(word, label, labels) for label in value)
 
 
@@ -61,7 +61,7 @@ def _number(word: str, label: tuple[int, int], labels: Array) -> int:
     if found.size == 0:
         there = ", ".join(str(dof) for dof in labels[of_node, 1])
         known = f"node {label[0]} has {there}" if there else f"no node {label[0]}"
-        raise ValueError(f"{word} must name degrees of freedom in the files ({known}), got {brief(label)}")
+        raise ArgumentError(word, f"name degrees of freedom in the files ({known})", label)
     return int(found[0])
 
 
@@ -73,5 +73,5 @@ def _translation(value: Any, labels: Array | None, size: int) -> Array:
     for dof, row in zip(value, motion, strict=True):
         if dof is not None and not row.any():
             known = ", ".join(str(number) for number in np.unique(labels[labels[:, 0] > 0, 1]))
-            raise ValueError(f"translation must name degrees of freedom of the nodes ({known}), got {brief(dof)}")
+            raise ArgumentError("translation", f"name degrees of freedom of the nodes ({known})", dof)
     return motion

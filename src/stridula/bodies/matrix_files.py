@@ -18,10 +18,10 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
-from ..checks import at_least, in_one_line, listed
+from ..arrays import Array
+from ..checks import ArgumentError, at_least, in_one_line, listed
 from ..disk import one_line, write
 from .matlab import read_matlab
-from .modes import Array
 
 LARGEST_FILE = 2 * 1024**3
 LARGEST_SIZE = 4000
@@ -65,8 +65,8 @@ class AlignedMatrices:
 def check_size(name: str, size: int) -> None:
     """Raise ValueError if a matrix of `size` rows is too large to be made dense."""
     if size > LARGEST_SIZE:
-        raise ValueError(
-            f"{name} must have at most {LARGEST_SIZE} degrees of freedom, got {size}: reduce the model first"
+        raise ArgumentError(
+            name, f"have at most {LARGEST_SIZE} degrees of freedom", got=f"{size}: reduce the model first"
         )
 
 
@@ -82,9 +82,11 @@ def read_container(path: str | os.PathLike[str]) -> dict[str, Any]:
     """
     kind = _kind(path)
     if kind not in ("npz", "mat"):
-        raise ValueError(
-            f"path must be an .npz or .mat file, got {os.fspath(path)!r}; "
-            "files of one matrix each are given as mass and stiffness"
+        raise ArgumentError(
+            "path",
+            "be an .npz or .mat file",
+            os.fspath(path),
+            got=f"{os.fspath(path)!r}; files of one matrix each are given as mass and stiffness",
         )
     with _whole(path):
         arrays = _npz(path) if kind == "npz" else _mat(path)
@@ -111,9 +113,10 @@ def read_matrices(paths: Mapping[str, str | os.PathLike[str]]) -> AlignedMatrice
     files = {name: _one_matrix(name, path) for name, path in paths.items()}
     labelled = {file.labelled for file in files.values()}
     if len(labelled) > 1:
-        raise ValueError(
-            "mass, stiffness and damping must all be with labels (Abaqus FORMAT=MATRIX INPUT) or all without, "
-            f"got {', '.join(f'{name} with' + ('' if f.labelled else 'out') for name, f in files.items())}"
+        raise ArgumentError(
+            "mass, stiffness and damping",
+            "all be with labels (Abaqus FORMAT=MATRIX INPUT) or all without",
+            got=", ".join((f"{name} with" + ("" if f.labelled else "out") for name, f in files.items())),
         )
     every = np.concatenate([np.append(file.rows, file.columns) for file in files.values()])
     if labelled == {True}:
@@ -130,7 +133,7 @@ def read_matrices(paths: Mapping[str, str | os.PathLike[str]]) -> AlignedMatrice
     for name, matrix in matrices.items():
         if matrix.shape != matrices["stiffness"].shape:
             wanted, got = matrices["stiffness"].shape[0], matrix.shape[0]
-            raise ValueError(f"{name} must have as many degrees of freedom as stiffness, {wanted}, got {got}")
+            raise ArgumentError(name, f"have as many degrees of freedom as stiffness, {wanted}", got=got)
     free = np.ones(matrices["stiffness"].shape[0], dtype=bool)
     if files["stiffness"].size is None:
         diagonal = matrices["stiffness"].diagonal()
@@ -205,15 +208,15 @@ def _check_header(name: str, archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -
         try:
             version = np.lib.format.read_magic(file)
         except ValueError:
-            raise ValueError(f"{name} must be an array of numbers, got other bytes") from None
+            raise ArgumentError(name, "be an array of numbers", got="other bytes") from None
         if version not in HEADERS:
-            raise ValueError(f"{name} must be an array of numbers, got one of version {version} of its format")
+            raise ArgumentError(name, "be an array of numbers", got=f"one of version {version} of its format")
         shape, _, kind = HEADERS[version](file, max_header_size=LONGEST_HEADER)
     if kind.kind not in "fiubcSU":
-        raise ValueError(f"{name} must be an array of numbers, got one of kind {kind}")
+        raise ArgumentError(name, "be an array of numbers", got=f"one of kind {kind}")
     check_size(name, max(shape, default=0))
     if math.prod(shape) * kind.itemsize > entry.file_size:
-        raise ValueError(f"{name} must hold the {math.prod(shape)} numbers that its header says, it holds less")
+        raise ArgumentError(name, f"hold the {math.prod(shape)} numbers that its header says, it holds less")
 
 
 def _by_words(held: Mapping[str, Any]) -> dict[str, Any]:
@@ -268,9 +271,11 @@ def _of_version_4(path: str | os.PathLike[str], is_wanted: Any, check_shape: Any
 def _one_matrix(name: str, path: str | os.PathLike[str]) -> _Entries:
     kind = _kind(path)
     if kind in ("npz", "mat"):
-        raise ValueError(
-            f"{name} must be a Matrix Market file or Abaqus text, got {os.fspath(path)!r}; "
-            "a file with all matrices is given as path"
+        raise ArgumentError(
+            name,
+            "be a Matrix Market file or Abaqus text",
+            os.fspath(path),
+            got=f"{os.fspath(path)!r}; a file with all matrices is given as path",
         )
     with _whole(path):
         return _matrix_market(name, path) if kind == "matrix market" else _abaqus(path)
@@ -280,7 +285,7 @@ def _matrix_market(name: str, path: str | os.PathLike[str]) -> _Entries:
     """Read a Matrix Market file; SciPy sees only its header: on one that is cut it may bring the process down."""
     rows, columns, entries, layout, field, symmetry = scipy.io.mminfo(os.fspath(path))
     if rows != columns:
-        raise ValueError(f"{name} must be square, got {rows} x {columns}")
+        raise ArgumentError(name, "be square", got=f"{rows} x {columns}")
     check_size(name, rows)
     if field not in ("real", "integer", "unsigned-integer") or entries > rows * columns:
         raise ValueError(f"the header must announce at most {rows * columns} real entries, it says {entries} {field}")

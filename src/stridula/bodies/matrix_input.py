@@ -10,10 +10,11 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse
 
-from ..checks import brief, instance
-from .damping import DampingLaw, checked_damping, ratio
+from ..arrays import Array
+from ..checks import ArgumentError, instance
+from ..declared import DAMPING_RATIO
+from .damping import DampingLaw, checked_damping
 from .matrix_files import check_size
-from .modes import Array
 
 SYMMETRY = 1e-8
 
@@ -37,9 +38,11 @@ def check_mass(mass: Array) -> None:
             pivots = np.zeros(1)
         if pivots.min() > ROUND_OFF:
             return
-    raise ValueError(
-        f"mass must be positive definite, got the smallest eigenvalue {smallest_eigenvalue(mass):.6g}; "
-        "condense degrees of freedom without mass"
+    raise ArgumentError(
+        "mass",
+        "be positive definite",
+        mass,
+        got=f"the smallest eigenvalue {smallest_eigenvalue(mass):.6g}; condense degrees of freedom without mass",
     )
 
 
@@ -49,8 +52,8 @@ def check_damping(matrix: Array) -> None:
     scale = 1.0 / np.sqrt(largest)
     values = scipy.linalg.eigvalsh(matrix * np.outer(scale, scale))
     if values[0] < -ROUND_OFF * np.abs(values).max():
-        raise ValueError(
-            f"damping must be positive semidefinite, got the smallest eigenvalue {smallest_eigenvalue(matrix):.6g}"
+        raise ArgumentError(
+            "damping", "be positive semidefinite", got=f"the smallest eigenvalue {smallest_eigenvalue(matrix):.6g}"
         )
 
 
@@ -62,11 +65,11 @@ def numbers(name: str, value: Any) -> Array:
     try:
         array = value.toarray() if scipy.sparse.issparse(value) else np.array(value)
     except ValueError as error:
-        raise ValueError(f"{name} must be an array of numbers, got a ragged {type(value).__name__}") from error
+        raise ArgumentError(name, "be an array of numbers", value, got=f"a ragged {type(value).__name__}") from error
     if array.dtype.kind == "c":
-        raise ValueError(f"{name} must be real, got complex numbers")
+        raise ArgumentError(name, "be real", value, got="complex numbers")
     if array.dtype.kind not in "iuf":
-        raise ValueError(f"{name} must be an array of numbers, got a {type(value).__name__} of {array.dtype}")
+        raise ArgumentError(name, "be an array of numbers", value, got=f"a {type(value).__name__} of {array.dtype}")
     # Adding zero turns -0.0 into 0.0: equal arrays get the same digest.
     return np.asarray(array, dtype=float, order="C") + 0.0
 
@@ -77,19 +80,19 @@ def check_finite(name: str, array: Array) -> None:
     if bad.size:
         words = ("row", "column") if array.ndim == 2 else ("number",)
         where = ", ".join(f"{word} {index}" for word, index in zip(words, bad[0], strict=True))
-        raise ValueError(f"{name} must be finite, got {array[tuple(bad[0])]} at {where} (from 0)")
+        raise ArgumentError(name, "be finite", got=f"{array[tuple(bad[0])]} at {where} (from 0)")
 
 
 def square(name: str, value: Any, size: int | None = None) -> Array:
     """Return a matrix as an array after a check of its size, which comes before anything large is made."""
     matrix = value if hasattr(value, "shape") else numbers(name, value)
     if len(matrix.shape) != 2 or matrix.shape[0] != matrix.shape[1]:
-        raise ValueError(f"{name} must be a square matrix, got the shape {tuple(matrix.shape)}")
+        raise ArgumentError(name, "be a square matrix", value, got=f"the shape {tuple(matrix.shape)}")
     if matrix.shape[0] == 0:
-        raise ValueError(f"{name} must have at least one degree of freedom, got an empty matrix")
+        raise ArgumentError(name, "have at least one degree of freedom", value, got="an empty matrix")
     check_size(name, matrix.shape[0])
     if size is not None and matrix.shape[0] != size:
-        raise ValueError(f"{name} must have as many degrees of freedom as mass, {size}, got {matrix.shape[0]}")
+        raise ArgumentError(name, f"have as many degrees of freedom as mass, {size}", value, got=matrix.shape[0])
     array = numbers(name, matrix)
     check_finite(name, array)
     return array
@@ -100,9 +103,13 @@ def symmetric(name: str, matrix: Array) -> Array:
     skew = np.abs(matrix - matrix.T)
     if skew.max() > SYMMETRY * np.abs(matrix).max():
         row, column = np.unravel_index(np.argmax(skew), skew.shape)
-        raise ValueError(
-            f"{name} must be symmetric, got {matrix[row, column]} at row {row}, column {column} (from 0) but "
-            f"{matrix[column, row]} at row {column}, column {row}"
+        raise ArgumentError(
+            name,
+            "be symmetric",
+            got=(
+                f"{matrix[row, column]} at row {row}, column {column} (from 0) but {matrix[column, row]} at "
+                f"row {column}, column {row}"
+            ),
         )
     return 0.5 * (matrix + matrix.T)
 
@@ -111,7 +118,7 @@ def rows_of(name: str, value: Any, size: int) -> Array:
     """Return rows on the degrees of freedom as an array of shape (2, size)."""
     rows = value if hasattr(value, "shape") else numbers(name, value)
     if tuple(rows.shape) != (2, size):
-        raise ValueError(f"{name} must have the shape (2, {size}), got {tuple(rows.shape)}")
+        raise ArgumentError(name, f"have the shape (2, {size})", value, got=tuple(rows.shape))
     array = numbers(name, rows)
     check_finite(name, array)
     return array
@@ -121,11 +128,11 @@ def points_of(points: Any, size: int) -> dict[str, Array]:
     """Return the rows of every point by its name."""
     instance("points", points, Mapping)
     if not points:
-        raise ValueError("points must have at least one point, got none")
+        raise ArgumentError("points", "have at least one point", points, got="none")
     rows = {}
     for name, value in points.items():
         if not isinstance(name, str) or not name:
-            raise ValueError(f"points must have names that are text, got {brief(name)}")
+            raise ArgumentError("points", "have names that are text", name)
         rows[name] = point_rows(f"points[{name!r}]", value, size)
         rows[name].flags.writeable = False
     return rows
@@ -139,7 +146,7 @@ def point_rows(word: str, value: Any, size: int) -> Array:
     for row, number in zip(rows, value, strict=True):
         if number is not None:
             if isinstance(number, bool) or not 0 <= number < size:
-                raise ValueError(f"{word} must name degrees of freedom from 0 to {size - 1}, got {brief(number)}")
+                raise ArgumentError(word, f"name degrees of freedom from 0 to {size - 1}", number)
             row[int(number)] = 1.0
     return rows
 
@@ -155,10 +162,10 @@ def damping_of(value: Any, size: int) -> float | Array | DampingLaw:
     if isinstance(value, DampingLaw):
         return value
     if isinstance(value, (Real, str)) or value is None:
-        return ratio("damping", value)
+        return DAMPING_RATIO.check("damping", value)
     damping = value if hasattr(value, "shape") else numbers("damping", value)
     if len(damping.shape) == 0:
-        return ratio("damping", damping.item())
+        return DAMPING_RATIO.check("damping", damping.item())
     if len(damping.shape) == 1:
         return np.array(checked_damping(numbers("damping", damping)))
     matrix = symmetric("damping", square("damping", damping, size))

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Annotated, ClassVar
 
 import numpy as np
 
-from ..checks import at_least, count, instance, positive, within
+from ..checks import ArgumentError, at_least, instance, within
+from ..declared import Count, CountFrom0, Frequency, Length, Name, Own, check_declared
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .modes import Array, BodyPoint, Modes
 from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
@@ -32,13 +34,15 @@ class ModalBeam:
         Its cross-section.
     length : float
         Length [m], from x = 0 to its right end.
-    bending_modes, axial_modes : int, optional
-        Number of modes kept of each kind.
+    bending_modes : int, optional
+        Number of bending modes, unless there is a cutoff.
+    axial_modes : int, optional
+        Number of axial modes, unless there is a cutoff.
     damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
-        Damping ratio of every mode [1], from 0 to 1 (1 excluded), one for each mode in their order, or a law of their
-        frequency.
+        Damping ratio of every mode [1], one for each, or a law of frequency; from 0 to 1 (1 excluded), one for each
+        mode in their order.
     cutoff : float, optional
-        Keep the modes up to this frequency [Hz] instead of the counts above.
+        Keep the modes up to this frequency [Hz]; instead of the counts above.
     name : str, optional
         What it is called in records; tells equal bodies apart.
 
@@ -48,31 +52,34 @@ class ModalBeam:
         If an argument is out of its range, or if no bending mode lies below `cutoff`.
     """
 
+    kind: ClassVar[str] = "modal beam"
+    point_names: ClassVar[tuple[str, ...]] = ("centre",)
+    has_positions: ClassVar[bool] = True
+    has_translation: ClassVar[bool] = True
     material: Material
     section: Rectangle | Circle | Section
-    length: float
-    bending_modes: int = 40
-    axial_modes: int = 20
-    damping: float | Sequence[float] | DampingLaw = 0.0
-    cutoff: float | None = None
-    name: str = ""
+    length: Length
+    bending_modes: Count = 40
+    axial_modes: CountFrom0 = 20
+    damping: Annotated[float | Sequence[float] | DampingLaw, Own("damping")] = 0.0
+    cutoff: Frequency | None = None
+    name: Name = ""
 
     @of_ordinary_size("material, section and length")
     def __post_init__(self) -> None:
         instance("material", self.material, Material)
         instance("section", self.section, (Rectangle, Circle, Section))
-        positive("length", self.length)
-        count("bending_modes", self.bending_modes)
-        count("axial_modes", self.axial_modes, low=0)
+        check_declared(self)
         object.__setattr__(self, "damping", checked_damping(self.damping))
-        instance("name", self.name, str)
         if self.cutoff is not None:
-            positive("cutoff", self.cutoff)
             check_first_modes((self._bending(1), self._axial(1)), self.cutoff)
             if self.harmonics[0] < 1:
                 first = at_least(float(self._bending(1)) / (2 * np.pi))
-                raise ValueError(
-                    f"cutoff must leave at least one bending mode (first at {first} Hz), got {self.cutoff!r} Hz"
+                raise ArgumentError(
+                    "cutoff",
+                    f"leave at least one bending mode (first at {first} Hz)",
+                    self.cutoff,
+                    got=f"{self.cutoff!r} Hz",
                 )
         check_mode_count(sum(self.harmonics), self.cutoff)
         check_damping_count(self.damping, sum(self.harmonics))
@@ -81,6 +88,16 @@ class ModalBeam:
     def ends(self) -> tuple[float, float]:
         """Abscissas of its two ends [m]."""
         return 0.0, self.length
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words."""
+        return f"{self.length:.4g} m"
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words: tracks lie along world x."""
+        return ""
 
     @property
     def centre(self) -> BodyPoint:
@@ -121,7 +138,7 @@ class ModalBeam:
     def modes(self, held_x: bool = False) -> Modes:
         """Return the modes, bending ones first; `held_x` is for bodies whose root is driven and must be false."""
         if held_x:
-            raise ValueError("held_x must be False for a ModalBeam: its ends are fixed, got True")
+            raise ArgumentError("held_x", "be False for a ModalBeam: its ends are fixed", held_x)
         return _modes(self)
 
     def trace(self, position: float, held_x: bool = False) -> Array:

@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from ..checks import at_least, at_most, brief, count, finite, instance, positive, within
+from ..checks import ArgumentError, at_least, at_most, count, finite, instance, positive, within
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .modes import Array, BodyPoint, Modes
 from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
@@ -41,7 +41,7 @@ class Line:
     def __post_init__(self) -> None:
         object.__setattr__(self, "origin", _pair("origin", self.origin))
         if abs(finite("direction", self.direction)) > 2.0 * math.pi:
-            raise ValueError(f"direction must be from -2 pi to 2 pi rad, got {self.direction!r}")
+            raise ArgumentError("direction", "be from -2 pi to 2 pi rad", self.direction)
 
     @property
     def tangent(self) -> tuple[float, float]:
@@ -103,6 +103,10 @@ class ModalPlate:
         cross the plate.
     """
 
+    kind: ClassVar[str] = "modal plate"
+    point_names: ClassVar[tuple[str, ...]] = ("centre",)
+    has_positions: ClassVar[bool] = True
+    has_translation: ClassVar[bool] = True
     material: Material
     thickness: float
     length: float
@@ -125,7 +129,7 @@ class ModalPlate:
         instance("in_plane", self.in_plane, bool)
         object.__setattr__(self, "in_plane_modes", _pair("in_plane_modes", self.in_plane_modes, _count_from_0, FROM_0))
         if not any(self.in_plane_modes):
-            raise ValueError(f"in_plane_modes must be {FROM_0}, got {self.in_plane_modes!r}")
+            raise ArgumentError("in_plane_modes", f"be {FROM_0}", self.in_plane_modes)
         object.__setattr__(self, "damping", checked_damping(self.damping))
         instance("name", self.name, str)
         if self.cutoff is not None:
@@ -135,6 +139,16 @@ class ModalPlate:
         if self.line is not None:
             instance("line", self.line, Line)
             self._check_line(self.line)
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words."""
+        return f"{self.length:.4g} m x {self.width:.4g} m x {self.thickness:.4g} m"
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words: tracks lie along world x."""
+        return ""
 
     @property
     def centre(self) -> BodyPoint:
@@ -151,7 +165,7 @@ class ModalPlate:
             within("position", position, *self.ends)
         elif not self._holds(*_pair("position", position)):
             corner = f"({at_most(self.length)}, {at_most(self.width)})"
-            raise ValueError(f"position must be on the plate, from (0, 0) to {corner}, got {position!r}")
+            raise ArgumentError("position", f"be on the plate, from (0, 0) to {corner}", position)
 
     @property
     def track_line(self) -> Line:
@@ -219,7 +233,7 @@ class ModalPlate:
     def modes(self, held_x: bool = False) -> Modes:
         """Return the modes; `held_x` is for bodies whose root is driven and must be false."""
         if held_x:
-            raise ValueError("held_x must be False for a ModalPlate: its edges are fixed, got True")
+            raise ArgumentError("held_x", "be False for a ModalPlate: its edges are fixed", held_x)
         return _modes(self)
 
     def shapes(self, x: Any, y: Any) -> Array:
@@ -340,14 +354,19 @@ class ModalPlate:
     def _check_cutoff(self, highest: float) -> None:
         first = self._frequency(1, 1)
         if highest < first:
-            raise ValueError(
-                f"cutoff must leave at least one mode (first at {at_least(first)} Hz), got {self.cutoff!r} Hz"
+            raise ArgumentError(
+                "cutoff",
+                f"leave at least one mode (first at {at_least(first)} Hz)",
+                self.cutoff,
+                got=f"{self.cutoff!r} Hz",
             )
         first = lowest(self.material, self.length, self.width)
         if self.in_plane and highest < first:
-            raise ValueError(
-                "cutoff must leave at least one mode in the plane where in_plane is true "
-                f"(first at {at_least(first)} Hz), got {self.cutoff!r} Hz"
+            raise ArgumentError(
+                "cutoff",
+                f"leave at least one mode in the plane where in_plane is true (first at {at_least(first)} Hz)",
+                self.cutoff,
+                got=f"{self.cutoff!r} Hz",
             )
 
     def _holds(self, x: float, y: float) -> bool:
@@ -355,11 +374,11 @@ class ModalPlate:
 
     def _check_line(self, line: Line) -> None:
         if not self._holds(*line.origin):
-            raise ValueError(f"line must have its origin on the plate, got {line!r}")
+            raise ArgumentError("line", "have its origin on the plate", line)
         low, high = _ends(self, line)
         x, y = line.point((low + high) / 2.0)
         if not (high > low and 0.0 < x < self.length and 0.0 < y < self.width):
-            raise ValueError(f"line must cross the plate inside its edges, got {line!r}")
+            raise ArgumentError("line", "cross the plate inside its edges", line)
 
 
 def _count_from_0(name: str, value: Any) -> int:
@@ -376,7 +395,7 @@ def _pair(
         first, second = values if isinstance(values, (tuple, list)) else ()
         return check(name, first), check(name, second)
     except ValueError:
-        raise ValueError(f"{name} must be {words}, got {brief(values)}") from None
+        raise ArgumentError(name, f"be {words}", values) from None
 
 
 def _ends(plate: ModalPlate, line: Line) -> tuple[float, float]:

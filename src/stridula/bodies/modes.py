@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..checks import brief
-
-Array = NDArray[Any]
+from ..arrays import Array
+from ..checks import ArgumentError
 
 
 @dataclass(frozen=True)
@@ -54,7 +52,34 @@ class Modes:
 
 
 class Body(Protocol):
-    """What every body can say of itself; points are named by what `check_position` admits."""
+    """What every body can say of itself; points are named by what `check_position` admits.
+
+    Attributes
+    ----------
+    kind : str
+        Its name in scenarios.
+    has_positions : bool
+        Whether positions along it are points, beside the named ones.
+    """
+
+    kind: ClassVar[str]
+    has_positions: ClassVar[bool]
+
+    @property
+    def point_names(self) -> tuple[str, ...]:
+        """Names of its points."""
+
+    @property
+    def has_translation(self) -> bool:
+        """Whether it is known how a translation moves it."""
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words, empty where it has none."""
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words, empty where there is nothing to say."""
 
     @property
     def name(self) -> str:
@@ -76,6 +101,28 @@ class Body(Protocol):
 
     def check_position(self, position: Any) -> None:
         """Raise ValueError if it has no point at `position`."""
+
+
+@runtime_checkable
+class HasRoot(Protocol):
+    """A body with a driven end, its root."""
+
+    @property
+    def root(self) -> BodyPoint:
+        """The driven end."""
+
+    @property
+    def tip_support(self) -> str:
+        """What holds the other end."""
+
+    def modes(self, held_x: bool = False) -> Modes:
+        """Return the modes; with `held_x` those left when the root does not move along x."""
+
+    def root_lever(self, position: Any) -> Array:
+        """Return forces and moment at the root for forces at `position` along world x and y, shape (3, 2)."""
+
+    def root_reaction(self, held_x: bool = False) -> Any:
+        """Return what tells the forces of the support of the root."""
 
 
 @dataclass(frozen=True)
@@ -103,8 +150,16 @@ class BodyPoint:
     def __post_init__(self) -> None:
         check = getattr(self.body, "check_position", None)
         if check is None or isinstance(self.body, type):
-            raise ValueError(f"body must be a body of stridula, got {brief(self.body)}")
+            raise ArgumentError("body", "be a body of stridula", self.body)
         if isinstance(self.position, np.generic):
             # Numbers of NumPy are not equal or unequal to a pair, but an array of both.
             object.__setattr__(self, "position", self.position.item())
         check(self.position)
+
+    @property
+    def point_name(self) -> str | None:
+        """Its name among the points of its body, None for a position between."""
+        if isinstance(self.position, str):
+            return self.position
+        named = ((name, getattr(self.body, name).position) for name in self.body.point_names)
+        return next((name for name, position in named if position == self.position), None)

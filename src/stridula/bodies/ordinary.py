@@ -9,30 +9,48 @@ from typing import Any
 
 import numpy as np
 
+from ..checks import ArgumentError
+
 # A hundred times what a track has that is heard: a step of so many takes a tenth of a millisecond.
 MOST_MODES = 50_000
 # Modes that springs and dashpots couple are marched in dense matrices.
 MOST_COUPLED_MODES = 4000
-ORDINARY = "numbers of ordinary size"
+
+
+class NotOrdinary(ArgumentError):
+    """Numbers so large or so small that what follows from them cannot be held."""
+
+    def __init__(self, names: str) -> None:
+        super().__init__(names, "hold numbers of ordinary size", got="ones that overflow")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return NotOrdinary, (self.argument,)
 
 
 @contextmanager
 def of_ordinary_size(names: str) -> Iterator[None]:
-    """Raise ValueError, that `names` must be of ordinary size, where numbers inside overflow or divide by zero."""
+    """Raise NotOrdinary, of what `names` says, where numbers inside overflow, divide by zero or leave no inverse."""
     try:
         with np.errstate(divide="raise", over="raise", invalid="raise"):
             yield
-    except ArithmeticError as error:
-        raise ValueError(f"{names} must hold {ORDINARY}, got ones that overflow") from error
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
+        raise NotOrdinary(names) from error
+
+
+def check_overflow(*arrays: np.ndarray) -> None:
+    """Raise OverflowError where an array holds what is not finite."""
+    if not all(np.isfinite(array).all() for array in arrays):
+        raise OverflowError
 
 
 def check_first_modes(first: tuple[Any, ...], cutoff: float) -> None:
     """Raise ValueError where lowest frequencies [rad/s] are no numbers above 0, and cannot be counted to a cutoff."""
     for frequency in first:
         if not 0.0 < frequency < math.inf:
-            raise ValueError(
-                "material, section and length must be of ordinary size, "
-                f"got a lowest mode of {float(frequency):g} rad/s below a cutoff of {cutoff!r} Hz"
+            raise ArgumentError(
+                "material, section and length",
+                "be of ordinary size",
+                got=f"a lowest mode of {float(frequency):g} rad/s below a cutoff of {cutoff!r} Hz",
             )
 
 
@@ -41,15 +59,17 @@ def check_mode_count(modes: float, cutoff: float | None) -> None:
     if modes <= MOST_MODES:
         return
     if cutoff is None:
-        raise ValueError(f"modes must be at most {MOST_MODES} in all, got {modes:.6g}")
-    raise ValueError(
-        f"cutoff must leave at most {MOST_MODES} modes, got {cutoff!r} Hz, below which there are {modes:.6g}"
+        raise ArgumentError("modes", f"be at most {MOST_MODES} in all", modes, got=f"{modes:.6g}")
+    raise ArgumentError(
+        "cutoff", f"leave at most {MOST_MODES} modes", cutoff, got=f"{cutoff!r} Hz, below which there are {modes:.6g}"
     )
 
 
 def check_coupled_count(modes: int) -> None:
     """Raise ValueError where more than `MOST_COUPLED_MODES` modes are coupled."""
     if modes > MOST_COUPLED_MODES:
-        raise ValueError(
-            f"connections must couple at most {MOST_COUPLED_MODES} modes, got {modes}: lower the cutoff of their bodies"
+        raise ArgumentError(
+            "connections",
+            f"couple at most {MOST_COUPLED_MODES} modes",
+            got=f"{modes}: lower the cutoff of their bodies",
         )

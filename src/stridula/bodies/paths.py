@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from .modes import Array
+from ..arrays import Array
 
 
 @dataclass(frozen=True)

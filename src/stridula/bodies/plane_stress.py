@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .modes import Array
+from ..arrays import Array
 from .ordinary import check_mode_count
 from .sections import Material
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from ..checks import brief, choice, instance, positive
-from .modes import Array, BodyPoint, Modes
+from ..arrays import Array
+from ..checks import ArgumentError, choice
+from ..declared import Name, Number, check_declared
+from .modes import BodyPoint, Modes
 
 POINTS = ("centre",)
 # Below, stiffness over mass overflows.
@@ -22,7 +24,7 @@ class PointMass:
     Parameters
     ----------
     mass : float
-        Mass [kg], at least 1e-100.
+        Mass [kg]; at least 1e-100.
     name : str, optional
         What it is called in records; tells equal bodies apart.
 
@@ -32,13 +34,27 @@ class PointMass:
         If an argument is out of its range.
     """
 
-    mass: float
-    name: str = ""
+    kind: ClassVar[str] = "point mass"
+    point_names: ClassVar[tuple[str, ...]] = ("centre",)
+    has_positions: ClassVar[bool] = False
+    has_translation: ClassVar[bool] = True
+    mass: Annotated[float, Number("kg", above=0.0)]
+    name: Name = ""
 
     def __post_init__(self) -> None:
-        if positive("mass", self.mass) < SMALLEST_MASS:
-            raise ValueError(f"mass must be at least {SMALLEST_MASS:g}, got {brief(self.mass)}")
-        instance("name", self.name, str)
+        check_declared(self)
+        if self.mass < SMALLEST_MASS:
+            raise ArgumentError("mass", f"be at least {SMALLEST_MASS:g}", self.mass)
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words, empty without one."""
+        return ""
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words."""
+        return ""
 
     @property
     def centre(self) -> BodyPoint:
@@ -66,7 +82,7 @@ class PointMass:
     def modes(self, held_x: bool = False) -> Modes:
         """Return the two rigid modes, along x and along y; `held_x` is for bodies with a driven end, must be false."""
         if held_x:
-            raise ValueError("held_x must be False for a PointMass: it has no driven end, got True")
+            raise ArgumentError("held_x", "be False for a PointMass: it has no driven end", held_x)
         return Modes(np.zeros(2), np.zeros(2), np.eye(2) * np.sqrt(self.mass))
 
     def trace(self, position: str, held_x: bool = False) -> Array:
@@ -79,5 +95,5 @@ class PointMass:
         """Return the modal coordinates of a displacement [m] or a velocity [m/s] along (x, y), shape (2,)."""
         values = np.asarray(vector)
         if values.dtype.kind not in "iuf" or values.shape != (2,) or not np.isfinite(values).all():
-            raise ValueError(f"vector must be two finite numbers, along x and y, got {brief(vector)}")
+            raise ArgumentError("vector", "be two finite numbers, along x and y", vector)
         return np.sqrt(self.mass) * values

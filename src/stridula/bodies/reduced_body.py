@@ -9,11 +9,12 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from ..checks import choice, instance, positive
+from ..arrays import Array
+from ..checks import ArgumentError, choice, instance, positive
 from .damping import DampingLaw, Rayleigh
 from .matrix_arguments import from_container, from_matrices
 from .matrix_files import POINT, read_container, read_matrices, write_npz
@@ -27,7 +28,7 @@ from .matrix_input import (
     square,
     symmetric,
 )
-from .modes import Array, BodyPoint, Modes
+from .modes import BodyPoint, Modes
 from .ordinary import of_ordinary_size
 from .reduction import Reduction, reduce_body
 
@@ -71,6 +72,8 @@ class ReducedBody:
         If an argument is out of its range or does not fit the others, or if no mode is left.
     """
 
+    kind: ClassVar[str] = "reduced"
+    has_positions: ClassVar[bool] = False
     mass: Array
     stiffness: Array
     points: Mapping[str, Any]
@@ -165,9 +168,11 @@ class ReducedBody:
             word: file for word, file in zip(FILES, (path, mass, stiffness), strict=True) if file is not None
         }
         if tuple(given_files) not in (FILES[:1], FILES[1:]):
-            raise ValueError(
-                "path must be one file with everything, or mass and stiffness must be one file each, "
-                f"got {' and '.join(given_files) or 'none of them'}"
+            raise ArgumentError(
+                "path",
+                "be one file with everything, or mass and stiffness must be one file each",
+                path,
+                got=" and ".join(given_files) or "none of them",
             )
         for word, file in given_files.items():
             instance(word, file, (str, os.PathLike))
@@ -194,7 +199,7 @@ class ReducedBody:
         """
         instance("path", path, (str, os.PathLike))
         if Path(path).suffix.lower() != ".npz":
-            raise ValueError(f"path must end in .npz, got {os.fspath(path)!r}")
+            raise ArgumentError("path", "end in .npz", os.fspath(path))
         arrays: dict[str, Any] = {"mass": self.mass, "stiffness": self.stiffness, "name": self.name}
         arrays |= {POINT + name: rows for name, rows in self.points.items()}
         if isinstance(self.damping, Rayleigh):
@@ -223,6 +228,21 @@ class ReducedBody:
         return self.translation is not None
 
     @property
+    def point_names(self) -> tuple[str, ...]:
+        """Names of its points."""
+        return tuple(self.points)
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words, which matrices do not say."""
+        return ""
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words, which matrices do not say."""
+        return ""
+
+    @property
     def total_mass(self) -> float:
         """Mass that takes part in a translation along x or along y, the larger [kg]; nan without a translation."""
         if self.translation is None:
@@ -241,7 +261,7 @@ class ReducedBody:
         does.
         """
         if held_x:
-            raise ValueError("held_x must be False for a ReducedBody: it has no driven end, got True")
+            raise ArgumentError("held_x", "be False for a ReducedBody: it has no driven end", held_x)
         return self._reduction.modes
 
     @of_ordinary_size("points")
@@ -255,7 +275,7 @@ class ReducedBody:
         """Return ``Phi^T M x`` of the displacements or velocities x of all degrees of freedom, shape (modes,)."""
         values = numbers("vector", vector)
         if values.shape != (self.mass.shape[0],):
-            raise ValueError(f"vector must have the shape ({self.mass.shape[0]},), got {values.shape}")
+            raise ArgumentError("vector", f"have the shape ({self.mass.shape[0]},)", vector, got=values.shape)
         check_finite("vector", values)
         return self.shapes.T @ (self.mass @ values)
 

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from ..checks import at_least, at_most
+from ..arrays import Array
+from ..checks import ArgumentError, at_least, at_most
 from .damping import damping_rates
 from .matrix_input import ROUND_OFF, smallest_eigenvalue
-from .modes import Array, Modes
+from .modes import Modes
 
 COUPLING = 1e-10
 
@@ -38,7 +39,9 @@ def reduce_body(body: Any) -> Reduction:
     kept = np.full(angular.size, True) if body.cutoff is None else angular <= 2.0 * np.pi * body.cutoff
     if not kept.any():
         first = angular[0] / (2.0 * np.pi)
-        raise ValueError(f"cutoff must leave at least one mode (first at {at_least(first)} Hz), got {body.cutoff!r} Hz")
+        raise ArgumentError(
+            "cutoff", f"leave at least one mode (first at {at_least(first)} Hz)", body.cutoff, got=f"{body.cutoff!r} Hz"
+        )
     rates, matrix = _damping(body.damping, angular, shapes, kept)
     angular, shapes = angular[kept], shapes[:, kept]
     shapes.flags.writeable = False
@@ -56,18 +59,25 @@ def _all_modes(body: Any) -> tuple[Array, Array]:
     with np.errstate(over="ignore", invalid="ignore"):
         mass, stiffness = body.mass * both, body.stiffness * both
     if not (np.isfinite(mass).all() and np.isfinite(stiffness).all()):
-        raise ValueError(
-            f"stiffness must be of a size that mass can carry, got up to {np.abs(body.stiffness).max():.6g} N/m on "
-            f"masses from {np.diag(body.mass).min():.6g} kg: frequencies overflow"
+        raise ArgumentError(
+            "stiffness",
+            "be of a size that mass can carry",
+            got=(
+                f"up to {np.abs(body.stiffness).max():.6g} N/m on masses from {np.diag(body.mass).min():.6g} "
+                "kg: frequencies overflow"
+            ),
         )
     squared, shapes = scipy.linalg.eigh(stiffness, mass)
     threshold = ROUND_OFF * np.abs(squared).max()
     if squared[0] < -threshold:
         least = smallest_eigenvalue(body.stiffness)
-        raise ValueError(
-            f"stiffness must be positive semidefinite, got the smallest eigenvalue {least:.6g}, "
-            f"a squared frequency of {at_most(squared[0])} 1/s² where rounding gives no less than "
-            f"{at_least(-threshold, 1)}"
+        raise ArgumentError(
+            "stiffness",
+            "be positive semidefinite",
+            got=(
+                f"the smallest eigenvalue {least:.6g}, a squared frequency of {at_most(squared[0])} 1/s² "
+                f"where rounding gives no less than {at_least(-threshold, 1)}"
+            ),
         )
     return np.sqrt(np.where(squared <= threshold, 0.0, squared)), scale[:, None] * shapes
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated, ClassVar
 
-from ..checks import positive, within
+from ..checks import ArgumentError
+from ..declared import Area, Length, Number, check_declared
 
 
 @dataclass(frozen=True)
@@ -19,17 +21,15 @@ class Material:
     density : float
         Mass density [kg/m³].
     poisson : float, optional
-        Poisson's ratio [1], from -1 to 0.5 (both excluded); of no effect on beams.
+        Poisson's ratio [1], of plates; from -1 to 0.5, both excluded.
     """
 
-    young: float
-    density: float
-    poisson: float = 0.3
+    young: Annotated[float, Number("Pa", above=0.0)]
+    density: Annotated[float, Number("kg/m3", above=0.0)]
+    poisson: Annotated[float, Number(above=-1.0, below=0.5)] = 0.3
 
     def __post_init__(self) -> None:
-        positive("young", self.young)
-        positive("density", self.density)
-        within("poisson", self.poisson, -1.0, 0.5, ends=False)
+        check_declared(self)
 
 
 @dataclass(frozen=True)
@@ -41,15 +41,15 @@ class Section:
     area : float
         Area [m²].
     second_moment : float
-        Second moment of area about the axis normal to the plane of motion [m⁴].
+        Second moment of area in the plane of motion [m⁴], about the axis normal to it.
     """
 
-    area: float
-    second_moment: float
+    shape: ClassVar[str] = "general"
+    area: Area
+    second_moment: Annotated[float, Number("m4", above=0.0)]
 
     def __post_init__(self) -> None:
-        positive("area", self.area)
-        positive("second_moment", self.second_moment)
+        check_declared(self)
 
 
 @dataclass(frozen=True)
@@ -64,12 +64,12 @@ class Rectangle:
         Side in the plane of motion, the one that bends [m].
     """
 
-    width: float
-    height: float
+    shape: ClassVar[str] = "rectangle"
+    width: Length
+    height: Length
 
     def __post_init__(self) -> None:
-        positive("width", self.width)
-        positive("height", self.height)
+        check_declared(self)
         _check_ordinary("width and height", self)
 
     @property
@@ -82,6 +82,16 @@ class Rectangle:
         """Second moment of area [m⁴], ``width height³ / 12``."""
         return self.width * self.height**3 / 12.0
 
+    @property
+    def largest_side(self) -> float:
+        """Its larger side [m]."""
+        return max(self.width, self.height)
+
+    @property
+    def across(self) -> float:
+        """Largest distance between two of its points [m]."""
+        return math.hypot(self.width, self.height)
+
 
 @dataclass(frozen=True)
 class Circle:
@@ -93,10 +103,11 @@ class Circle:
         Diameter [m].
     """
 
-    diameter: float
+    shape: ClassVar[str] = "circle"
+    diameter: Length
 
     def __post_init__(self) -> None:
-        positive("diameter", self.diameter)
+        check_declared(self)
         _check_ordinary("diameter", self)
 
     @property
@@ -109,6 +120,16 @@ class Circle:
         """Second moment of area [m⁴], ``pi diameter⁴ / 64``."""
         return math.pi * self.diameter**4 / 64.0
 
+    @property
+    def largest_side(self) -> float:
+        """Its diameter [m]."""
+        return self.diameter
+
+    @property
+    def across(self) -> float:
+        """Its diameter [m]."""
+        return self.diameter
+
 
 def _check_ordinary(sides: str, section: Rectangle | Circle) -> None:
     """Raise ValueError where sides are so small or so large that numbers cannot hold what follows from them."""
@@ -117,4 +138,7 @@ def _check_ordinary(sides: str, section: Rectangle | Circle) -> None:
     except OverflowError:
         is_ordinary = False
     if not is_ordinary:
-        raise ValueError(f"{sides} must be of ordinary size, got {section}")
+        raise ArgumentError(sides, "be of ordinary size", got=section)
+
+
+SECTIONS = (Rectangle, Circle, Section)

@@ -12,7 +12,7 @@ from rich.table import Table
 
 from ..analysis import bursts, dominant_frequency, regime_of
 from ..analysis.phases import inside
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..records.variables import ENERGY, STATUS_WORDS
 from .counts import counted
 

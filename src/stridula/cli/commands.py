@@ -10,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from ..checks import ArgumentError
 from ..version import __version__
 from .exits import FAILED, GOOD, INTERRUPTED, Stopped
 
@@ -225,7 +226,7 @@ def stability(
     if vary is None:
         for option, value in (("--plot", plot), ("--out", out), ("--highest", highest)):
             if value is not None:
-                raise ValueError(f"{option} must go with --vary, got {value!r} alone")
+                raise ArgumentError(option, "go with --vary", value, got=f"{value!r} alone")
         from .stability import print_stability
 
         print_stability(name, overrides, status, velocity)
@@ -422,7 +423,7 @@ def _pairs(texts: list[str]) -> dict[str, str]:
 def _pair(text: str) -> tuple[str, str]:
     key, equals, value = text.partition("=")
     if not equals or not key.strip():
-        raise ValueError(f"--set must be KEY=VALUE, got {text!r}")
+        raise ArgumentError("--set", "be KEY=VALUE", text)
     return key.strip(), value.strip()
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress
 
+from ..checks import ArgumentError
 from ..disk import check_writable
 from ..integration import Diverged, Interrupted
 from ..plot.films import animate
@@ -50,8 +51,8 @@ def film_scenario(name: str, out: str, start: str, duration: str, slowdown: floa
         film = animate(
             scenario.system,
             out,
-            start=_seconds("--from", start),
-            duration=_seconds("--duration", duration),
+            start=quantity(start, "s", "--from"),
+            duration=quantity(duration, "s", "--duration"),
             slowdown=slowdown,
             exaggeration=exaggeration,
             scheme=scenario.scheme,
@@ -70,9 +71,11 @@ def _check_beginning(name: str) -> None:
     run = load(name)
     interval, first = float(run.attrs["sample_interval"]), float(run["time"][0])
     if first > 1.5 * interval:
-        raise ValueError(
-            f"name must be a record from its start, got {name!r}, which continues another one from "
-            f"{first - interval:g} s"
+        raise ArgumentError(
+            "name",
+            "be a record from its start",
+            name,
+            got=f"{name!r}, which continues another one from {first - interval:g} s",
         )
 
 
@@ -82,13 +85,6 @@ def _stopped() -> Iterator[None]:
     try:
         yield
     except Diverged as error:
-        raise Stopped(f"{str(error).replace('; see .record', '')}; no film was written", FAILED) from None
+        raise Stopped(f"{error}; no film was written", FAILED) from None
     except (Interrupted, KeyboardInterrupt):
         raise Stopped("interrupted; no film was written", INTERRUPTED) from None
-
-
-def _seconds(option: str, text: str) -> float:
-    try:
-        return quantity(text, "s")
-    except ValueError as error:
-        raise ValueError(f"{option} {error}, got {text!r}") from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..checks import ArgumentError
 from ..disk import check_writable
 
 
@@ -18,13 +19,13 @@ def check_outputs(out: str | None, plot: str | None, word: str = "--out") -> Non
         The option of the first.
     """
     if out is not None and plot is not None and Path(out).resolve() == Path(plot).resolve():
-        raise ValueError(f"--plot must be another file than {word}, got {plot!r} for both")
+        raise ArgumentError("--plot", f"be another file than {word}", plot, got=f"{plot!r} for both")
     if plot is not None:
         from matplotlib.figure import Figure
 
         formats = sorted(Figure().canvas.get_supported_filetypes())
         if _format(plot) not in formats:
-            raise ValueError(f"--plot must end in one of {', '.join(f'.{word}' for word in formats)}, got {plot!r}")
+            raise ArgumentError("--plot", f"end in one of {', '.join(f'.{word}' for word in formats)}", plot)
     for path in (out, plot):
         if path is not None:
             check_writable(path)

@@ -8,10 +8,11 @@ import math
 import re
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
-from ..checks import brief, listed
+from ..checks import ArgumentError, brief, listed
 from ..disk import read
 from ..scenarios.quantities import parts
 from ..studies.points import Grid, LatinHypercube, Range
@@ -45,10 +46,40 @@ class Span:
         """Return both ends, as texts where there is a unit."""
         return (f"{self.low!r} {self.unit}", f"{self.high!r} {self.unit}") if self.unit else (self.low, self.high)
 
+    @property
+    def size(self) -> int:
+        """Number of values."""
+        return self.count or 1
+
     def values(self) -> list[float] | list[str]:
         """Return the numbers, ends included, as texts where there is a unit."""
-        numbers: list[float] = np.linspace(self.low, self.high, self.count or 1).tolist()
+        numbers: list[float] = np.linspace(self.low, self.high, self.size).tolist()
         return [f"{number!r} {self.unit}" for number in numbers] if self.unit else numbers
+
+
+@dataclass(frozen=True)
+class Words:
+    """Values one by one.
+
+    Attributes
+    ----------
+    words : list of str
+        The values as written.
+    """
+
+    words: list[str]
+
+    @property
+    def size(self) -> int:
+        """Number of values."""
+        return len(self.words)
+
+    def ends(self) -> None:
+        """Return None: there is no range."""
+
+    def values(self) -> list[str]:
+        """Return the values."""
+        return self.words
 
 
 def points_of(vary: list[str], sample: int | None, seed: int | None, table: str | None, yes: bool) -> Points:
@@ -73,12 +104,12 @@ def points_of(vary: list[str], sample: int | None, seed: int | None, table: str 
         If the table cannot be read.
     """
     if (table is None) == (not vary):
-        raise ValueError(f"points must be given by --vary or by --points, got {'neither' if table is None else 'both'}")
+        raise ArgumentError("points", "be given by --vary or by --points", got="neither" if table is None else "both")
     if seed is not None and sample is None:
-        raise ValueError(f"--seed must go with --sample, got {seed} alone")
+        raise ArgumentError("--seed", "go with --sample", got=f"{seed} alone")
     if table is not None:
         if sample is not None:
-            raise ValueError("--sample must go with --vary, got --points")
+            raise ArgumentError("--sample", "go with --vary", got="--points")
         rows = _rows(table)
         check_count(len(rows), yes)
         return rows
@@ -96,25 +127,25 @@ def numbers_of(text: str) -> tuple[str, list[float], str]:
         If they are not at least 2 rising numbers of one unit, or more than 10 000.
     """
     ((key, asked),) = _asked([text], is_sampled=False).items()
-    if isinstance(asked, Span) and (asked.count or 1) > MANY:
-        raise ValueError(f"--vary must have a COUNT of at most {MANY} here, got {text!r}")
-    known = [parts(value) for value in (asked.values() if isinstance(asked, Span) else asked)]
+    if asked.size > MANY:
+        raise ArgumentError("--vary", f"have a COUNT of at most {MANY} here", text)
+    known = [parts(value) for value in asked.values()]
     numbers, units = [one[0] for one in known if one], {one[1] for one in known if one}
     rises = all(one < other for one, other in pairwise(numbers))
     if None in known or len(units) != 1 or len(numbers) < 2 or not rises:
-        raise ValueError(f"--vary must give at least 2 rising numbers of one unit here, got {text!r}")
+        raise ArgumentError("--vary", "give at least 2 rising numbers of one unit here", text)
     return key, numbers, units.pop()
 
 
-def _asked(vary: list[str], is_sampled: bool) -> dict[str, Span | list[str]]:
-    asked: dict[str, Span | list[str]] = {}
+def _asked(vary: list[str], is_sampled: bool) -> dict[str, Span | Words]:
+    asked: dict[str, Span | Words] = {}
     for text in vary:
         key, equals, values = (part.strip() for part in text.partition("="))
         if not equals or not key or not values:
-            raise ValueError(f"--vary must be KEY=START:STOP:COUNT or KEY=A,B,C, got {text!r}")
+            raise ArgumentError("--vary", "be KEY=START:STOP:COUNT or KEY=A,B,C", text)
         if key in asked:
-            raise ValueError(f"--vary must name each key once, got {key!r} twice")
-        asked[key] = _range(text, values, is_sampled) if ":" in values else _list(text, values)
+            raise ArgumentError("--vary", "name each key once", key, got=f"{key!r} twice")
+        asked[key] = _range(text, values, is_sampled) if ":" in values else Words(_list(text, values))
     return asked
 
 
@@ -132,43 +163,43 @@ def ranges_of(vary: list[str]) -> dict[str, Range]:
         ends, _, word = values.rpartition(":")
         logarithmic = word.strip() == "log"
         if not equals or not key or (ends if logarithmic else values).count(":") != 1:
-            raise ValueError(f"--vary must be KEY=LOW:HIGH or KEY=LOW:HIGH:log, got {text!r}")
+            raise ArgumentError("--vary", "be KEY=LOW:HIGH or KEY=LOW:HIGH:log", text)
         if key in found:
-            raise ValueError(f"--vary must name each key once, got {key!r} twice")
+            raise ArgumentError("--vary", "name each key once", key, got=f"{key!r} twice")
+        low, high = _range(text, ends if logarithmic else values, is_sampled=True).ends()
         try:
-            low, high = _range(text, ends if logarithmic else values, is_sampled=True).ends()
             found[key] = Range(low, high, logarithmic)
-        except ValueError as error:
-            raise ValueError(str(error) if str(error).startswith("--vary") else f"--vary {key}: {error}") from None
+        except ArgumentError as error:
+            raise error.inside(f"--vary {key}") from None
     return found
 
 
-def _hypercube(asked: dict[str, Span | list[str]], sample: int, seed: int | None, yes: bool) -> LatinHypercube:
+def _hypercube(asked: dict[str, Span | Words], sample: int, seed: int | None, yes: bool) -> LatinHypercube:
     check_count(sample, yes)
+    ranges: dict[str, tuple[Any, Any]] = {}
     for key, given in asked.items():
-        if not isinstance(given, Span):
-            raise ValueError(f"--vary must be KEY=START:STOP with --sample, got a list for {key!r}")
-    ranges = {key: given.ends() for key, given in asked.items() if isinstance(given, Span)}
+        ends = given.ends()
+        if ends is None:
+            raise ArgumentError("--vary", "be KEY=START:STOP with --sample", got=f"a list for {key!r}")
+        ranges[key] = ends
     return LatinHypercube(ranges, sample, seed or 0)
 
 
-def _grid(asked: dict[str, Span | list[str]], yes: bool) -> Grid:
-    check_count(
-        math.prod((given.count or 1) if isinstance(given, Span) else len(given) for given in asked.values()), yes
-    )
-    return Grid({key: given.values() if isinstance(given, Span) else given for key, given in asked.items()})
+def _grid(asked: dict[str, Span | Words], yes: bool) -> Grid:
+    check_count(math.prod(given.size for given in asked.values()), yes)
+    return Grid({key: given.values() for key, given in asked.items()})
 
 
 def check_count(count: int, yes: bool) -> None:
     """Raise ValueError if there are more than 10 000 points and nobody said yes."""
     if count > MANY and not yes:
-        raise ValueError(f"a sweep of more than {MANY} points must be confirmed with --yes, got {count} points")
+        raise ArgumentError(f"a sweep of more than {MANY} points", "be confirmed with --yes", got=f"{count} points")
 
 
 def _list(text: str, values: str) -> list[str]:
     found = [value.strip() for value in values.split(",")]
     if not all(found):
-        raise ValueError(f"--vary must have a value between commas, got {text!r}")
+        raise ArgumentError("--vary", "have a value between commas", text)
     return found
 
 
@@ -176,30 +207,30 @@ def _range(text: str, values: str, is_sampled: bool) -> Span:
     wanted = "KEY=START:STOP with --sample" if is_sampled else "KEY=START:STOP:COUNT"
     pieces = values.split(":")
     if len(pieces) != (2 if is_sampled else 3):
-        raise ValueError(f"--vary must be {wanted}, got {text!r}")
+        raise ArgumentError("--vary", f"be {wanted}", text)
     (low, unit_of_low), (high, unit) = (_number(text, piece) for piece in pieces[:2])
     if unit_of_low not in ("", unit):
-        raise ValueError(f"--vary must have one unit for both ends, got {text!r}")
+        raise ArgumentError("--vary", "have one unit for both ends", text)
     count = None if is_sampled else _count(text, pieces[2].strip())
     if low >= high and count != 1:
-        raise ValueError(f"--vary must have START below STOP, got {text!r}")
+        raise ArgumentError("--vary", "have START below STOP", text)
     return Span(low, high, unit, count)
 
 
 def _number(text: str, piece: str) -> tuple[float, str]:
     known = parts(piece)
     if known is None:
-        raise ValueError(f"--vary must have numbers for START and STOP, got {text!r}")
+        raise ArgumentError("--vary", "have numbers for START and STOP", text)
     if not math.isfinite(known[0]):
-        raise ValueError(f"--vary must have finite numbers, got {text!r}")
+        raise ArgumentError("--vary", "have finite numbers", text)
     return known
 
 
 def _count(text: str, piece: str) -> int:
     if not _WHOLE.fullmatch(piece):
-        raise ValueError(f"--vary must have a whole number for COUNT, got {text!r}")
+        raise ArgumentError("--vary", "have a whole number for COUNT", text)
     if int(piece) < 1:
-        raise ValueError(f"--vary must have a COUNT of at least 1, got {text!r}")
+        raise ArgumentError("--vary", "have a COUNT of at least 1", text)
     return int(piece)
 
 
@@ -209,15 +240,17 @@ def _rows(path: str) -> list[dict[str, str]]:
         text = read(path).decode("utf-8-sig")
         lines = [(number, row) for number, row in enumerate(csv.reader(io.StringIO(text)), start=1) if any(row)]
     except (UnicodeDecodeError, csv.Error) as error:
-        raise ValueError(f"--points must be a CSV file in UTF-8, got {path!r}: {error}") from None
+        raise ArgumentError("--points", "be a CSV file in UTF-8", path, got=f"{path!r}: {error}") from None
     if len(lines) < 2:
-        raise ValueError(f"--points must hold a row of keys and at least one of values, got {len(lines)} in {path!r}")
+        raise ArgumentError(
+            "--points", "hold a row of keys and at least one of values", got=f"{len(lines)} in {path!r}"
+        )
     header = [key.strip() for key in lines[0][1]]
     if not all(header) or len(set(header)) < len(header):
-        raise ValueError(f"--points must name each key once in its first row, got {listed(header)} in {path!r}")
+        raise ArgumentError("--points", "name each key once in its first row", got=f"{listed(header)} in {path!r}")
     for number, row in lines[1:]:
         if len(row) != len(header) or not all(value.strip() for value in row):
-            raise ValueError(
-                f"--points must have a value for each of {listed(header)}, got {brief(row)} in line {number}"
+            raise ArgumentError(
+                "--points", f"have a value for each of {listed(header)}", row, got=f"{brief(row)} in line {number}"
             )
     return [dict(zip(header, (value.strip() for value in row), strict=True)) for _, row in lines[1:]]

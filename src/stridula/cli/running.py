@@ -9,6 +9,7 @@ from typing import Any
 
 import xarray as xr
 
+from ..checks import ArgumentError
 from ..disk import check_writable
 from ..integration import Diverged, Interrupted
 from ..integration.watchers import Progress, Watcher
@@ -40,8 +41,8 @@ def run_scenario(
     """
     check_outputs(out, plot)
     if out is not None and Path(out).suffix.lower() in OTHER_FORMATS:
-        raise ValueError(
-            f"--out must be a NetCDF file, .nc, got {out!r}; `stridula export` writes tables, --plot figures"
+        raise ArgumentError(
+            "--out", "be a NetCDF file, .nc", out, got=f"{out!r}; `stridula export` writes tables, --plot figures"
         )
     scenario = load_scenario(name, overrides)
     if wav is not None:
@@ -52,7 +53,7 @@ def run_scenario(
     except (Interrupted, Diverged) as stop:
         interrupted = isinstance(stop, Interrupted)
         kept = _finish(stop.record, scenario, name, out, None if interrupted else plot)
-        words = [str(stop).replace("; see .record", "")]
+        words = [stop.reason]
         words.append("nothing was asked to be kept (no --out)" if out is None else f"the record so far is in {out}")
         if plot is not None:
             words.append(f"it is drawn in {plot}" if plot in kept else f"no figure was drawn{_why(stop)}")
@@ -71,9 +72,9 @@ def _check_wav(wav: str, name: str, out: str | None, plot: str | None, system: A
 
     for option, other in (("--out", out), ("--plot", plot)):
         if other is not None and Path(other).resolve() == Path(wav).resolve():
-            raise ValueError(f"--wav must be another file than {option}, got {wav!r} for both")
+            raise ArgumentError("--wav", f"be another file than {option}", wav, got=f"{wav!r} for both")
     if Path(name).is_file() and Path(name).resolve() == Path(wav).resolve():
-        raise ValueError(f"--wav must be another file than what is run, got {wav!r} for both")
+        raise ArgumentError("--wav", "be another file than what is run", wav, got=f"{wav!r} for both")
     check_writable(wav)
     check_ending(wav)
     check_baffled(system)

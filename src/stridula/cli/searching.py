@@ -12,6 +12,7 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
+from ..checks import ArgumentError
 from ..disk import check_writable, write
 from ..records.files import save as save_file
 from ..scenarios.keys import overridden
@@ -80,9 +81,9 @@ def targets_of(texts: list[str]) -> dict[str, Target | str]:
         name, equals, wanted = (part.strip() for part in text.partition("="))
         pieces = [piece.strip() for piece in wanted.split(":")]
         if not equals or not name or not wanted or len(pieces) > 3:
-            raise ValueError(f"--target must be NAME=LOW:HIGH, NAME=LOW:HIGH:SCALE or NAME=WORD, got {text!r}")
+            raise ArgumentError("--target", "be NAME=LOW:HIGH, NAME=LOW:HIGH:SCALE or NAME=WORD", text)
         if name in found:
-            raise ValueError(f"--target must name each measure once, got {name!r} twice")
+            raise ArgumentError("--target", "name each measure once", name, got=f"{name!r} twice")
         found[name] = wanted if len(pieces) == 1 else _bounds(text, pieces)
     return found
 
@@ -92,11 +93,11 @@ def _bounds(text: str, pieces: list[str]) -> Target:
     try:
         low, high, scale = (float(piece) if piece else None for piece in [*pieces, ""][:3])
     except ValueError:
-        raise ValueError(f"--target must have numbers for LOW, HIGH and SCALE, in SI, got {text!r}") from None
+        raise ArgumentError("--target", "have numbers for LOW, HIGH and SCALE, in SI", text) from None
     try:
         return Target(-math.inf if low is None else low, math.inf if high is None else high, scale)
-    except ValueError as error:
-        raise ValueError(f"--target {text}: {error}") from None
+    except ArgumentError as error:
+        raise error.inside(f"--target {text}") from None
 
 
 def _written(number: float, unit: str) -> float | str:

@@ -13,7 +13,7 @@ from ..acoustics.panels import panel_of
 from ..acoustics.radiate import radiate
 from ..acoustics.wav import NORMALISED, RATES, SUBTYPES, write_wav
 from ..bodies import ModalBeam, ModalPlate
-from ..checks import at_most, suggestion
+from ..checks import ArgumentError, at_most, suggestion
 from ..records.changes import played
 from ..records.files import load
 from ..scenarios.load import Scenario, load_scenario, scenario_of_tables
@@ -24,6 +24,8 @@ from .outputs import check_outputs
 
 # Window of a spectrogram [s].
 SHORTEST_FIGURE = 0.02
+# Arguments of `write_wav` as options.
+OPTIONS = {"full_scale": "--full-scale", "sample_rate": "--sample-rate", "subtype": "--subtype"}
 
 
 def sound_of_record(
@@ -48,7 +50,7 @@ def sound_of_record(
     check_outputs(wav, plot, "--wav")
     for option, path in (("--wav", wav), ("--plot", plot)):
         if path is not None and Path(path).resolve() == Path(name).resolve():
-            raise ValueError(f"{option} must be another file than the record, got {path!r} for both")
+            raise ArgumentError(option, "be another file than the record", path, got=f"{path!r} for both")
     if wav is not None:
         check_ending(wav)
     options = wav_options(sample_rate, full_scale, subtype)
@@ -84,7 +86,7 @@ def write_sound(record: xr.Dataset, system: Any, wav: str) -> str:
 def check_ending(wav: str) -> None:
     """Raise ValueError unless the name of a sound file ends as its format."""
     if not wav.lower().endswith(".wav"):
-        raise ValueError(f"--wav must end in .wav, got {wav!r}")
+        raise ArgumentError("--wav", "end in .wav", wav)
 
 
 def track_of(system: Any) -> ModalBeam | ModalPlate:
@@ -99,7 +101,7 @@ def track_of(system: Any) -> ModalBeam | ModalPlate:
     for track in tracks:
         if isinstance(track, (ModalBeam, ModalPlate)):
             return track
-    raise ValueError(f"track must be a modal beam or a modal plate to be heard, got a {type(tracks[0]).__name__}")
+    raise ArgumentError("track", "be a modal beam or a modal plate to be heard", got=f"a {type(tracks[0]).__name__}")
 
 
 def check_baffled(system: Any) -> None:
@@ -124,8 +126,8 @@ def _written(wav: str, pressure: xr.DataArray, options: dict[str, Any]) -> str:
     """Write the sound file; errors name the option."""
     try:
         return str(write_wav(wav, pressure, **options))
-    except ValueError as error:
-        raise ValueError(str(error).replace("full_scale", "--full-scale", 1)) from None
+    except ArgumentError as error:
+        raise error.renamed(OPTIONS.get(error.argument, error.argument)) from None
 
 
 def place_of(text: str) -> tuple[float, ...]:
@@ -135,7 +137,7 @@ def place_of(text: str) -> tuple[float, ...]:
     except ValueError:
         place = ()
     if len(place) != 3 or max(map(abs, place)) > FARTHEST:
-        raise ValueError(f"--listener must be X,Y,Z in m, each within {FARTHEST:g} m, got {text!r}")
+        raise ArgumentError("--listener", f"be X,Y,Z in m, each within {FARTHEST:g} m", text)
     return place
 
 
@@ -144,20 +146,20 @@ def wav_options(sample_rate: str, full_scale: str, subtype: str) -> dict[str, An
     try:
         rate = quantity(sample_rate, "Hz")
     except ValueError:
-        raise ValueError(f"--sample-rate must be a number in Hz or kHz, got {sample_rate!r}") from None
+        raise ArgumentError("--sample-rate", "be a number in Hz or kHz", sample_rate) from None
     if rate not in RATES:
-        raise ValueError(f"--sample-rate must be one of {', '.join(map(str, RATES))} Hz, got {sample_rate!r}")
+        raise ArgumentError("--sample-rate", f"be one of {', '.join(map(str, RATES))} Hz", sample_rate)
     scale: float | str = full_scale
     if full_scale != NORMALISED:
         try:
             scale = quantity(full_scale, "Pa")
         except ValueError:
-            raise ValueError(f"--full-scale must be a pressure in Pa or {NORMALISED}, got {full_scale!r}") from None
+            raise ArgumentError("--full-scale", f"be a pressure in Pa or {NORMALISED}", full_scale) from None
         if scale <= 0.0:
-            raise ValueError(f"--full-scale must be above 0 Pa, got {full_scale!r}")
+            raise ArgumentError("--full-scale", "be above 0 Pa", full_scale)
     if subtype not in SUBTYPES:
-        raise ValueError(
-            f"--subtype must be one of {', '.join(SUBTYPES)}, got {subtype!r}{suggestion(subtype, SUBTYPES)}"
+        raise ArgumentError(
+            "--subtype", f"be one of {', '.join(SUBTYPES)}", subtype, got=f"{subtype!r}{suggestion(subtype, SUBTYPES)}"
         )
     return {"sample_rate": int(rate), "full_scale": scale, "subtype": subtype}
 
@@ -167,5 +169,5 @@ def _figure(pressure: xr.DataArray, record: xr.Dataset, title: str) -> Any:
 
     lasts = pressure.sizes["time"] * float(record.attrs["sample_interval"])
     if lasts < SHORTEST_FIGURE:
-        raise ValueError(f"--plot must have a sound of at least {SHORTEST_FIGURE:g} s, got {at_most(lasts, 3)} s")
+        raise ArgumentError("--plot", f"have a sound of at least {SHORTEST_FIGURE:g} s", got=f"{at_most(lasts, 3)} s")
     return spectrogram(pressure.isel(listener=0), record if "contact" not in record.dims else None, title=title)

@@ -11,6 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..analysis.stability import sliding_stability
+from ..checks import ArgumentError
 from ..scenarios.load import load_scenario
 from ..scenarios.quantities import quantity
 from .consoles import wide_console
@@ -48,8 +49,8 @@ def velocities(velocity: str | None) -> float | list[float] | None:
         return None
     try:
         numbers = [quantity(word, "m/s") for word in velocity.split(",")]
-    except ValueError as error:
-        raise ValueError(f"--velocity {error}, got {velocity!r}") from None
+    except ArgumentError as error:
+        raise ArgumentError("--velocity", error.allowed, velocity) from None
     return numbers[0] if len(numbers) == 1 else numbers
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import xarray as xr
 
+from ..checks import ArgumentError
 from ..scenarios.read import read_tables
 from ..studies.machines import client_of
 from ..studies.measures import asked_for
@@ -87,9 +88,9 @@ def sweep_scenario(
 
 def _check_plot(points: Points, measures: Sequence[str]) -> None:
     if not isinstance(points, Grid) or len(points.values) != 2 or min(map(len, points.values.values())) < 2:
-        raise ValueError("--plot must go with a grid of two keys of at least 2 values each, given by --vary twice")
+        raise ArgumentError("--plot", "go with a grid of two keys of at least 2 values each, given by --vary twice")
     if "regime" not in measures:
-        raise ValueError(f"--plot must go with --measure regime, which it shows, got {', '.join(measures)}")
+        raise ArgumentError("--plot", "go with --measure regime, which it shows", got=", ".join(measures))
 
 
 def _draw(found: xr.Dataset, path: str) -> None:

@@ -1,8 +1,10 @@
 """Where bodies touch: friction laws, rigid tracks and point contact."""
 
 from .coulomb import Coulomb, StaticKinetic
+from .friction_law import FrictionLaw
+from .laws import LAWS
 from .lugre import LuGre
-from .point_contact import LAWS, FrictionLaw, PointContact
+from .point_contact import PointContact
 from .rate_and_state import RateAndState
 from .rigid_track import RigidTrack
 from .weakening import ExponentialWeakening, LinearWeakening, Stribeck

@@ -7,13 +7,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..bodies.modes import Array
-from ..checks import non_negative
-from .linearised import Linearised
+from ..arrays import Array
+from ..declared import Coefficient
+from .friction_law import FrictionLaw, StaticAndKinetic
 
 
 @dataclass(frozen=True)
-class Coulomb:
+class Coulomb(FrictionLaw):
     """Coulomb friction with one constant coefficient: ``|tangential force| <= coefficient * normal force``.
 
     Parameters
@@ -23,27 +23,23 @@ class Coulomb:
     """
 
     law: ClassVar[str] = "coulomb"
-    state_units: ClassVar[str] = ""
-    state_at_start: ClassVar[float] = 0.0
-    coefficient: float
+    depends_on_speed: ClassVar[bool] = False
+    coefficient: Coefficient
 
-    def __post_init__(self) -> None:
-        non_negative("coefficient", self.coefficient)
+    def parameters(self) -> dict[str, float]:
+        """Return the numbers that the march gets."""
+        return {"coefficient": self.coefficient}
 
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]."""
         return np.full(np.shape(velocity), float(self.coefficient))
-
-    def linearised_at(self, velocity: float) -> Linearised:
-        """Return small changes about steady sliding at `velocity` [m/s]: none."""
-        return Linearised()
 
     def __str__(self) -> str:
         return f"{self.coefficient:.4g}"
 
 
 @dataclass(frozen=True)
-class StaticKinetic:
+class StaticKinetic(StaticAndKinetic):
     """Coulomb friction with a static coefficient that must be overcome and a kinetic one in sliding.
 
     A contact that sticks goes on sticking up to `static`; one that slides, or lands, is held from then on only below
@@ -58,28 +54,17 @@ class StaticKinetic:
     """
 
     law: ClassVar[str] = "static-kinetic"
-    state_units: ClassVar[str] = ""
-    state_at_start: ClassVar[float] = 0.0
-    static: float
-    kinetic: float
+    depends_on_speed: ClassVar[bool] = False
+    static: Coefficient
+    kinetic: Coefficient
 
-    def __post_init__(self) -> None:
-        check_static(self.static, self.kinetic)
+    def parameters(self) -> dict[str, float]:
+        """Return the numbers that the march gets."""
+        return {"static": self.static, "kinetic": self.kinetic}
 
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]; the static one at 0."""
         return np.where(np.asarray(velocity) == 0.0, self.static, self.kinetic)
 
-    def linearised_at(self, velocity: float) -> Linearised:
-        """Return small changes about steady sliding at `velocity` [m/s]: none."""
-        return Linearised()
-
     def __str__(self) -> str:
         return f"{self.static:.4g} static, {self.kinetic:.4g} kinetic"
-
-
-def check_static(static: float, kinetic: float) -> None:
-    """Raise unless both coefficients are not negative and the static one is not the smaller."""
-    non_negative("kinetic", kinetic)
-    if non_negative("static", static) < kinetic:
-        raise ValueError(f"static must be at least kinetic ({kinetic!r}), got {static!r}")

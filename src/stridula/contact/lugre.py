@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
-from ..bodies.modes import Array
-from ..checks import finite, non_negative, positive
-from .coulomb import check_static
+from ..arrays import Array
+from ..declared import Coefficient, Number, Position, PositiveRatio, Slope, Speed
+from .friction_law import StaticAndKinetic
 from .linearised import Linearised
 from .weakening import stribeck_curve, stribeck_slope
 
 
 @dataclass(frozen=True)
-class LuGre:
+class LuGre(StaticAndKinetic):
     """LuGre friction (Canudas de Wit, Olsson, Åström & Lischinsky 1995, IEEE Trans. Automatic Control 40).
 
     With the slip velocity v and the bristles' deflection z::
@@ -37,37 +37,50 @@ class LuGre:
     velocity : float
         Stribeck's velocity [m/s].
     stiffness : float
-        Stiffness of the bristles, sigma0 [1/m].
+        Stiffness of the bristles per unit of normal force [1/m], sigma0.
     damping : float, optional
-        Damping of the bristles, sigma1 [s/m].
+        Damping of the bristles per unit of normal force [s/m], sigma1.
     viscous : float, optional
-        Rise with speed, sigma2 [s/m].
+        Rise with speed per unit of normal force [s/m], sigma2.
     initial_state : float, optional
         Deflection of the bristles at the start [m]; in steady sliding at v it is ``sign(v) g(v) / stiffness``.
     """
 
     law: ClassVar[str] = "lugre"
+    set_valued: ClassVar[bool] = False
     state_units: ClassVar[str] = "m"
-    static: float
-    kinetic: float
-    velocity: float
-    stiffness: float
-    damping: float = 0.0
-    viscous: float = 0.0
-    initial_state: float = 0.0
-
-    def __post_init__(self) -> None:
-        check_static(self.static, positive("kinetic", self.kinetic))
-        positive("velocity", self.velocity)
-        positive("stiffness", self.stiffness)
-        non_negative("damping", self.damping)
-        non_negative("viscous", self.viscous)
-        finite("initial_state", self.initial_state)
+    static: Coefficient
+    kinetic: PositiveRatio
+    velocity: Speed
+    stiffness: Annotated[float, Number("1/m", above=0.0)]
+    damping: Slope = 0.0
+    viscous: Slope = 0.0
+    initial_state: Position = 0.0
 
     @property
     def state_at_start(self) -> float:
         """Deflection of the bristles at the start [m]; those of a contact that lands later are straight."""
         return self.initial_state
+
+    def state_in_sliding(self, velocity: float, change: float = 0.0) -> float:
+        """Return the deflection of the bristles [m] in steady sliding at `velocity` [m/s], not 0, and `change` more."""
+        bristles = (float(self.coefficient_at(velocity)) - self.viscous * abs(velocity)) / self.stiffness
+        return float(np.sign(velocity) * (bristles + change))
+
+    def parameters(self) -> dict[str, float]:
+        """Return the numbers that the march gets."""
+        own = {"static": self.static, "kinetic": self.kinetic, "velocity": self.velocity}
+        return {**own, "stiffness": self.stiffness, "damping": self.damping, "viscous": self.viscous}
+
+    @property
+    def holding(self) -> float:
+        """Ratio up to which the bristles hold [1]."""
+        return self.static
+
+    @property
+    def reach(self) -> float:
+        """Slip speed [m/s] up to which it shows all that it does."""
+        return 5.0 * self.velocity
 
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s], 0 at rest."""

@@ -7,19 +7,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..arrays import Array
 from ..bodies import BodyPoint, Track
-from ..bodies.modes import Array
-from ..checks import brief, finite, instance, non_negative, within
-from .coulomb import Coulomb, StaticKinetic
-from .lugre import LuGre
-from .rate_and_state import RateAndState
+from ..checks import ArgumentError, brief, instance, within
+from ..declared import Angle, Distance, Position, check_declared
+from .coulomb import Coulomb
+from .friction_law import FrictionLaw
+from .laws import LAWS
 from .rigid_track import RigidTrack
-from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
 
-FrictionLaw = Coulomb | StaticKinetic | Stribeck | ExponentialWeakening | LinearWeakening | LuGre | RateAndState
 # Sine or cosine that rounding leaves of a right angle.
 ALONG_AN_AXIS = 1e-15
-LAWS = (Coulomb, StaticKinetic, Stribeck, ExponentialWeakening, LinearWeakening, LuGre, RateAndState)
 
 
 @dataclass(frozen=True)
@@ -43,7 +41,7 @@ class PointContact:
     gap : float, optional
         Distance between tip and track at the start [m].
     inclination : float, optional
-        Angle from world x to the track's tangent [rad], counter-clockwise; the normal, from the track to the tip, is
+        Angle from world x to the track's tangent, counter-clockwise [rad]; the normal, from the track to the tip, is
         the tangent turned by 90 degrees counter-clockwise. Zero on a beam or a plate.
     name : str, optional
         What it is called in records.
@@ -51,35 +49,49 @@ class PointContact:
 
     tip: BodyPoint
     track: Track | RigidTrack | BodyPoint
-    at: float = 0.0
+    at: Position = 0.0
     friction: FrictionLaw = field(default_factory=lambda: Coulomb(0.0))
-    gap: float = 0.0
-    inclination: float = 0.0
+    gap: Distance = 0.0
+    inclination: Angle = 0.0
     name: str = ""
 
     def __post_init__(self) -> None:
         instance("tip", self.tip, BodyPoint)
         instance("track", self.track, (*Track.__args__, RigidTrack, BodyPoint))
-        if isinstance(self.track, Track):
-            within("at", self.at, *self.track.ends, ends=False)
+        if self.path_body is not None:
+            within("at", self.at, *self.path_body.ends, ends=False)
             if self.inclination != 0.0:
-                raise ValueError(f"inclination must be 0 on a {type(self.track).__name__}, got {self.inclination!r}")
-        finite("at", self.at)
+                raise ArgumentError("inclination", f"be 0 on a {type(self.track).__name__}", self.inclination)
+        check_declared(self)
         if self.track_body == self.tip.body:
             body = brief(self.tip.body)
-            raise ValueError(f"track must be another body than the tip's (equal ones need names), got {body} for both")
+            raise ArgumentError(
+                "track", "be another body than the tip's (equal ones need names)", self.track, got=f"{body} for both"
+            )
         instance("friction", self.friction, LAWS)
-        non_negative("gap", self.gap)
-        if abs(finite("inclination", self.inclination)) > 2.0 * math.pi:
-            raise ValueError(f"inclination must be from -2 pi to 2 pi rad, got {self.inclination!r}")
+        if abs(self.inclination) > 2.0 * math.pi:
+            raise ArgumentError("inclination", "be from -2 pi to 2 pi rad", self.inclination)
         instance("name", self.name, str)
+
+    @property
+    def rigid_track(self) -> RigidTrack | None:
+        """The track if it is rigid."""
+        return self.track if isinstance(self.track, RigidTrack) else None
+
+    @property
+    def touched_point(self) -> BodyPoint | None:
+        """The point that the tip touches, None where it moves along a track."""
+        return self.track if isinstance(self.track, BodyPoint) else None
+
+    @property
+    def path_body(self) -> Track | None:
+        """The body that the tip moves along, None on a rigid track and against a point."""
+        return self.track if isinstance(self.track, Track) else None
 
     @property
     def track_body(self) -> object | None:
         """The body on the track's side, None for a rigid track."""
-        if isinstance(self.track, RigidTrack):
-            return None
-        return self.track.body if isinstance(self.track, BodyPoint) else self.track
+        return self.path_body or (self.touched_point and self.touched_point.body)
 
     @property
     def frame(self) -> Array:

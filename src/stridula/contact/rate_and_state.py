@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
-from ..bodies.modes import Array
-from ..checks import choice, positive
+from ..arrays import Array
+from ..declared import Choice, Length, PositiveRatio, Speed, Time
+from .friction_law import FrictionLaw
 from .linearised import Linearised
 
 
 @dataclass(frozen=True)
-class RateAndState:
+class RateAndState(FrictionLaw):
     """Rate-and-state friction (Dieterich 1979; Ruina 1983, J. Geophys. Res. 88), regularised at rest.
 
     With the slip velocity V, the state theta [s], ``D = slip_distance``, ``V0 = velocity`` (Rice & Ben-Zion 1996)::
@@ -30,39 +31,61 @@ class RateAndState:
     ----------
     reference : float
         Coefficient of friction in steady sliding at `velocity` [1].
-    a, b : float
-        Direct effect of the slip velocity and effect of the state [1]; weakening where ``b > a``.
+    a : float
+        Direct effect of the slip velocity [1].
+    b : float
+        Effect of the state [1]; friction weakens where ``b > a``.
     slip_distance : float
         Slip over which the state changes [m].
     velocity : float
         Reference slip velocity [m/s].
     evolution : {"aging", "slip"}, optional
-        Law of evolution of the state, Dieterich's or Ruina's.
+        Law of evolution of the state: aging, which is Dieterich's, or slip, Ruina's.
     initial_state : float, optional
-        State at the start [s]; that of steady sliding at `velocity`, ``slip_distance / velocity``, if left out.
+        State at the start [s], that of steady sliding at `velocity` if left out; it is ``slip_distance / velocity``.
     """
 
     law: ClassVar[str] = "rate and state"
+    set_valued: ClassVar[bool] = False
+    over_decades: ClassVar[bool] = True
     state_units: ClassVar[str] = "s"
-    reference: float
-    a: float
-    b: float
-    slip_distance: float
-    velocity: float
-    evolution: str = "aging"
-    initial_state: float | None = None
-
-    def __post_init__(self) -> None:
-        for name in ("reference", "a", "b", "slip_distance", "velocity"):
-            positive(name, getattr(self, name))
-        choice("evolution", self.evolution, ("aging", "slip"))
-        if self.initial_state is not None:
-            positive("initial_state", self.initial_state)
+    state_is_positive: ClassVar[bool] = True
+    reference: PositiveRatio
+    a: PositiveRatio
+    b: PositiveRatio
+    slip_distance: Length
+    velocity: Speed
+    evolution: Annotated[str, Choice(("aging", "slip"))] = "aging"
+    initial_state: Time | None = None
 
     @property
     def state_at_start(self) -> float:
         """State of a new contact [s]."""
         return float(self.slip_distance / self.velocity if self.initial_state is None else self.initial_state)
+
+    @property
+    def state_at_landing(self) -> float:
+        """State of a contact that closes later [s], which is new, too."""
+        return self.state_at_start
+
+    def state_in_sliding(self, velocity: float, change: float = 0.0) -> float:
+        """Return the state [s] in steady sliding at `velocity` [m/s], not 0, and `change` more."""
+        return self.slip_distance / abs(velocity) + change
+
+    @property
+    def kernel_code(self) -> str:
+        """Name of its code in the layout of the march, one for each law of evolution."""
+        return self.evolution.upper()
+
+    def parameters(self) -> dict[str, float]:
+        """Return the numbers that the march gets."""
+        own = {"reference": self.reference, "a": self.a, "b": self.b}
+        return {**own, "slip_distance": self.slip_distance, "velocity": self.velocity}
+
+    @property
+    def reach(self) -> float:
+        """Slip speed [m/s] up to which it shows all that it does."""
+        return 1e4 * self.velocity
 
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s], 0 at rest."""

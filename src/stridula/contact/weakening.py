@@ -7,14 +7,14 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..bodies.modes import Array
-from ..checks import non_negative, positive
-from .coulomb import check_static
+from ..arrays import Array
+from ..declared import Coefficient, PositiveRatio, Slope, Speed
+from .friction_law import StaticAndKinetic
 from .linearised import Linearised
 
 
 @dataclass(frozen=True)
-class Stribeck:
+class Stribeck(StaticAndKinetic):
     """Friction ``kinetic + (static - kinetic) exp(-(|v| / velocity)^exponent) + viscous |v|``.
 
     Continuous at rest, where it holds up to `static` (Bo & Pavelescu 1982; Armstrong-Hélouvry, Dupont & Canudas de Wit
@@ -27,7 +27,7 @@ class Stribeck:
     kinetic : float
         Coefficient of friction in fast sliding [1].
     velocity : float
-        Slip speed over which it falls, Stribeck's velocity [m/s].
+        Slip speed over which it falls [m/s], Stribeck's velocity.
     exponent : float, optional
         Exponent [1]: 2 is Gauss's curve, 1 an exponential.
     viscous : float, optional
@@ -35,19 +35,21 @@ class Stribeck:
     """
 
     law: ClassVar[str] = "stribeck"
-    state_units: ClassVar[str] = ""
-    state_at_start: ClassVar[float] = 0.0
-    static: float
-    kinetic: float
-    velocity: float
-    exponent: float = 2.0
-    viscous: float = 0.0
+    static: Coefficient
+    kinetic: Coefficient
+    velocity: Speed
+    exponent: PositiveRatio = 2.0
+    viscous: Slope = 0.0
 
-    def __post_init__(self) -> None:
-        check_static(self.static, self.kinetic)
-        positive("velocity", self.velocity)
-        positive("exponent", self.exponent)
-        non_negative("viscous", self.viscous)
+    def parameters(self) -> dict[str, float]:
+        """Return the numbers that the march gets."""
+        own = {"static": self.static, "kinetic": self.kinetic, "velocity": self.velocity}
+        return {**own, "exponent": self.exponent, "viscous": self.viscous}
+
+    @property
+    def reach(self) -> float:
+        """Slip speed [m/s] up to which it shows all that it does."""
+        return 5.0 * self.velocity
 
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]."""
@@ -64,7 +66,7 @@ class Stribeck:
 
 
 @dataclass(frozen=True)
-class ExponentialWeakening:
+class ExponentialWeakening(StaticAndKinetic):
     """Friction ``kinetic + (static - kinetic) exp(-|v| / velocity)`` (Oden & Martins 1985, CMAME 52).
 
     Parameters
@@ -78,15 +80,24 @@ class ExponentialWeakening:
     """
 
     law: ClassVar[str] = "exponential weakening"
-    state_units: ClassVar[str] = ""
-    state_at_start: ClassVar[float] = 0.0
-    static: float
-    kinetic: float
-    velocity: float
+    static: Coefficient
+    kinetic: Coefficient
+    velocity: Speed
 
-    def __post_init__(self) -> None:
-        check_static(self.static, self.kinetic)
-        positive("velocity", self.velocity)
+    @property
+    def kernel_code(self) -> str:
+        """Name of its code in the layout of the march: that of Stribeck's law, whose exponent is 1."""
+        return Stribeck.law.upper()
+
+    def parameters(self) -> dict[str, float]:
+        """Return the numbers that the march gets."""
+        own = {"static": self.static, "kinetic": self.kinetic, "velocity": self.velocity}
+        return {**own, "exponent": 1.0, "viscous": 0.0}
+
+    @property
+    def reach(self) -> float:
+        """Slip speed [m/s] up to which it shows all that it does."""
+        return 5.0 * self.velocity
 
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]."""
@@ -101,7 +112,7 @@ class ExponentialWeakening:
 
 
 @dataclass(frozen=True)
-class LinearWeakening:
+class LinearWeakening(StaticAndKinetic):
     """Friction ``static - slope |v|``, not below `kinetic` (the classic cause of negative damping, Mills 1938).
 
     Parameters
@@ -115,15 +126,24 @@ class LinearWeakening:
     """
 
     law: ClassVar[str] = "linear weakening"
-    state_units: ClassVar[str] = ""
-    state_at_start: ClassVar[float] = 0.0
-    static: float
-    slope: float
-    kinetic: float = 0.0
+    static: Coefficient
+    slope: Slope
+    kinetic: Coefficient = 0.0
 
-    def __post_init__(self) -> None:
-        check_static(self.static, self.kinetic)
-        non_negative("slope", self.slope)
+    @property
+    def end(self) -> float:
+        """Slip speed [m/s] at which the fall ends, 0 where there is none."""
+        return (self.static - self.kinetic) / self.slope if self.slope else 0.0
+
+    def parameters(self) -> dict[str, float]:
+        """Return the numbers that the march gets."""
+        own = {"static": self.static, "slope": self.slope, "kinetic": self.kinetic}
+        return {**own, "end": self.end or 1.0}
+
+    @property
+    def reach(self) -> float:
+        """Slip speed [m/s] up to which it shows all that it does."""
+        return 1.5 * self.end or 1.0
 
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]."""

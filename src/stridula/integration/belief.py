@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from .._kernels import layout as at
+from ..arrays import Array
 from ..assembly import Assembly
-from ..bodies.modes import Array
 from ..system import System
 from .blocks import Blocks
 from .marches import Chunk
@@ -45,7 +45,7 @@ class Belief:
         self.last_energies = energies.copy()
         self.largest_energy = max(largest_energy, float(np.abs(energies[: at.DAMPING_LOSS + 1]).max()))
         self.energy_of_loads = blocks.modes.energy_of_loads()
-        self.dissipative = not any(contact.friction.state_units for contact in system.contacts)
+        self.dissipative = not any(contact.friction.has_state for contact in system.contacts)
         self.damped_alone = not arrays.coupled
 
     def of(self, chunk: Chunk) -> tuple[int, int]:

@@ -9,18 +9,11 @@ from typing import Any
 import numpy as np
 
 from .._kernels import layout as at
+from ..arrays import Array
 from ..assembly import Assembly, ContactRows
-from ..bodies.modes import Array
 from ..bodies.paths import Path
-from ..contact import (
-    Coulomb,
-    ExponentialWeakening,
-    FrictionLaw,
-    LinearWeakening,
-    LuGre,
-    StaticKinetic,
-    Stribeck,
-)
+from ..checks import ArgumentError
+from ..contact import FrictionLaw
 from .schemes import Scheme
 
 
@@ -107,7 +100,7 @@ def recurrence(arrays: Assembly, scheme: Scheme, step: float) -> Recurrence:
         kept = inverse @ c.b
         kinetic, lost, turned = _symmetric(inverse + kept), _symmetric(inverse - kept), inverse + kept
         if min(np.linalg.eigvalsh(form)[0] for form in (_symmetric(c.load), kinetic - 0.5 * arrays.stiffness)) <= 0.0:
-            raise ValueError(f"step must be shorter for the coupled modes of this system, got {step!r} s")
+            raise ArgumentError("step", "be shorter for the coupled modes of this system", step, got=f"{step!r} s")
         block[:, :size] = 0.0
         matrices[at.KEPT], matrices[at.STIFFNESS], matrices[at.MOBILITY] = c.b, c.r, c.load
         matrices[at.IMPULSE], matrices[at.ELASTIC] = inverse / 2.0, arrays.stiffness / 2.0
@@ -179,13 +172,13 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
             path = along.path
             angles = np.stack([path.rate, path.phase], axis=1).ravel()
             constants[i, at.LOW : at.AT_REST] = (*path.ends, *angles)
-        codes[i], parameters = _law(one.contact.friction)
-        laws[i, : len(parameters)] = parameters
+        codes[i], laws[i] = _law(one.contact.friction)
         constants[i, at.AT_REST] = laws[i, 0]
         if not one.fixed[0].any() and along is None:
-            raise ValueError(
-                f"contact {one.contact.name or i + 1} must be between bodies of which one moves along its normal, "
-                "got a tip that does not"
+            raise ArgumentError(
+                f"contact {one.contact.name or i + 1}",
+                "be between bodies of which one moves along its normal",
+                got="a tip that does not",
             )
     flat = rows.reshape(2 * count, -1)
     compliance = np.ascontiguousarray(flat @ modes.mobility(flat).T)
@@ -199,23 +192,11 @@ def _path_modes(one: ContactRows) -> PathModes | None:
     return PathModes(track.path(), slice(*one.bending), slice(*one.axial))
 
 
-def _law(law: FrictionLaw) -> tuple[int, tuple[float, ...]]:
+def _law(law: FrictionLaw) -> tuple[int, Array]:
     """Return the code of a law of friction and its parameters, the state of a new contact last."""
-    if isinstance(law, Coulomb):
-        return at.COULOMB, (law.coefficient,)
-    if isinstance(law, StaticKinetic):
-        return at.STATIC_KINETIC, (law.static, law.kinetic)
-    if isinstance(law, Stribeck):
-        return at.STRIBECK, (law.static, law.kinetic, law.velocity, law.exponent, law.viscous)
-    if isinstance(law, ExponentialWeakening):
-        return at.STRIBECK, (law.static, law.kinetic, law.velocity, 1.0, 0.0)
-    if isinstance(law, LinearWeakening):
-        ends = (law.static - law.kinetic) / law.slope if law.slope else 0.0
-        return at.LINEAR_WEAKENING, (law.static, law.slope, law.kinetic, ends or 1.0)
-    if isinstance(law, LuGre):
-        return at.LUGRE, (law.static, law.kinetic, law.velocity, law.stiffness, law.damping, law.viscous)
-    code = at.AGING if law.evolution == "aging" else at.SLIP
-    return code, (law.reference, law.a, law.b, law.slip_distance, law.velocity, 0.0, 0.0, law.state_at_start)
+    found, own = np.zeros(at.LAW_PARAMETERS), list(law.parameters().values())
+    found[: len(own)], found[-1] = own, law.state_at_landing
+    return getattr(at, law.kernel_code), found
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from .._kernels import layout as at
+from ..arrays import Array
 from ..assembly import Assembly
 from ..bodies import FiniteElementBeam, ModalBeam, ModalPlate
-from ..bodies.modes import Array
 from ..records.state import State
 from ..system import System
 from .schemes import Scheme

@@ -10,7 +10,7 @@ from typing import Any
 from numba.core import config
 
 from .._kernels.parts import Imposed, Parts, Records
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..records.state import State
 from .blocks import Blocks
 from .contact_solve import GaussSeidel

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from ..bodies.modes import Array
+from ..arrays import Array
 
 HALF_SPAN = 8
 CUTOFF = 0.75

@@ -8,7 +8,7 @@ from .._kernels import layout as at
 from .._kernels.contacts import solve_closed
 from .._kernels.parts import Contacts, Sizes, Timing
 from .._kernels.vectors import LANES
-from ..bodies.modes import Array
+from ..arrays import Array
 from .contact_solve import GaussSeidel
 from .packing import PLAIN, aligned, columns, compliance_in_blocks, side_by_side
 

@@ -11,10 +11,10 @@ import numpy as np
 
 from .._kernels import layout as at
 from .._kernels.contact import SEPARATED
+from ..arrays import Array
 from ..assembly import Assembly, Signal, assemble, with_travel
 from ..bodies import Track
-from ..bodies.modes import Array
-from ..checks import instance, positive
+from ..checks import ArgumentError, instance, positive
 from ..records import Probe
 from ..records.state import State
 from ..system import System
@@ -287,7 +287,7 @@ class LiveMarch:
         state.modal[at.D] = velocity * self.step
         law = self.system.contacts[0].friction
         if type(law) is not type(before.contacts[0].friction):
-            state.carried[0, at.FRICTION_STATE] = law.state_at_start if law.state_units else 0.0
+            state.carried[0, at.FRICTION_STATE] = law.state_at_start
         self._put(state, place)
 
     def _start_from(self, position: Array, velocity: Array, place: float, gap: float) -> None:
@@ -337,8 +337,8 @@ def assembled(system: System, probes: Sequence[Probe]) -> Assembly:
     """
     instance("system", system, System)
     if len(system.contacts) != 1:
-        raise ValueError(f"system must have one contact to march without end, got {len(system.contacts)}")
+        raise ArgumentError("system", "have one contact to march without end", system, got=len(system.contacts))
     if not isinstance(system.contacts[0].track, Track):
         kind = type(system.contacts[0].track).__name__
-        raise ValueError(f"track must be a ModalBeam or a ModalPlate to march without end, got a {kind}")
+        raise ArgumentError("track", "be a ModalBeam or a ModalPlate to march without end", got=f"a {kind}")
     return assemble(system, probes)

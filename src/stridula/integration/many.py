@@ -16,7 +16,7 @@ import xarray as xr
 from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
 from ..assembly import ContactRows
-from ..checks import brief, choice, count
+from ..checks import ArgumentError, choice, count
 from ..records import Probe
 from ..system import System
 from .contact_solve import GaussSeidel
@@ -114,15 +114,15 @@ def simulate_many(
     simulate : One system; says what a record holds.
     """
     if not isinstance(systems, Sequence) or isinstance(systems, str):
-        raise ValueError(f"systems must be a list of systems, got {brief(systems)}")
+        raise ArgumentError("systems", "be a list of systems", systems)
     if reduce is not None and not callable(reduce):
-        raise ValueError(f"reduce must be a function of a record, got {brief(reduce)}")
+        raise ArgumentError("reduce", "be a function of a record", reduce)
     if workers is not None:
         count("workers", workers)
     if not isinstance(watchers, Sequence):
-        raise ValueError(f"watchers must be a list of callables, got {brief(watchers)}")
+        raise ArgumentError("watchers", "be a list of callables", watchers)
     if not isinstance(device, str) or device not in DEVICES:
-        raise ValueError(f"device must be one of {', '.join(DEVICES)}, got {brief(device)}")
+        raise ArgumentError("device", f"be one of {', '.join(DEVICES)}", device)
     choice("errors", errors, ("raise", "return"))
     if device == "cuda":
         require_cuda()
@@ -131,7 +131,7 @@ def simulate_many(
     arrays: dict[int, Arrays] = {}
     steps = []
     for number, system in enumerate(systems):
-        with results.failing(number, f"systems[{number}]: "):
+        with results.failing(number, f"systems[{number}]"):
             one = asked.arrays(system)
             steps.append(asked.timing(one).step)
             arrays[number] = one
@@ -151,8 +151,8 @@ class _Results:
         self.found: dict[int, Any] = {}
 
     @contextmanager
-    def failing(self, number: int, prefix: str = "") -> Iterator[None]:
-        """Keep an exception as the result of a system, or raise it, the words of a ValueError after a prefix.
+    def failing(self, number: int, where: str = "") -> Iterator[None]:
+        """Keep an exception as the result of a system, or raise it, a ValueError saying which of the systems it is of.
 
         Memory that runs out says nothing about the system.
         """
@@ -161,8 +161,10 @@ class _Results:
         except Exception as error:
             if self.keeps_exceptions and not isinstance(error, MemoryError):
                 self.found[number] = error
-            elif prefix and isinstance(error, ValueError):
-                raise ValueError(f"{prefix}{error}") from None
+            elif where and isinstance(error, ArgumentError):
+                raise error.inside(where) from None
+            elif where and isinstance(error, ValueError):
+                raise ValueError(f"{where}: {error}") from None
             else:
                 raise
 
@@ -192,8 +194,7 @@ def _kind(arrays: Arrays, most_modes: int | None) -> Hashable | None:
 
 
 def _law(one: ContactRows) -> Hashable:
-    law = one.contact.friction
-    return type(law), getattr(law, "evolution", None)
+    return one.contact.friction.law, one.contact.friction.kernel_code
 
 
 def _waves(one: ContactRows) -> Hashable:

@@ -16,8 +16,8 @@ from .._kernels.march import march_one_by_one, march_run, march_runs
 from .._kernels.parts import Carried, Contacts, Modes, Parts, Paths, Probes, Records, Timing
 from .._kernels.parts import Imposed as ImposedOnRuns
 from .._kernels.vectors import LANES
+from ..arrays import Array
 from ..assembly import Assembly
-from ..bodies.modes import Array
 from ..records.state import State
 from .blocks import Blocks, ContactBlocks, ProbeBlocks
 from .compiled_code import forget_other_sources

@@ -13,7 +13,7 @@ from .._kernels.block_rows import AMPLITUDE, COMPLIANCE, CONTACTS, NUMBER, WAVE_
 from .._kernels.parts import Sizes
 from .._kernels.vectors import LANES
 from .._kernels.waves import WAVE_SET
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..bodies.paths import Waves
 from ..records.state import State
 from .blocks import Blocks, ContactBlocks, PathModes, Recurrence

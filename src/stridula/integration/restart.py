@@ -11,9 +11,9 @@ import numpy as np
 import xarray as xr
 
 from .._kernels import layout as at
+from ..arrays import Array
 from ..assembly import Assembly, Signal, going_on, with_travel
-from ..bodies.modes import Array
-from ..checks import brief, instance, listed
+from ..checks import ArgumentError, brief, instance, listed
 from ..contact import LAWS
 from ..records import Probe
 from ..records.provenance import scenario_toml
@@ -47,30 +47,30 @@ def state_of(
     instance("start", start, xr.Dataset)
     needed = ("time", *(f"state_{name}" for name in STATE), "state_raw")
     if any(name not in start.variables for name in needed):
-        raise ValueError(
-            f"start must be a record of simulate with its final state, got variables {listed(map(str, start))}"
+        raise ArgumentError(
+            "start", "be a record of simulate with its final state", start, got=f"variables {listed(map(str, start))}"
         )
     attributes = start.attrs
     missing = [name for name in ATTRIBUTES if name not in attributes]
     if missing:
-        raise ValueError(f"start must have the attributes of a record, got one without {listed(missing)}")
+        raise ArgumentError("start", "have the attributes of a record", start, got=f"one without {listed(missing)}")
     if attributes["ended"] not in ("finished", "interrupted"):
-        raise ValueError(f"start must be a run that can go on, got one that ended {attributes['ended']!r}")
+        raise ArgumentError("start", "be a run that can go on", start, got=f"one that ended {attributes['ended']!r}")
     if attributes.get("state_layout") != LAYOUT:
         got = attributes.get("state_layout", "none")
-        raise ValueError(
-            f"start must have the state_layout of this version, {LAYOUT}, got {brief(got)}: {OTHER_VERSION}"
+        raise ArgumentError(
+            "start", f"have the state_layout of this version, {LAYOUT}", got, got=f"{brief(got)}: {OTHER_VERSION}"
         )
     for name, value in (("scheme", scheme.name), ("step", timing.step), ("steps_per_sample", timing.ratio)):
         if attributes[name] != value:
-            raise ValueError(f"start must have the same {name} as this run, {value!r}, got {brief(attributes[name])}")
+            raise ArgumentError("start", f"have the same {name} as this run, {value!r}", attributes[name])
     modes, columns = (start[name].shape[-1:] for name in ("state_modal", "state_raw"))
     if modes != (arrays.mode_count,):
-        raise ValueError(
-            f"start must have the same number of modes as this system, {arrays.mode_count}, got {_count(modes)}"
+        raise ArgumentError(
+            "start", f"have the same number of modes as this system, {arrays.mode_count}", start, got=_count(modes)
         )
     if columns != (len(probes),):
-        raise ValueError(f"start must have the same number of probes, {len(probes)}, got {_count(columns)}")
+        raise ArgumentError("start", f"have the same number of probes, {len(probes)}", start, got=_count(columns))
     instance("start.scenario", attributes["scenario"], str)
     before, now = (tomllib.loads(text) for text in (attributes["scenario"], scenario_toml(system, probes, {})))
     knows_motion = "state_motion" in start
@@ -90,9 +90,11 @@ def _check_whole(start: xr.Dataset) -> None:
     step, last = float(attributes["step"]), int(attributes["last_step"])
     if last and not (times.size and abs(times[-1] - last * step) < 0.5 * step):
         got = f"{times[-1]:.6g} s" if times.size else "none"
-        raise ValueError(
-            f"start must be a record up to its final state, at {last * step:.6g} s, got a last time of {got}: "
-            "a record that is cut cannot be continued, run as far as that first"
+        raise ArgumentError(
+            "start",
+            f"be a record up to its final state, at {last * step:.6g} s",
+            start,
+            got=f"a last time of {got}: a record that is cut cannot be continued, run as far as that first",
         )
 
 
@@ -114,12 +116,14 @@ def _check_state(start: xr.Dataset, arrays: Assembly, timing: Timing, probes: in
             continue
         values = start[f"state_{name}"].values
         if values.shape != shape:
-            raise ValueError(
-                f"start must have a state_{name} of shape {shape}, as this version keeps it, got {values.shape}: "
-                f"{OTHER_VERSION}"
+            raise ArgumentError(
+                "start",
+                f"have a state_{name} of shape {shape}, as this version keeps it",
+                start,
+                got=f"{values.shape}: {OTHER_VERSION}",
             )
         if values.dtype.kind not in "fiu" or not (np.abs(values) < LARGEST).all():
-            raise ValueError(f"start must have a finite state_{name}, got one that is not")
+            raise ArgumentError("start", f"have a finite state_{name}", start, got="one that is not")
 
 
 def imposed_at(arrays: Assembly, last_step: int, step: float) -> dict[str, float]:
@@ -222,7 +226,7 @@ def _check_frozen(before: Any, now: Any, path: str = "") -> None:
         for number, pair in enumerate(zip(before, now, strict=True)):
             _check_frozen(*pair, f"{path}.{number}")
     elif before != now:
-        raise ValueError(f"start must have the same {path} as this run, {brief(now)}, got {brief(before)}")
+        raise ArgumentError("start", f"have the same {path} as this run, {brief(now)}", before)
 
 
 def _is_tables(value: Any) -> bool:

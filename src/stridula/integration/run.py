@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 
 from .._kernels import layout as at
+from ..arrays import Array
 from ..assembly import Assembly
-from ..bodies.modes import Array
 from ..records import Probe
 from ..records.dataset import to_dataset
 from ..records.provenance import scenario_toml

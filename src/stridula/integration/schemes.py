@@ -17,7 +17,7 @@ import numpy as np
 import scipy.linalg
 from scipy.special import exprel, hyp1f1
 
-from ..bodies.modes import Array
+from ..arrays import Array
 
 # Damping times step, up to which a start is followed back in time.
 FOLLOWED_BACK = 2.0

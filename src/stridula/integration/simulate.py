@@ -12,7 +12,7 @@ from .._kernels.layout import COLUMNS, ENERGIES
 from ..assembly import Assembly, assemble
 from ..bodies import Track
 from ..bodies.ordinary import of_ordinary_size
-from ..checks import at_least, at_most, brief, instance, positive
+from ..checks import ArgumentError, at_least, at_most, instance, positive
 from ..records import Acceleration, Probe
 from ..system import System
 from .contact_solve import GaussSeidel
@@ -91,7 +91,7 @@ def simulate(
         has the record so far.
     """
     if not isinstance(watchers, Sequence):
-        raise ValueError(f"watchers must be a list of callables, got {brief(watchers)}")
+        raise ArgumentError("watchers", "be a list of callables", watchers)
     asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve)
     run = asked.run(asked.arrays(system), start, title)
     timing = run.timing
@@ -141,7 +141,7 @@ class Asked:
         self.scheme: Scheme = ExactModal() if scheme is None else scheme
         instance("scheme", self.scheme, (CentralDifference, ExactModal))
         if probes is not None and not isinstance(probes, Sequence):
-            raise ValueError(f"probes must be a list of probes, got {brief(probes)}")
+            raise ArgumentError("probes", "be a list of probes", probes)
         self.probes = probes
         self.solve = GaussSeidel() if contact_solve is None else contact_solve
         instance("contact_solve", self.solve, GaussSeidel)
@@ -167,9 +167,11 @@ class Asked:
         timing = self.timing(arrays)
         columns = len(arrays.probes) + ENERGIES + COLUMNS * len(arrays.system.contacts)
         if columns > LARGEST_RECORD / 8 / max(timing.samples, 1):
-            raise ValueError(
-                f"duration must give a record below {LARGEST_RECORD / 1e9:g} GB, got {self.duration!r} s at "
-                f"{1 / timing.interval:.6g} Hz: lower sample_rate"
+            raise ArgumentError(
+                "duration",
+                f"give a record below {LARGEST_RECORD / 1e9:g} GB",
+                self.duration,
+                got=f"{self.duration!r} s at {1 / timing.interval:.6g} Hz: lower sample_rate",
             )
         return Run(arrays.system, arrays.flat, self.scheme, timing, arrays.probes, self.solve, start, title)
 
@@ -186,17 +188,18 @@ def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float
         ratio = max(1, int(np.ceil(wanted / (scheme.default_fraction * limit) - 1e-9)))
         step = wanted / ratio
     elif (step := positive("step", step)) >= limit:
-        raise ValueError(f"step must be below the {scheme.name} scheme's limit of {at_most(limit)} s, got {step!r}")
+        raise ArgumentError("step", f"be below the {scheme.name} scheme's limit of {at_most(limit)} s", step)
     elif step < SMALLEST_SHARE * min(limit, 1.0):
-        raise ValueError(
-            f"step must be at least {at_least(SMALLEST_SHARE * min(limit, 1.0), 3)} s for these modes, got {step!r}"
+        raise ArgumentError(
+            "step", f"be at least {at_least(SMALLEST_SHARE * min(limit, 1.0), 3)} s for these modes", step
         )
     else:
         ratio = max(1, round(wanted / step))
     if ratio > LARGEST_RATIO:
-        raise ValueError(
-            f"sample_rate must be at least {at_least(1.0 / (LARGEST_RATIO * step), 3)} Hz at a step of {step:.3g} s, "
-            f"got {sample_rate!r}"
+        raise ArgumentError(
+            "sample_rate",
+            f"be at least {at_least(1.0 / (LARGEST_RATIO * step), 3)} Hz at a step of {step:.3g} s",
+            sample_rate,
         )
     return _sampled(step, ratio, duration)
 
@@ -204,7 +207,5 @@ def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float
 def _sampled(step: float, ratio: int, duration: float) -> Timing:
     interval = step * ratio
     if duration < 0.5 * interval:
-        raise ValueError(
-            f"duration must be at least half a sample interval of {at_least(interval)} s, got {duration!r}"
-        )
+        raise ArgumentError("duration", f"be at least half a sample interval of {at_least(interval)} s", duration)
     return Timing(step, ratio, max(1, round(duration / interval)))

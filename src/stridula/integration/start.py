@@ -9,10 +9,11 @@ import numpy as np
 from .._kernels import layout as at
 from .._kernels.contact import SEPARATED, SLIDING, STICKING
 from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
+from ..arrays import Array
 from ..assembly import Assembly, ContactRows
 from ..bodies import Track
-from ..bodies.modes import Array
-from ..contact import FrictionLaw, RateAndState
+from ..checks import ArgumentError
+from ..contact import FrictionLaw
 from ..records.state import State
 from .blocks import Blocks
 from .contact_solve import GaussSeidel
@@ -124,14 +125,13 @@ class _Start:
 
     def _state_before(self, i: int, law: FrictionLaw, velocity: float) -> float:
         """Return the internal state of a law half a step before the start: the march keeps it between the steps."""
-        if not law.state_units:
+        if not law.has_state:
             return 0.0
         state = float(self.arrays.friction_state[i])
         code = int(self.contacts.codes[i])
         # The mirror image of the half step after it, which does not grow as motion backwards in time does.
         before = 2.0 * state - float(next_state(code, self.contacts.laws, i, state, velocity, self.step / 2.0))
-        # The age of a contact stays above zero.
-        return max(before, state / 2.0) if isinstance(law, RateAndState) else before
+        return max(before, state / 2.0) if law.state_is_positive else before
 
     def pushes(self, closed: Array) -> Array:
         """Return the rows of closed contacts, normal and tangent in turn."""
@@ -204,5 +204,5 @@ def _gap(one: ContactRows, rows: Array, arrays: Assembly, terms: Array) -> float
     felt = sum(float(np.linalg.norm(rows[0, span]) * np.linalg.norm(terms[span])) for span in spans)
     scale = one.contact.gap + felt
     if gap < -ROUND_OFF * scale:
-        raise ValueError(f"gap must leave the bodies apart at the start, got an overlap of {-gap:.3g} m")
+        raise ArgumentError("gap", "leave the bodies apart at the start", got=f"an overlap of {-gap:.3g} m")
     return gap if gap > ROUND_OFF * scale else 0.0

@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 
 from .._kernels import layout as at
+from ..arrays import Array
 from ..assembly import Assembly
-from ..bodies.modes import Array
 from ..checks import listed
 from ..records.state import State
 from ..records.variables import STATUS_WORDS
@@ -41,23 +41,26 @@ CONTACT_TOLERANCE = 1e-2
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a run; what was recorded so far is in `record`."""
+    """Ctrl-C during a run; what was recorded so far is in `record`, when it was in words in `reason`."""
 
     def __init__(self, record: xr.Dataset) -> None:
-        super().__init__(f"interrupted at t = {_end(record):.6g} s; see .record")
-        self.record = record
+        self.record, self.reason = record, f"interrupted at t = {_end(record):.6g} s"
+        super().__init__(f"{self.reason}; see .record")
 
 
 class Diverged(RuntimeError):
-    """A run whose result can no longer be believed; what was recorded before is in `record`."""
+    """A run whose result can no longer be believed; what was recorded before is in `record`, why in `reason`."""
 
     def __init__(self, record: xr.Dataset, contacts: str) -> None:
         ended, step = record.attrs["ended"], record.attrs["step"]
-        super().__init__(
-            f"{WHAT[ended]} after t = {_end(record):.6g} s (step {step:.3g} s); {contacts}; "
-            f"likely cause: {CAUSE[ended]}"
+        self.record, self.reason = (
+            record,
+            (
+                f"{WHAT[ended]} after t = {_end(record):.6g} s (step {step:.3g} s); {contacts}; "
+                f"likely cause: {CAUSE[ended]}"
+            ),
         )
-        self.record = record
+        super().__init__(self.reason)
 
 
 def _end(record: xr.Dataset) -> float:

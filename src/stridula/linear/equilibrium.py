@@ -8,14 +8,14 @@ from itertools import combinations
 
 import numpy as np
 
-from ..bodies.modes import Array
-from ..contact import Coulomb, FrictionLaw, StaticKinetic
+from ..arrays import Array
+from ..checks import ArgumentError
+from ..contact import FrictionLaw
 from .structure import SEPARATED, SLIDING, STICKING, UNMOVED, Structure
 
 # Relative size below which a force or an acceleration is round-off.
 ROUND_OFF = 1e-9
 # Laws whose coefficient in sliding is the same at every speed.
-CONSTANT_LAWS = (Coulomb, StaticKinetic)
 # Contacts up to which all minors are looked at.
 MOST_CONTACTS = 10
 HELD, LIFTED_OFF, JAMMED = "held", "lifted off", "jammed"
@@ -92,11 +92,6 @@ def find_equilibrium(structure: Structure, velocity: Array, status: Sequence[str
         tried[contact] = STICKING if kind == HELD else SEPARATED
 
 
-def depends_on_speed(law: FrictionLaw) -> bool:
-    """Return whether friction in sliding depends on its speed."""
-    return not isinstance(law, CONSTANT_LAWS)
-
-
 @dataclass(frozen=True)
 class _Balance:
     """Forces in balance: attributes as those of `Equilibrium`; sign of the determinant of the equations."""
@@ -159,10 +154,10 @@ def _slip_velocities(structure: Structure, velocity: Array, status: Sequence[str
 
 def _ratio_at(speed: float, law: FrictionLaw, contact: str) -> float:
     """Return the ratio of a law in sliding at a speed [m/s], which one that does not depend on it need not know."""
-    if depends_on_speed(law) and not speed:
-        raise ValueError(
-            f"velocity must be given for {contact}: its {law.law} friction depends on the slip speed, "
-            "and nothing prescribes that"
+    if law.depends_on_speed and not speed:
+        raise ArgumentError(
+            "velocity",
+            f"be given for {contact}: its {law.law} friction depends on the slip speed, and nothing prescribes that",
         )
     return float(law.coefficient_at(speed or 1.0))
 
@@ -278,21 +273,26 @@ def _check_held(structure: Structure, held: Array, contacts: Sequence[int]) -> N
     for size, contact in zip(sizes, contacts, strict=True):
         if size == 0.0:
             name = structure.system.contact_names[contact]
-            raise ValueError(f"contact must be between points that move, got {name} where neither moves as it is held")
+            raise ArgumentError(
+                "contact", "be between points that move", got=f"{name} where neither moves as it is held"
+            )
     if len(held) and _rank_is_short(held):
         names = ", ".join(dict.fromkeys(structure.system.contact_names[contact] for contact in contacts))
-        raise ValueError(
-            f"contacts must not hold the same motion twice, so that forces are not determined, got {names}; "
-            "elastic bodies or another status settle it"
+        raise ArgumentError(
+            "contacts",
+            "not hold the same motion twice, so that forces are not determined",
+            contacts,
+            got=f"{names}; elastic bodies or another status settle it",
         )
 
 
 def _check_unbraked(structure: Structure, free: Array) -> None:
     braked = structure.damping @ free
     if braked.size and np.abs(braked).max() > ROUND_OFF * max(float(np.abs(structure.damping).max()), 1e-300):
-        raise ValueError(
-            "connections must not brake a rigid motion that nothing else holds, which has no steady state to vibrate "
-            "about: impose a velocity instead"
+        raise ArgumentError(
+            "connections",
+            "not brake a rigid motion that nothing else holds, which has no steady state to vibrate about: "
+            "impose a velocity instead",
         )
 
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..bodies.modes import Array
-from ..checks import STATUS_WORDS, choice, finite, one_or_each
+from ..arrays import Array
+from ..checks import STATUS_WORDS, ArgumentError, choice, finite, one_or_each
 from ..system import System
 from .structure import SLIDING, Structure
 
@@ -29,10 +29,11 @@ def given_status(status: Status | None, system: System) -> tuple[str, ...] | Non
     found = one_or_each("status", status, lambda name, word: choice(name, word, STATUS_WORDS), len(contacts))
     each = (found,) * len(contacts) if isinstance(found, str) else found
     for word, contact in zip(each, contacts, strict=True):
-        if word == "sticking" and contact.friction.state_units:
-            raise ValueError(
-                f"status must be sliding or separated under {contact.friction.law} friction, which does not stick "
-                f"exactly, got {word!r}"
+        if word == "sticking" and not contact.friction.set_valued:
+            raise ArgumentError(
+                "status",
+                f"be sliding or separated under {contact.friction.law} friction, which does not stick exactly",
+                word,
             )
     return each
 
@@ -63,13 +64,13 @@ def given_velocity(velocity: Velocity | None, structure: Structure, status: Sequ
     found = one_or_each("velocity", velocity, finite, count)
     if not isinstance(found, tuple):
         if not found:
-            raise ValueError(f"velocity must not be 0, got {velocity!r}")
+            raise ArgumentError("velocity", "not be 0", velocity)
         if not takes.any():
-            raise ValueError(f"velocity must be left out: {_why(bool(prescribed.all()))}, got {velocity!r}")
+            raise ArgumentError("velocity", f"be left out: {_why(bool(prescribed.all()))}", velocity)
         return np.where(takes, found, 0.0)
     for k, one in enumerate(found):
         if one and not takes[k]:
-            raise ValueError(f"velocity[{k}] must be 0: {_why(bool(prescribed[k]))}, got {one!r}")
+            raise ArgumentError(f"velocity[{k}]", f"be 0: {_why(bool(prescribed[k]))}", one)
     return np.array(found)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from .structure import Structure
 from .vibration import Exponents, Vibration, all_exponents, nearest_exponents
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..bodies.modes import Array
-from ..contact import FrictionLaw, LuGre, RateAndState
+from ..arrays import Array
+from ..checks import ArgumentError
+from ..contact import FrictionLaw
 from ..drives import MOST_UNSTABLE, InitialEquilibrium
 from ..system import System
 from .equilibrium import HELD, JAMMED, LIFTED_OFF, Equilibrium, find_equilibrium, travelling
@@ -89,7 +90,7 @@ def _settled(whole: Structure, velocity: Array, status: Sequence[str] | None) ->
         if not np.isfinite(shift).all() or (np.abs(shift - before) <= SETTLED * (np.abs(places) + np.abs(shift))).all():
             return structure, found
         structure = whole.shifted(shift)
-    raise ValueError("drives must bend the track by less: its contact points find no place in equilibrium")
+    raise ArgumentError("drives", "bend the track by less: its contact points find no place in equilibrium")
 
 
 def _check(structure: Structure, at: Equilibrium, status: Sequence[str] | None) -> None:
@@ -98,20 +99,25 @@ def _check(structure: Structure, at: Equilibrium, status: Sequence[str] | None) 
     if at.kind == JAMMED or (status is None and at.kind in WAYS_OUT):
         wrong = {HELD: STICKING, LIFTED_OFF: SEPARATED}.get(at.kind)
         which = ", ".join(name for name, one in zip(names, at.status, strict=True) if wrong in (None, one))
-        raise ValueError(f"initial equilibrium must slide, got one in which {which} {WAYS_OUT[at.kind]}")
+        raise ArgumentError("initial equilibrium", "slide", got=f"one in which {which} {WAYS_OUT[at.kind]}")
     largest = ROUND_OFF * float(np.abs([at.normal_force, at.tangential_force]).max())
     for k, contact in enumerate(structure.system.contacts):
         if at.normal_force[k] < -largest:
-            raise ValueError(
-                f"status must leave {names[k]} open, which would pull with {-float(at.normal_force[k]):.3g} N, "
-                f"got {at.status[k]!r}"
+            raise ArgumentError(
+                "status",
+                f"leave {names[k]} open, which would pull with {-float(at.normal_force[k]):.3g} N",
+                at.status[k],
             )
         if at.status[k] == STICKING:
             most = float(contact.friction.coefficient_at(0.0)) * float(at.normal_force[k])
             if abs(at.tangential_force[k]) > most + largest:
-                raise ValueError(
-                    f"status must let {names[k]} slide, which would stick with {abs(float(at.tangential_force[k])):.3g}"
-                    f" N of at most {most:.3g} N, got {at.status[k]!r}"
+                raise ArgumentError(
+                    "status",
+                    (
+                        f"let {names[k]} slide, which would stick with {abs(float(at.tangential_force[k])):.3g} N of "
+                        f"at most {most:.3g} N"
+                    ),
+                    at.status[k],
                 )
 
 
@@ -125,10 +131,10 @@ def _mode(structure: Structure, at: Equilibrium, asked: InitialEquilibrium) -> t
     moved = (points @ shape).ravel()
     largest = moved[np.abs(moved).argmax()]
     if np.abs(largest) <= UNMOVED * np.linalg.norm(points, axis=-1).max():
-        raise ValueError(f"mode must be one that moves a contact point, got {number}, which moves none")
+        raise ArgumentError("mode", "be one that moves a contact point", got=f"{number}, which moves none")
     shape = shape * (asked.amplitude * np.exp(1.0j * asked.phase) / largest)
     states = np.zeros(len(structure.lines), dtype=complex)
-    known = [k for k, contact in enumerate(structure.system.contacts) if contact.friction.state_units]
+    known = [k for k, contact in enumerate(structure.system.contacts) if contact.friction.has_state]
     rates = motion.from_velocity @ (exponent * shape)
     states[[k for k in known if at.slip_velocity[k]]] = rates / (exponent - motion.state)
     return shape, exponent, states
@@ -138,11 +144,11 @@ def _number(exponents: Array, mode: int | str | None, least: float) -> int:
     """Return the number of a mode: of the most unstable one that of the largest growth among those that vibrate."""
     if mode != MOST_UNSTABLE:
         if not isinstance(mode, int) or mode >= exponents.size:
-            raise ValueError(f"mode must be below {exponents.size}, the number of modes, got {mode!r}")
+            raise ArgumentError("mode", f"be below {exponents.size}, the number of modes", mode)
         return mode
     counts = (exponents.imag > 0.0) | (exponents.real > least)
     if not counts.any():
-        raise ValueError(f"mode must be left out: nothing vibrates, got {mode!r}")
+        raise ArgumentError("mode", "be left out: nothing vibrates", mode)
     return int(np.where(counts, exponents.real, -np.inf).argmax())
 
 
@@ -164,10 +170,4 @@ def _closed(whole: Structure, status: Sequence[str], position: Array) -> Array:
 
 def _state(law: FrictionLaw, slip: float, change: float) -> float:
     """Return the internal state of a law in steady sliding at a slip velocity [m/s], moved in its sense by a change."""
-    if not law.state_units or not slip:
-        return float(law.state_at_start)
-    if isinstance(law, RateAndState):
-        return law.slip_distance / abs(slip) + change
-    assert isinstance(law, LuGre)
-    bristles = (float(law.coefficient_at(slip)) - law.viscous * abs(slip)) / law.stiffness
-    return float(np.sign(slip) * (bristles + change))
+    return law.state_in_sliding(slip, change) if slip else law.state_at_start

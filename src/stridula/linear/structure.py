@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
+from ..arrays import Array
 from ..assembly import ContactRows, assemble
-from ..bodies import BodyPoint, Track
-from ..bodies.modes import Array
-from ..checks import STATUS_WORDS, brief
+from ..checks import STATUS_WORDS, ArgumentError
 from ..contact import PointContact, RigidTrack
 from ..histories import History
 from ..system import System
@@ -150,12 +149,17 @@ class Structure:
             contact = int(np.flatnonzero(closed)[int(missed.argmax()) % int(closed.sum())])
             name = self.system.contact_names[contact]
             if int(missed.argmax()) < int(closed.sum()):
-                raise ValueError(f"drives must let bodies follow what is moved along the normal of {name}")
+                raise ArgumentError("drives", f"let bodies follow what is moved along the normal of {name}")
             if status[contact] == STICKING:
-                raise ValueError(f"status must let {name} slide, whose track nothing can follow, got {STICKING!r}")
-            raise ValueError(
-                f"velocity must be one at which bodies move as a whole, got {float(slip_velocity[contact])!r} m/s for "
-                f"{name}, which nothing lets slide on: move its track or its root"
+                raise ArgumentError("status", f"let {name} slide, whose track nothing can follow", STICKING)
+            raise ArgumentError(
+                "velocity",
+                "be one at which bodies move as a whole",
+                float(slip_velocity[contact]),
+                got=(
+                    f"{float(slip_velocity[contact])!r} m/s for {name}, which nothing lets slide on: move its "
+                    "track or its root"
+                ),
             )
         return np.asarray(self.rigid @ found)
 
@@ -184,7 +188,7 @@ class Structure:
         left = np.abs(openings - normals @ (np.linalg.pinv(normals, rcond=UNMOVED) @ openings))
         if left.max() > UNMOVED * np.abs(openings).max():
             name = self.system.contact_names[int(left.argmax())]
-            raise ValueError(f"time must be given: nothing follows what is moved along the normal of {name}, got None")
+            raise ArgumentError("time", f"be given: nothing follows what is moved along the normal of {name}", None)
 
     def free_motions(self, rows: Array) -> Array:
         """Return the rigid motions that some rows do not feel, orthonormal, shape (modes, motions)."""
@@ -208,11 +212,11 @@ def settled_time(system: System) -> float:
         if hasattr(drive, "history"):
             histories.append((f"drives[{number}]", drive.history))
     for name, contact in zip(system.contact_names, system.contacts, strict=True):
-        if isinstance(contact.track, RigidTrack):
-            histories += [(f"the track of {name}", history) for history in _varying(contact.track, name)]
+        if contact.rigid_track is not None:
+            histories += [(f"the track of {name}", history) for history in _varying(contact.rigid_track, name)]
     for name, history in histories:
         if history.settled is None:
-            raise ValueError(f"time must be given for {name}, which never stops varying, got {brief(history)}")
+            raise ArgumentError("time", f"be given for {name}, which never stops varying", history)
     return max((history.settled or 0.0 for _, history in histories), default=0.0)
 
 
@@ -224,21 +228,21 @@ def _varying(track: RigidTrack, name: str) -> list[History]:
     )
     for _, acceleration, history in moved:
         if acceleration and history.settled is not None and history.factor(np.array([history.settled + 1.0]))[0]:
-            raise ValueError(f"time must be given for the track of {name}, which goes on gathering speed")
+            raise ArgumentError("time", f"be given for the track of {name}, which goes on gathering speed")
     return [history for velocity, acceleration, history in moved if velocity or acceleration]
 
 
 def _line(one: ContactRows, system: System, spans: Mapping[str, tuple[int, int]], shift: float = 0.0) -> ContactLine:
     nothing = np.zeros(one.fixed.shape[1])
-    track, points = one.contact.track, np.zeros((2, 2, nothing.size))
+    touched, track, points = one.contact.touched_point, one.contact.path_body, np.zeros((2, 2, nothing.size))
 
     def place(side: int, body: Any, position: Any) -> None:
         points[side][:, slice(*spans[system.body_name(body)])] = body.trace(position, system.is_held(body))
 
     place(0, one.contact.tip.body, one.contact.tip.position)
-    if isinstance(track, BodyPoint):
-        place(1, track.body, track.position)
-    if not isinstance(track, Track):
+    if touched is not None:
+        place(1, touched.body, touched.position)
+    if track is None:
         return ContactLine(one.fixed[0], one.fixed[1], nothing, nothing, nothing, points)
     at = one.contact.at + shift
     place(1, track, at)
@@ -267,10 +271,10 @@ def _prescribed_rates(contact: PointContact, system: System, now: Array) -> tupl
     imposed, (normal, tangent) = system.imposed_velocity, contact.frame
     root = imposed.velocity * float(imposed.history.factor(now)[0]) if imposed else 0.0
     held = float(system.is_held(contact.tip.body))
-    if isinstance(contact.track, BodyPoint):
-        held -= float(system.is_held(contact.track.body))
+    if contact.touched_point is not None:
+        held -= float(system.is_held(contact.touched_point.body))
     slip, opening = held * tangent[0] * root, held * normal[0] * root
-    if isinstance(contact.track, RigidTrack):
-        slip -= float(contact.track.speed(now)[0])
-        opening -= float(contact.track.normal_speed(now)[0])
+    if contact.rigid_track is not None:
+        slip -= float(contact.rigid_track.speed(now)[0])
+        opening -= float(contact.rigid_track.normal_speed(now)[0])
     return float(slip), float(opening)

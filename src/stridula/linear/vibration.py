@@ -12,9 +12,9 @@ import scipy.linalg
 import scipy.sparse
 import scipy.sparse.linalg
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..contact.linearised import Linearised
-from .equilibrium import Equilibrium, depends_on_speed, held_rows
+from .equilibrium import Equilibrium, held_rows
 from .structure import Structure
 
 # Relative imaginary part that rounding gives to a real exponent.
@@ -76,7 +76,7 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
         if k in stuck:
             held[len(closed) + stuck.index(k)] = slip
         law = structure.system.contacts[k].friction
-        if equilibrium.slip_velocity[k] and depends_on_speed(law):
+        if equilibrium.slip_velocity[k] and law.depends_on_speed:
             near = law.linearised_at(abs(float(equilibrium.slip_velocity[k])))
             damping += normal * near.slope * np.outer(line.tangent, slip)
             answers.append((near, equilibrium.sense[k], normal, line.tangent, slip))

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from ..acoustics.levels import equivalent_level, third_octave_levels
 from ..acoustics.pressures import positions
-from ..bodies.modes import Array
-from ..checks import choice, finite, positive
+from ..arrays import Array
+from ..checks import ArgumentError, choice, finite, positive
 from .colours import LINES
 
 PLANES = ("xy", "xz", "yz")
@@ -64,7 +64,7 @@ def directivity(
         lines = {"": equivalent_level(pressure, weighting).values}
     top = 5.0 * np.ceil(max(levels.max() for levels in lines.values()) / 5.0)
     if not np.isfinite(top):
-        raise ValueError("pressure must hold a sound, got silence")
+        raise ArgumentError("pressure", "hold a sound", pressure, got="silence")
     figure = Figure(figsize=(6.4, 6.2), layout="constrained", dpi=120)
     axes = figure.add_subplot(projection="polar")
     order = np.argsort(angles)
@@ -89,14 +89,16 @@ def _angles(pressure: xr.DataArray, centre: Sequence[float], plane: str) -> Arra
     choice("plane", plane, PLANES)
     places = positions(pressure)
     if places is None:
-        raise ValueError("pressure must say where its listeners are, coordinates x, y, z [m], got none")
+        raise ArgumentError("pressure", "say where its listeners are, coordinates x, y, z [m]", pressure, got="none")
     axes = ["xyz".index(letter) for letter in plane]
     arms = places - np.array([finite(f"centre[{k}]", value) for k, value in enumerate(centre)])
     across, along = arms[:, axes[0]], arms[:, axes[1]]
     if pressure.sizes["listener"] < 3 or not np.hypot(across, along).min() > 0.0:
-        raise ValueError(
-            f"pressure must have at least 3 listeners, off the centre in the plane {plane}, "
-            f"got {pressure.sizes['listener']}"
+        raise ArgumentError(
+            "pressure",
+            f"have at least 3 listeners, off the centre in the plane {plane}",
+            pressure,
+            got=pressure.sizes["listener"],
         )
     return np.asarray(np.arctan2(along, across) % (2.0 * np.pi))
 

@@ -18,8 +18,8 @@ from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..bodies.modes import Array
-from ..checks import positive
+from ..arrays import Array
+from ..checks import ArgumentError, positive
 from ..disk import check_writable, read, write
 from ..integration.schemes import Scheme
 from ..records.variables import STATUS_WORDS
@@ -254,13 +254,13 @@ def _encoder() -> str | None:
 def _writer(out: str | Path) -> AbstractMovieWriter:
     kind = Path(out).suffix.lower()
     if kind not in KINDS:
-        raise ValueError(f"out must end in one of {', '.join(KINDS)}, got {str(out)!r}")
+        raise ArgumentError("out", f"end in one of {', '.join(KINDS)}", str(out), got=f"{str(out)!r}")
     if kind == ".gif":
         return PillowWriter(fps=FRAMES_PER_SECOND)
     encoder = _encoder()
     if encoder is None:
-        raise ValueError(
-            f"out must end in .gif without an encoder (pip install .[video] in the sources), got {str(out)!r}"
+        raise ArgumentError(
+            "out", "end in .gif without an encoder (pip install .[video] in the sources)", str(out), got=f"{str(out)!r}"
         )
     return FFMpegWriter(
         fps=FRAMES_PER_SECOND, codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-crf", "20", "-threads", "1"]

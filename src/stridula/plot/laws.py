@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..bodies.modes import Array
-from ..checks import brief, instance
-from ..contact import LAWS, ExponentialWeakening, FrictionLaw, LinearWeakening, LuGre, RateAndState, Stribeck
+from ..arrays import Array
+from ..checks import ArgumentError, instance
+from ..contact import LAWS, FrictionLaw
 from .colours import LINE, LINES
 
 
@@ -39,17 +39,16 @@ def friction(law: FrictionLaw, velocities: Array | Sequence[float] | None = None
         If an argument is of another kind, or there are less than 2 velocities.
     """
     instance("law", law, LAWS)
-    over_decades = isinstance(law, RateAndState)
     chosen = np.unique(_shown_range(law) if velocities is None else _velocities(velocities))
-    if over_decades:
+    if law.over_decades:
         chosen = chosen[chosen > 0.0]
         if chosen.size < 2:
-            raise ValueError(f"velocities must be at least 2 above 0 for rate and state, got {brief(velocities)}")
+            raise ArgumentError("velocities", f"be at least 2 above 0 for {law.law}", velocities)
     figure = Figure(figsize=(6.4, 4.2), layout="constrained", dpi=120)
     axes = figure.subplots()
     for side in (chosen[chosen < 0.0], chosen[chosen > 0.0]):
         axes.plot(side, np.sign(side) * law.coefficient_at(side), color=LINE, linewidth=1.5)
-    if not over_decades:
+    if not law.over_decades:
         _draw_rest(axes, law, chosen)
         axes.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
     else:
@@ -68,22 +67,16 @@ def _velocities(given: Array | Sequence[float]) -> Array:
     except (TypeError, ValueError):
         values = np.empty(0)
     if values.ndim != 1 or values.size < 2 or not np.isfinite(values).all():
-        raise ValueError(f"velocities must be a list of at least 2 finite numbers, got {brief(given)}")
+        raise ArgumentError("velocities", "be a list of at least 2 finite numbers", given)
     return values
 
 
 def _shown_range(law: FrictionLaw) -> Array:
     """Return velocities over which a law shows all that it does."""
-    if isinstance(law, RateAndState):
-        return law.velocity * np.geomspace(1e-4, 1e4, 401)
-    if isinstance(law, (Stribeck, ExponentialWeakening, LuGre)):
-        reach = 5.0 * law.velocity
-    elif isinstance(law, LinearWeakening) and law.slope > 0.0 and law.static > law.kinetic:
-        reach = 1.5 * (law.static - law.kinetic) / law.slope
-    else:
-        reach = 1.0
+    if law.over_decades:
+        return law.reach * np.geomspace(1e-8, 1.0, 401)
     # Dense about rest, where most laws fall.
-    forward = reach * np.linspace(0.0, 1.0, 401)[1:] ** 2
+    forward = law.reach * np.linspace(0.0, 1.0, 401)[1:] ** 2
     return np.concatenate([-forward, forward])
 
 
@@ -91,8 +84,7 @@ def _draw_rest(axes: Axes, law: FrictionLaw, velocities: Array) -> None:
     """Draw what a law can hold at rest, if rest is in sight."""
     if velocities[0] > 0.0 or velocities[-1] < 0.0:
         return
-    holds = law.static if isinstance(law, LuGre) else float(law.coefficient_at(np.zeros(1))[0])
-    style, words = (":", "bristles hold") if isinstance(law, LuGre) else ("-", "sticking")
-    ends = [-holds if velocities[0] < 0.0 else 0.0, holds if velocities[-1] > 0.0 else 0.0]
+    style, words = ("-", "sticking") if law.set_valued else (":", "bristles hold")
+    ends = [-law.holding if velocities[0] < 0.0 else 0.0, law.holding if velocities[-1] > 0.0 else 0.0]
     axes.plot([0.0, 0.0], ends, color=LINES[1], linewidth=1.5, linestyle=style, label=words)
     axes.legend(fontsize=8, frameon=False, loc="upper left")

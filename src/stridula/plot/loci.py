@@ -9,8 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..bodies.modes import Array
-from ..checks import brief, instance, listed
+from ..arrays import Array
+from ..checks import ArgumentError, instance, listed
 from .colours import LINE, LINES
 
 UNSTABLE = LINES[1]
@@ -46,9 +46,9 @@ def root_loci(loci: xr.Dataset, critical: Sequence[xr.Dataset] = ()) -> Figure:
     instance("loci", loci, xr.Dataset)
     lacking = [name for name in ("frequency", "growth_rate", "unstable", "equilibrium") if name not in loci]
     if lacking or loci["equilibrium"].ndim != 1:
-        raise ValueError(f"loci must be what root_loci returned, got {listed(map(str, loci.data_vars))}")
+        raise ArgumentError("loci", "be what root_loci returned", loci, got=listed(map(str, loci.data_vars)))
     if not isinstance(critical, Sequence) or not all(map(_is_critical, critical)):
-        raise ValueError(f"critical must be a list of what critical_value returned, got {brief(critical)}")
+        raise ArgumentError("critical", "be a list of what critical_value returned", critical)
     key = str(loci["equilibrium"].dims[0])
     figure = Figure(figsize=(8.0, 7.0), layout="constrained", dpi=120)
     above, below = figure.subplots(2, 1, sharex=True)

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ..bodies.modes import Array
-from ..checks import instance
+from ..arrays import Array
+from ..checks import ArgumentError, instance
 from .colours import FAILED_COLOUR, REGIME_COLOURS
 
 # Growth rates at which contours are drawn, as percentiles of those on the map.
@@ -45,7 +45,7 @@ def regime_map(found: xr.Dataset) -> Figure:
     instance("found", found, xr.Dataset)
     if "regime" not in found or found["regime"].ndim != 2 or min(found["regime"].shape) < 2:
         shape = dict(found["regime"].sizes) if "regime" in found else "none"
-        raise ValueError(f"found must have the regime over two parameters of at least 2 values each, got {shape}")
+        raise ArgumentError("found", "have the regime over two parameters of at least 2 values each", found, got=shape)
     across, along = (str(name) for name in found["regime"].dims)
     found = _in_order(_in_order(found, across), along)
     figure = Figure(figsize=(8.0, 6.0), layout="constrained", dpi=120)

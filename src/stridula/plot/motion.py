@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..arrays import Array
 from ..assembly import assemble
 from ..bodies import FiniteElementBeam, ModalBeam, ModalPlate
-from ..bodies.modes import Array, BodyPoint
-from ..checks import at_most, instance, non_negative, positive
+from ..checks import ArgumentError, at_most, instance, non_negative, positive
 from ..contact import RigidTrack
 from ..integration import simulate
 from ..integration.schemes import ExactModal, Scheme
@@ -117,21 +117,24 @@ def motion_of(
     positive("duration", duration)
     frames = duration / frame
     if not FEWEST_FRAMES <= round(frames) <= MOST_FRAMES:
-        raise ValueError(
-            f"duration must give from {FEWEST_FRAMES} to {MOST_FRAMES} frames of {frame:.3g} s, got {duration!r} s "
-            f"({frames:.0f} frames): change the slowdown"
+        raise ArgumentError(
+            "duration",
+            f"give from {FEWEST_FRAMES} to {MOST_FRAMES} frames of {frame:.3g} s",
+            duration,
+            got=f"{duration!r} s ({frames:.0f} frames): change the slowdown",
         )
     end = non_negative("start", start) + duration
     chosen: Scheme = ExactModal() if scheme is None else scheme
     if step is None:
         step = choose_timing(assemble(system, ()), chosen, end, None, sample_rate).step
-    places = {body: _places(body) for body in (slider, track) if not isinstance(body, RigidTrack)}
+    shown: list[Any] = [slider] if system.contacts[0].rigid_track is track else [slider, track]
+    places = {body: _places(body) for body in shown}
     probes = [Displacement(body.at(s), axis) for body, along in places.items() for s in along for axis in "xy"]
     run = simulate(system, end, scheme=chosen, step=step, sample_rate=1.0 / frame, probes=probes)
     window = run.isel(time=run["time"].values > start + 0.5 * float(run.attrs["sample_interval"]))
     if window.sizes["time"] < FEWEST_FRAMES:
         ended = f"{run.attrs['ended']} at {at_most(float(run['time'][-1]))} s"
-        raise ValueError(f"start must be before the run ends ({ended}), got {start!r}")
+        raise ArgumentError("start", f"be before the run ends ({ended})", start)
     return _motion(system, window, list(places.values()))
 
 
@@ -139,13 +142,12 @@ def _pair(system: System) -> tuple[FiniteElementBeam, ModalBeam | ModalPlate | R
     instance("system", system, System)
     slider: Any = system.slider
     track: Any = system.contacts[0].track
-    several, kinds = len(system.contacts) > 1, (ModalBeam, ModalPlate, RigidTrack)
-    if several or not isinstance(slider, FiniteElementBeam) or not isinstance(track, kinds):
-        under = f"a point of a {type(track.body).__name__}" if isinstance(track, BodyPoint) else _a(track)
+    several, touched = len(system.contacts) > 1, system.contacts[0].touched_point
+    if several or not isinstance(slider, FiniteElementBeam) or touched is not None:
+        under = f"a point of {_a(touched.body)}" if touched is not None else _a(track)
         got = f"{len(system.contacts)} contacts" if several else f"{_a(slider)} on {under}"
-        raise ValueError(
-            "system must be a FiniteElementBeam on one ModalBeam, ModalPlate or RigidTrack to be filmed, got " + got
-        )
+        words = "be a FiniteElementBeam on one ModalBeam, ModalPlate or RigidTrack to be filmed"
+        raise ArgumentError("system", words, system, got=got)
     return slider, track
 
 
@@ -180,10 +182,10 @@ def _motion(system: System, run: xr.Dataset, along: list[Array]) -> Motion:
     slider_places = tip + along[0][:, None] * slider.axes[0] + moved[:, :first]
     # That of the probes, whose low-pass the contact's own record does not have.
     abscissa = contact.at + moved[:, 0] @ tangent
-    if isinstance(contact.track, RigidTrack):
+    if contact.rigid_track is not None:
         length = BEYOND * slider.length
         ends = np.array([abscissa.min() - length, abscissa.max() + length])
-        raised = contact.track.normal_travel(run["time"].values)
+        raised = contact.rigid_track.normal_travel(run["time"].values)
         track_places = ends[:, None] * tangent + raised[:, None, None] * normal
         return Motion(run, slider_places, track_places, abscissa[:, None] * tangent + raised.mean() * normal)
     rest = np.stack([along[1], np.zeros_like(along[1])], axis=1)

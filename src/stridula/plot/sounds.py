@@ -9,8 +9,8 @@ import xarray as xr
 
 from ..acoustics.levels import REFERENCE
 from ..analysis.signals import samples
-from ..bodies.modes import Array
-from ..checks import instance
+from ..arrays import Array
+from ..checks import ArgumentError, instance
 
 # Levels of silence [dB] below the reference, in place of minus infinity, which has no colour.
 SILENCE = -200.0
@@ -55,7 +55,10 @@ def one_signal(signal: xr.DataArray) -> tuple[Array, float]:
     """
     instance("signal", signal, xr.DataArray)
     if "listener" in signal.dims and signal.sizes["listener"] > 1:
-        raise ValueError(
-            f"signal must be of one listener, got {signal.sizes['listener']}: choose one with isel(listener=...)"
+        raise ArgumentError(
+            "signal",
+            "be of one listener",
+            signal,
+            got=f"{signal.sizes['listener']}: choose one with isel(listener=...)",
         )
     return samples(signal.squeeze("listener") if "listener" in signal.dims else signal)

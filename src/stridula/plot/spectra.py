@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.signal import welch
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import instance, positive
 from ..system import System
 from .colours import LINES

@@ -10,8 +10,8 @@ from scipy.signal import ShortTimeFFT
 from scipy.signal.windows import hann
 
 from ..analysis.signals import record_of_one
-from ..bodies.modes import Array
-from ..checks import bounds, positive
+from ..arrays import Array
+from ..checks import ArgumentError, bounds, positive
 from .sounds import Reference, one_signal, reference
 from .timelines import draw_line, draw_status
 
@@ -64,7 +64,7 @@ def spectrogram(
     size = round(window / interval)
     if not 8 <= size <= values.size:
         least, most = bounds(8 * interval, values.size * interval, digits=3)
-        raise ValueError(f"window must be from {least} to {most} s, got {window!r}")
+        raise ArgumentError("window", f"be from {least} to {most} s", window)
     time, frequency, levels = _levels(values, interval, size, reference(signal))
     heights = [1.0] if run is None else [0.6, 1.6, 0.35]
     figure = Figure(figsize=(9.0, 1.2 + 2.4 * sum(heights)), layout="constrained", dpi=120)

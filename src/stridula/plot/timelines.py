@@ -9,8 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..bodies.modes import Array
-from ..checks import brief, finite, listed
+from ..arrays import Array
+from ..checks import ArgumentError, finite, listed
 from ..records.checked import record
 from ..records.variables import STATUS_WORDS
 from .colours import LINES, STATUS_COLOURS
@@ -49,15 +49,15 @@ def timeline(
     """
     record("run", run)
     if isinstance(variables, str) or not isinstance(variables, Sequence) or not variables:
-        raise ValueError(f"variables must be a list of names, got {brief(variables)}")
+        raise ArgumentError("variables", "be a list of names", variables)
     missing = [name for name in variables if name not in run or "time" not in run[name].dims]
     if missing:
         known = listed(str(name) for name in run.data_vars if "time" in run[name].dims)
-        raise ValueError(f"variables must be recorded over time in the run ({known}), got {brief(missing[0])}")
+        raise ArgumentError("variables", f"be recorded over time in the run ({known})", missing[0])
     record("run", run, *variables, *(["status_share"] if "status" in variables else []))
     shown = run if span is None else run.sel(time=slice(*_ends(span)))
     if shown.sizes["time"] < 2:
-        raise ValueError(f"span must hold at least 2 samples of the run, got {brief(span)}")
+        raise ArgumentError("span", "hold at least 2 samples of the run", span)
     ribbons = shown.sizes.get("contact", 1)
     heights = [0.15 + 0.3 * ribbons if name == "status" else 1.0 for name in variables]
     figure = Figure(figsize=(9.0, 1.2 + 2.4 * sum(heights)), layout="constrained", dpi=120)
@@ -79,7 +79,7 @@ def overview(run: xr.Dataset) -> Figure:
 
 def _ends(span: object) -> tuple[float, float]:
     if not isinstance(span, Sequence) or isinstance(span, str) or len(span) != 2:
-        raise ValueError(f"span must be a start and an end in s, got {brief(span)}")
+        raise ArgumentError("span", "be a start and an end in s", span)
     return finite("span[0]", span[0]), finite("span[1]", span[1])
 
 

@@ -7,6 +7,8 @@ import tomllib
 
 import xarray as xr
 
+from ..checks import ArgumentError
+
 
 def played(run: xr.Dataset) -> list[tuple[float, str]]:
     """Return the scenarios of a record that was changed on the way, each with the time [s] from which it was played.
@@ -24,7 +26,7 @@ def played(run: xr.Dataset) -> list[tuple[float, str]]:
     try:
         every = [(float(change["time"]), str(change["scenario"])) for change in json.loads(text)]
     except (ValueError, TypeError, KeyError):
-        raise ValueError("run must have the attribute changes as it was saved, got a damaged one") from None
+        raise ArgumentError("run", "have the attribute changes as it was saved", run, got="a damaged one") from None
     times = run["time"].values
     if not times.size:
         return []
@@ -42,7 +44,12 @@ def check_one_track(run: xr.Dataset) -> None:
     first, *others = (tomllib.loads(text).get("track") for _, text in changes)
     for (time, _), track in zip(changes[1:], others, strict=True):
         if track != first:
-            raise ValueError(
-                f"run must have the same track all the time to be heard, got another one from {time:.6g} s on: "
-                "choose the times of one with run.sel(time=slice(START, STOP)), and give its track"
+            raise ArgumentError(
+                "run",
+                "have the same track all the time to be heard",
+                run,
+                got=(
+                    f"another one from {time:.6g} s on: choose the times of one with run.sel(time=slice(START, "
+                    "STOP)), and give its track"
+                ),
             )

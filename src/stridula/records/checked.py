@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..checks import brief, instance, listed
+from ..checks import ArgumentError, brief, instance, listed
 from .variables import STATUS_SHARE, STATUS_WORDS
 
 NUMBERS = "fiu"
@@ -37,15 +37,15 @@ def record(name: str, value: Any, *needed: str, least: int = 0) -> xr.Dataset:
     """
     if not isinstance(value, xr.Dataset):
         way = ": read a file with load" if isinstance(value, (str, Path)) else ""
-        raise ValueError(f"{name} must be a record of simulate, a Dataset, got {brief(value)}{way}")
+        raise ArgumentError(name, "be a record of simulate, a Dataset", value, got=f"{brief(value)}{way}")
     lacking = [word for word in ("time", *needed) if word not in value.variables]
     if lacking:
-        raise ValueError(f"{name} must be a record with {listed(lacking)}, got one with {_held(value)}")
+        raise ArgumentError(name, f"be a record with {listed(lacking)}", value, got=f"one with {_held(value)}")
     check_times(name, value["time"])
     for word in needed:
         _check_variable(name, word, value[word])
     if value.sizes["time"] < least:
-        raise ValueError(f"{name} must have at least {least} samples, got {value.sizes['time']}")
+        raise ArgumentError(name, f"have at least {least} samples", value, got=value.sizes["time"])
     return value
 
 
@@ -59,7 +59,7 @@ def signal(name: str, value: Any) -> xr.DataArray:
     """
     instance(name, value, xr.DataArray)
     if "time" not in value.dims or "time" not in value.coords:
-        raise ValueError(f"{name} must be over time, got the dimensions {listed(map(str, value.dims))}")
+        raise ArgumentError(name, "be over time", value, got=f"the dimensions {listed(map(str, value.dims))}")
     check_real(name, str(value.name or "value"), value)
     check_times(name, value["time"])
     return value
@@ -69,26 +69,26 @@ def check_times(name: str, times: xr.DataArray) -> None:
     """Raise ValueError unless times are finite numbers that rise."""
     values = times.values
     if times.dims != ("time",) or values.dtype.kind not in NUMBERS:
-        raise ValueError(
-            f"{name} must have a time of each sample in s, got {times.dtype} over {listed(map(str, times.dims))}"
+        raise ArgumentError(
+            name, "have a time of each sample in s", got=f"{times.dtype} over {listed(map(str, times.dims))}"
         )
     if not (np.abs(values) < LATEST).all() or (values[1:] <= values[:-1]).any():
-        raise ValueError(f"{name} must have finite times that rise, got others")
+        raise ArgumentError(name, "have finite times that rise", got="others")
 
 
 def check_real(name: str, word: str, variable: xr.DataArray) -> None:
     """Raise ValueError unless a variable holds real numbers."""
     if variable.dtype.kind not in NUMBERS + "b":
-        raise ValueError(f"{name} must have a {word} of real numbers, got {variable.dtype}")
+        raise ArgumentError(name, f"have a {word} of real numbers", got=variable.dtype)
 
 
 def _check_variable(name: str, word: str, variable: xr.DataArray) -> None:
     if variable.dims[:1] != ("time",) or variable.dtype.kind not in NUMBERS:
         dimensions = listed(map(str, variable.dims))
-        raise ValueError(f"{name} must have a {word} of numbers over time, got {variable.dtype} over {dimensions}")
+        raise ArgumentError(name, f"have a {word} of numbers over time", got=f"{variable.dtype} over {dimensions}")
     if word == STATUS_SHARE.name and variable.shape[1:][-1:] != (len(STATUS_WORDS),):
         wanted = ", ".join(STATUS_WORDS)
-        raise ValueError(f"{name} must have a {word} of each of {wanted}, got the shape {variable.shape}")
+        raise ArgumentError(name, f"have a {word} of each of {wanted}", got=f"the shape {variable.shape}")
 
 
 def _held(run: xr.Dataset) -> str:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..bodies.modes import Array
-from ..checks import instance, listed, non_negative, positive
+from ..arrays import Array
+from ..checks import ArgumentError, instance, listed, non_negative, positive
 from .checked import check_times
 from .export import Column, columns
 from .variables import ENERGY, SOLVE, STATUS, described
@@ -60,7 +60,7 @@ def compare(a: xr.Dataset, b: xr.Dataset, tolerance: float = 1e-6) -> xr.Dataset
     theirs = {column.name: column for column in columns(second) if column.variable not in LEFT_OUT}
     names = [name for name in ours if name in theirs]
     if not names:
-        raise ValueError(f"b must have a variable of a, got {listed(theirs)}")
+        raise ArgumentError("b", "have a variable of a", b, got=listed(theirs))
     scales = _scales(ours)
     time = first["time"].values
     rows = [_difference(ours[name], theirs[name], scales[name], time, tolerance) for name in names]
@@ -93,18 +93,20 @@ def _common(a: xr.Dataset, b: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
     for name, record in (("a", a), ("b", b)):
         instance(name, record, xr.Dataset)
         if "time" not in record.dims or "sample_interval" not in record.attrs:
-            raise ValueError(f"{name} must be a record of simulate, got variables {listed(map(str, record))}")
+            raise ArgumentError(name, "be a record of simulate", got=f"variables {listed(map(str, record))}")
         if not record.sizes["time"]:
-            raise ValueError(f"{name} must have samples to compare, got a record without any")
+            raise ArgumentError(name, "have samples to compare", got="a record without any")
         check_times(name, record["time"])
         intervals.append(positive(f"{name}.sample_interval", record.attrs["sample_interval"]))
         numbers.append(np.rint(record["time"].values / intervals[-1]).astype(np.int64))
     if abs(intervals[1] - intervals[0]) > 1e-9 * intervals[0]:
-        raise ValueError(f"b must have the sample interval of a, {intervals[0]!r} s, got {intervals[1]!r} s")
+        raise ArgumentError(
+            "b", f"have the sample interval of a, {intervals[0]!r} s", intervals[1], got=f"{intervals[1]!r} s"
+        )
     _, ours, theirs = np.intersect1d(numbers[0], numbers[1], return_indices=True)
     if ours.size == 0:
         spans = [f"{r['time'].values[0]:.6g} to {r['time'].values[-1]:.6g} s" for r in (a, b)]
-        raise ValueError(f"b must have a time of a, {spans[0]}, got {spans[1]}")
+        raise ArgumentError("b", f"have a time of a, {spans[0]}", b, got=spans[1])
     return a.isel(time=ours), b.isel(time=theirs)
 
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..bodies import BodyPoint, FiniteElementBeam, Track
-from ..bodies.modes import Array
+from ..arrays import Array
+from ..bodies import BodyPoint
 from ..system import System
 from .probes import Probe, Reaction
 from .state import State
@@ -118,13 +118,8 @@ def probe_label(probe: Probe, system: System) -> str:
 
 
 def _place(point: BodyPoint) -> str:
-    body, position = point.body, point.position
-    if isinstance(position, str):
-        return position
-    if isinstance(body, Track) and point == body.centre:
-        return "centre"
-    if isinstance(position, tuple):
-        return f"({position[0]:.6g}, {position[1]:.6g}) m"
-    if isinstance(body, FiniteElementBeam):
-        return {0.0: "tip", body.length: "root"}.get(position, f"{position:.6g} m")
-    return f"{position:.6g} m"
+    if point.point_name is not None:
+        return point.point_name
+    if isinstance(point.position, tuple):
+        return f"({point.position[0]:.6g}, {point.position[1]:.6g}) m"
+    return f"{point.position:.6g} m"

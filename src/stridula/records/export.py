@@ -14,8 +14,8 @@ import numpy as np
 import scipy.io
 import xarray as xr
 
-from ..bodies.modes import Array
-from ..checks import at_least, instance
+from ..arrays import Array
+from ..checks import ArgumentError, at_least, instance
 from ..disk import check_writable, named, write
 from .checked import check_real, record
 
@@ -114,7 +114,7 @@ def export(run: xr.Dataset, path: str | Path) -> None:
     instance("path", path, (str, Path))
     kind = Path(path).suffix.lower()
     if kind not in SUFFIXES:
-        raise ValueError(f"path must end in {' or '.join(SUFFIXES)}, got {named(path)}")
+        raise ArgumentError("path", f"end in {' or '.join(SUFFIXES)}", path, got=named(path))
     table = columns(run)
     check_writable(path)
     write(path, _csv(run, table) if kind == ".csv" else _mat(run))
@@ -143,9 +143,7 @@ def _mat(run: xr.Dataset) -> memoryview:
     for name, variable in {"time": run["time"], **kept}.items():
         values = variable.transpose("time", ...).values
         if values.nbytes > LARGEST_VARIABLE:
-            raise ValueError(
-                f"{name} must be below 2 GiB for a .mat file, got {at_least(values.nbytes / 2**30, 3)} GiB"
-            )
+            raise ArgumentError(name, "be below 2 GiB for a .mat file", got=f"{at_least(values.nbytes / 2**30, 3)} GiB")
         contents[names[name]] = values
     everything = {"time": run["time"], **kept}
     for word in ("units", "long_name"):

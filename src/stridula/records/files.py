@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 from h5netcdf.utils import CompatibilityError
 
-from ..checks import in_one_line, instance
+from ..checks import ArgumentError, in_one_line, instance
 from ..disk import check_writable, named, read, write
 
 MAGIC = b"\x89HDF\r\n\x1a\n"
@@ -44,7 +44,9 @@ def save(run: xr.Dataset, path: str | Path) -> None:
         try:
             content = plain.to_netcdf(engine="h5netcdf", encoding=encoding)
         except (TypeError, ValueError, NotImplementedError, CompatibilityError) as error:
-            raise ValueError(f"run must hold what NetCDF can keep, got other things: {in_one_line(error)}") from error
+            raise ArgumentError(
+                "run", "hold what NetCDF can keep", run, got=f"other things: {in_one_line(error)}"
+            ) from error
     write(path, content)
 
 
@@ -82,7 +84,7 @@ def scenario_of(path: str | Path) -> tuple[str, str]:
         with _readable(path), h5py.File(path, "r") as file:
             attributes = {name: file.attrs[name] for name in ("title", "scenario") if name in file.attrs}
     if not isinstance(attributes.get("scenario"), str):
-        raise ValueError(f"path must be a record that stridula wrote, got {named(path)}")
+        raise ArgumentError("path", "be a record that stridula wrote", path, got=named(path))
     title = attributes.get("title")
     return (title if isinstance(title, str) else ""), attributes["scenario"]
 
@@ -108,4 +110,6 @@ def _readable(path: str | Path) -> Iterator[None]:
     try:
         yield
     except (OSError, RuntimeError, KeyError, ValueError) as error:
-        raise ValueError(f"path must be a whole record, got the damaged {named(path)}: {in_one_line(error)}") from error
+        raise ArgumentError(
+            "path", "be a whole record", path, got=f"the damaged {named(path)}: {in_one_line(error)}"
+        ) from error

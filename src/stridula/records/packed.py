@@ -9,7 +9,8 @@ import zlib
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
+from ..checks import ArgumentError
 
 PREFIX = "float64 "
 LARGEST = 4000 * 4000
@@ -46,4 +47,4 @@ def unpacked(text: str) -> Array:
         plain = unfold.decompress(base64.b64decode(content, validate=True), whole + 1)
         return np.frombuffer(plain, dtype="<f8").astype(float).reshape(shape)
     except (ValueError, zlib.error, binascii.Error) as error:
-        raise ValueError("must be a whole packed array, as records have them") from error
+        raise ArgumentError("array", "be a whole packed array, as records have them") from error

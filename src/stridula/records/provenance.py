@@ -11,33 +11,18 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, Track
+from ..arrays import Array
+from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam
 from ..bodies.damping import DampingLaw
-from ..bodies.modes import Array
-from ..contact import PointContact, RigidTrack
-from ..drives import Drive, Force, ImposedVelocity, InitialState, InitialVelocity
+from ..contact import PointContact
+from ..drives import Drive
 from ..histories import Constant
 from ..system import System
 from .packed import LONGEST_LIST, packed
 from .probes import Probe, Reaction
 
-DRIVE_KINDS = {
-    "Force": "force",
-    "ImposedVelocity": "imposed velocity",
-    "Gravity": "gravity",
-    "InitialVelocity": "initial velocity",
-    "InitialState": "initial state",
-    "InitialEquilibrium": "initial equilibrium",
-}
 # A list as tomli_w writes it, one number on a line; texts are on one line each and never match.
 _LIST_OF_NUMBERS = re.compile(r"\[\n((?:\s*[-+.\dinfaeE]+,\n)+)\s*\]")
-BODY_KINDS = {
-    "FiniteElementBeam": "finite-element beam",
-    "ModalBeam": "modal beam",
-    "ModalPlate": "modal plate",
-    "PointMass": "point mass",
-    "ReducedBody": "reduced",
-}
 
 
 def scenario_toml(system: System, probes: Sequence[Probe], simulation: dict[str, Any]) -> str:
@@ -65,8 +50,9 @@ def _is_pair(system: System) -> bool:
     return (
         len(system.contacts) == 1
         and not system.connections
-        and isinstance(system.slider, FiniteElementBeam)
-        and isinstance(system.contacts[0].track, ModalBeam)
+        and system.slider.kind == FiniteElementBeam.kind
+        and system.track.kind == ModalBeam.kind
+        and system.contacts[0].touched_point is None
     )
 
 
@@ -84,12 +70,12 @@ def _general(system: System) -> dict[str, Any]:
         return {"body": system.body_name(point.body), "point": _point(point)}
 
     def track(contact: PointContact) -> dict[str, Any]:
-        if isinstance(contact.track, RigidTrack):
-            return {"kind": "rigid", **_plain(contact.track, "history", "normal_history"), **_histories(contact.track)}
-        if isinstance(contact.track, BodyPoint):
-            return {"kind": "point", **place(contact.track)}
-        kind = "plate" if isinstance(contact.track, ModalPlate) else "beam"
-        return {"kind": kind, "body": system.body_name(contact.track)}
+        rigid, touched, body = contact.rigid_track, contact.touched_point, contact.path_body
+        if rigid is not None:
+            return {"kind": rigid.kind, **_plain(rigid, "history", "normal_history"), **_histories(rigid)}
+        if body is not None:
+            return {"kind": body.kind.removeprefix("modal "), "body": system.body_name(body)}
+        return {"kind": "point", **(place(touched) if touched is not None else {})}
 
     tables: dict[str, Any] = {
         "bodies": {system.body_name(body): _general_body(body, system) for body in system.bodies},
@@ -100,7 +86,7 @@ def _general(system: System) -> dict[str, Any]:
     if system.connections:
         tables["connections"] = [
             {
-                "kind": type(connection).__name__.lower(),
+                "kind": connection.kind,
                 **_plain(connection, "first", "second"),
                 "first": place(connection.first),
                 **({"second": place(connection.second)} if connection.second is not None else {}),
@@ -123,13 +109,13 @@ def _histories(record: Any) -> dict[str, Any]:
     found = {}
     for name in ("history", "normal_history"):
         history = getattr(record, name, None)
-        if history is not None and not isinstance(history, Constant):
+        if history is not None and history.kind != Constant.kind:
             found[name] = _history(history)
     return found
 
 
 def _history(history: Any) -> dict[str, Any]:
-    return {"kind": type(history).__name__.lower(), **_plain(history)}
+    return {"kind": history.kind, **_plain(history)}
 
 
 def _plain(record: Any, *skipped: str) -> dict[str, Any]:
@@ -163,15 +149,12 @@ def _body(body: Any) -> dict[str, Any]:
         given["points"] = {name: _rows(rows) for name, rows in body.points.items()}
     if not hasattr(body, "section"):
         return given
-    section = {"shape": type(body.section).__name__.lower(), **_plain(body.section)}
-    if section["shape"] == "section":
-        section["shape"] = "general"
-    return {**given, "section": section}
+    return {**given, "section": {"shape": body.section.shape, **_plain(body.section)}}
 
 
 def body_table(body: Any) -> dict[str, Any]:
     """Return the table of a body in a scenario of bodies and contacts."""
-    return {"kind": BODY_KINDS[type(body).__name__], **_body(body)}
+    return {"kind": body.kind, **_body(body)}
 
 
 def _general_body(body: Any, system: System) -> dict[str, Any]:
@@ -200,28 +183,19 @@ def _rows(rows: Array) -> Any:
 
 
 def _point(point: BodyPoint) -> Any:
-    body: Any = point.body
-    if isinstance(point.position, str):
-        return point.position
-    named: dict[str, Any] = {"tip": 0.0, "root": body.length} if isinstance(body, FiniteElementBeam) else {}
-    if isinstance(body, Track):
-        named = {"centre": body.centre.position}
-    return next((name for name, position in named.items() if position == point.position), _value(point.position))
+    return _value(point.position) if point.point_name is None else point.point_name
 
 
 def _drive(drive: Drive, system: System) -> dict[str, Any]:
-    table: dict[str, Any] = {"kind": DRIVE_KINDS[type(drive).__name__]}
-    if isinstance(drive, Force):
-        table |= {"body": system.body_name(drive.point.body), "point": _point(drive.point)}
-    elif isinstance(drive, (InitialVelocity, InitialState)):
-        table["body"] = system.body_name(drive.body)
-    elif isinstance(drive, ImposedVelocity) and drive.point.body != system.slider:
-        table["body"] = system.body_name(drive.point.body)
-    table |= _plain(drive, "point", "body", "history")
-    if isinstance(drive, InitialState):
-        given = {name: getattr(drive, name) for name in ("displacement", "velocity")}
-        table |= {name: _value(np.array(values)) for name, values in given.items() if values is not None}
-    if isinstance(drive, (Force, ImposedVelocity)):
+    table: dict[str, Any] = {"kind": drive.kind}
+    body = drive.acted_on
+    if body is not None and (drive.place != "root" or body != system.slider):
+        table["body"] = system.body_name(body)
+    if drive.push is not None and drive.place == "point":
+        table["point"] = _point(drive.push[1])
+    table |= _plain(drive, "point", "body", "history", *drive.vectors)
+    table |= {name: _value(np.array(values)) for name, values in drive.vectors.items()}
+    if hasattr(drive, "history"):
         table["history"] = _history(drive.history)
     return table
 

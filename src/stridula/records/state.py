@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..bodies.modes import Array
+from ..arrays import Array
 
 # Raised whenever what a State, or the record of one, holds means something else.
 LAYOUT = 1

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..checks import STATUS_WORDS
 
 

@@ -9,54 +9,44 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from .. import histories
+from .. import connections, drives, histories
 from ..bodies import (
     BodyPoint,
-    Circle,
     FiniteElementBeam,
+    HasRoot,
     Line,
     Material,
     ModalBeam,
     ModalPlate,
     PointMass,
-    Rayleigh,
-    Rectangle,
     ReducedBody,
-    RisingDamping,
-    SampledDamping,
-    Section,
 )
-from ..bodies.ordinary import ORDINARY
-from ..checks import brief, listed, suggestion
-from ..connections import Dashpot, Spring
+from ..bodies.damping import DAMPING_LAWS
+from ..bodies.ordinary import NotOrdinary
+from ..bodies.sections import SECTIONS
+from ..checks import ArgumentError, brief, listed, suggestion
 from ..contact import LAWS, PointContact, RigidTrack
 from ..disk import is_there
-from ..drives import Drive, Force, Gravity, ImposedVelocity, InitialEquilibrium, InitialState, InitialVelocity
+from ..drives import Drive
 from ..integration import GaussSeidel
 from ..records import Acceleration, Displacement, Probe, Reaction, Velocity
 from ..system import System
 from .errors import ScenarioError
 from .quantities import quantity
 
-SECTIONS: dict[str, Callable[..., Any]] = {"rectangle": Rectangle, "circle": Circle, "general": Section}
-DAMPINGS: dict[str, Callable[..., Any]] = {law.form: law for law in (Rayleigh, RisingDamping, SampledDamping)}
-HISTORIES: dict[str, Callable[..., Any]] = {
-    "constant": histories.Constant,
-    "ramp": histories.Ramp,
-    "harmonic": histories.Harmonic,
-    "sampled": histories.Sampled,
-}
+SHAPES: dict[str, Callable[..., Any]] = {section.shape: section for section in SECTIONS}
+DAMPINGS: dict[str, Callable[..., Any]] = {law.form: law for law in DAMPING_LAWS}
+HISTORIES: dict[str, Callable[..., Any]] = {history.kind: history for history in histories.HISTORIES}
+DRIVES: dict[str, type[Drive]] = {drive.kind: drive for drive in drives.DRIVES}
 MOTIONS = {"displacement": Displacement, "velocity": Velocity, "acceleration": Acceleration}
 FRICTIONS: dict[str, Callable[..., Any]] = {law.law: law for law in LAWS}
-CONNECTIONS: dict[str, Callable[..., Any]] = {"spring": Spring, "dashpot": Dashpot}
-TRACKS = {"beam": ModalBeam, "plate": ModalPlate}
-# Drives that act on no body in particular.
-OF_ALL_BODIES = ("gravity", "initial equilibrium")
+CONNECTIONS: dict[str, Callable[..., Any]] = {connection.kind: connection for connection in connections.CONNECTIONS}
 Tables = dict[str, Any]
 Place = tuple[str | int, ...]
-# What SciPy says of matrices that have overflowed.
-NOT_FINITE = "must not contain infs or NaNs"
-_ARGUMENT = re.compile(r"([a-z_]\w*(?:[.\[]\w+\]?)*) (must|and) ")
+# How a value that another problem left out looks.
+NOTHING = repr(None)
+# Arguments that are keys of a table, or two of them.
+_KEY = re.compile(r"[a-z_]\w*(?:[.\[]\w+\]?)*(?: and \w+)?")
 
 
 class Builder:
@@ -88,7 +78,7 @@ class Builder:
             system = System(contacts[0] if len(contacts) == 1 else contacts, drives, connections)
         self._stop_at_problems()
         for name, body in self.bodies.items():
-            if isinstance(body, FiniteElementBeam):
+            if isinstance(body, HasRoot):
                 with self._within(*self.places.get(name, ("bodies", name))):
                     body.modes(system.is_held(body))
         self._stop_at_problems()
@@ -203,7 +193,7 @@ class Builder:
                 return ReducedBody.read(container, **table)
             for key, words in (("mass", "mass matrix"), ("stiffness", "stiffness matrix"), ("points", "its points")):
                 if table.get(key) is None:
-                    raise ValueError(f"{key} must be given: {words}, unless a file has it")
+                    raise ArgumentError(key, f"be given: {words}, unless a file has it")
             return ReducedBody(**table)
 
     def _beam(self, path: Place, kind: Callable[..., Any], given: Tables) -> Any:
@@ -212,7 +202,7 @@ class Builder:
         shape: Any = None
         material: Any = None
         with self._within(*path, "section"):
-            shape = SECTIONS[section.pop("shape")](**section)
+            shape = SHAPES[section.pop("shape")](**section)
         with self._within(*path, "material"):
             material = Material(**table.pop("material"))
         with self._within(*path):
@@ -251,9 +241,9 @@ class Builder:
         kind = table.pop("kind")
         if kind == "point":
             return self._place(path, table)
-        if kind in TRACKS:
+        if kind != RigidTrack.kind:
             body = self.bodies[table["body"]]
-            if not isinstance(body, TRACKS[kind]):
+            if body.kind != f"modal {kind}":
                 self.problems.append(
                     f"{self.words((*path, 'body'))} must be a modal {kind}, got {brief(table['body'])}"
                 )
@@ -279,27 +269,25 @@ class Builder:
     def _drive(self, number: int, table: Tables) -> Any:
         path = ("drives", number)
         table = dict(table)
-        kind = table.pop("kind")
-        body: Any = None
-        if kind not in OF_ALL_BODIES:
-            body = self._named_body((*path, "body"), table.pop("body", "slider"))
+        made: Callable[..., Drive] = DRIVES[table["kind"]]
+        place = DRIVES[table.pop("kind")].place
+        body = self._named_body((*path, "body"), table.pop("body", "slider")) if place else None
         if table.get("history") is not None:
             table["history"] = self._history((*path, "history"), table["history"])
-        if kind == "force":
-            at = self._point((*path, "point"), body, table.pop("point", None), "root")
-        makers: dict[str, Callable[[], Drive]] = {
-            "force": lambda: Force(at, **table),
-            "imposed velocity": lambda: ImposedVelocity(self._root(path, body), **table),
-            "gravity": lambda: Gravity(**table),
-            "initial velocity": lambda: InitialVelocity(body, **table),
-            "initial state": lambda: InitialState(body, **table),
-            "initial equilibrium": lambda: InitialEquilibrium(**table),
-        }
+        where = self._acted_on(path, place, body, table)
         with self._within(*path):
-            return makers[kind]()
+            return made(*where, **table)
+
+    def _acted_on(self, path: Place, place: str, body: Any, table: Tables) -> tuple[Any, ...]:
+        """Return what a drive acts on, its first argument: nothing if that is the whole system."""
+        if place == "point":
+            return (self._point((*path, "point"), body, table.pop("point", None), "root"),)
+        if place == "root":
+            return (self._root(path, body),)
+        return (body,) if place else ()
 
     def _root(self, path: Place, body: Any) -> Any:
-        if not isinstance(body, FiniteElementBeam):
+        if not isinstance(body, HasRoot):
             self.problems.append(f"{self.words((*path, 'body'))} must be a finite-element beam, whose root is driven")
             return None
         return body.root
@@ -328,32 +316,32 @@ class Builder:
         """Return a point of a body; without a place the `end` of a slider, the centre or the only point."""
         if body is None:
             return None
-        if isinstance(body, (FiniteElementBeam, ModalBeam, ModalPlate)):
-            return self._point_of_beam(path, body, place, end)
-        known = tuple(body.points) if isinstance(body, ReducedBody) else ("centre",)
-        if place is None and len(known) == 1:
-            place = known[0]
+        names = body.point_names
+        if place is None and len(names) > 1 and body.has_positions:
+            place = end if end in names else names[0]
+        if place is None and len(names) == 1:
+            place = names[0]
+        if place in names:
+            point: BodyPoint = getattr(body, str(place)) if body.has_positions else BodyPoint(body, str(place))
+            return point
+        if body.has_positions:
+            return self._between(path, body, place)
         if place is None:
-            self.problems.append(f"{self.words(path)} must be given: one of {listed(known)}")
-        elif place in known:
-            return BodyPoint(body, place)
+            self.problems.append(f"{self.words(path)} must be given: one of {listed(names)}")
         else:
-            self.problems.append(_unknown(self.words(path), place, known))
+            self.problems.append(_unknown(self.words(path), place, names))
         return None
 
-    def _point_of_beam(self, path: Place, body: Any, place: str | float | tuple[float, float] | None, end: str) -> Any:
-        names = ("tip", "root") if isinstance(body, FiniteElementBeam) else ("centre",)
-        if place is None:
-            place = end if end in names else names[0]
-        if place in names:
-            point: BodyPoint = getattr(body, str(place))
-            return point
+    def _between(self, path: Place, body: Any, place: Any) -> Any:
+        """Return a point between the named ones."""
+        key = self.words(path)
         try:
             return body.at(place if isinstance(place, tuple) else quantity(place, "m"))
-        except ValueError as error:
-            key, words = self.words(path), str(error)
-            problem = words.replace("position", key, 1) if words.startswith("position") else ""
-            self.problems.append(problem or f"{key} must be {' or '.join(names)} or a position, got {brief(place)}")
+        except ArgumentError as error:
+            if error.argument == "position":
+                self.problems.append(str(error.renamed(key)))
+            else:
+                self.problems.append(f"{key} must be {' or '.join(body.point_names)} or a position, got {brief(place)}")
         return None
 
     @contextmanager
@@ -362,33 +350,25 @@ class Builder:
         known = len(self.problems)
         try:
             yield
-        except (OverflowError, ZeroDivisionError):
+        except (OverflowError, ZeroDivisionError, NotOrdinary):
             self.problems.append(out_of_range(self.words(path)))
         except (ValueError, OSError) as error:
-            if overflows(error):
-                self.problems.append(out_of_range(self.words(path)))
-                return
-            if len(self.problems) == known and "got None" not in str(error):
-                self.problems.append(self._named(path, str(error)))
+            follows = isinstance(error, ArgumentError) and error.got == NOTHING
+            if len(self.problems) == known and not follows:
+                self.problems.append(self._named(path, error))
 
-    def _named(self, path: Place, message: str) -> str:
-        match = _ARGUMENT.match(message)
-        if match is None:
-            return f"{self.words(path)}: {message}" if path else message
-        argument = match[1].replace("[", ".").replace("]", "").replace("path", "file")
+    def _named(self, path: Place, error: ValueError | OSError) -> str:
+        if not isinstance(error, ArgumentError) or error.where or not _KEY.fullmatch(error.argument):
+            return f"{self.words(path)}: {error}" if path else str(error)
+        argument = "file" if error.argument == "path" else error.argument.replace("[", ".").replace("]", "")
         if argument in ("root_support", "tip_support") and not path:
             driven: Tables = next((drive for drive in self.tables["drives"] if drive["kind"] == "imposed velocity"), {})
             path = self.places.get(driven.get("body", "slider"), ("slider",))
-        return self.words((*path, *argument.split("."))) + message[len(match[1]) :]
+        return str(error.renamed(self.words((*path, *argument.split(".")))))
 
     def _stop_at_problems(self) -> None:
         if self.problems:
             raise ScenarioError(self.problems)
-
-
-def overflows(error: Exception) -> bool:
-    """Return whether an error says that numbers are too large or too small to go on with."""
-    return NOT_FINITE in str(error) or ORDINARY in str(error)
 
 
 def out_of_range(key: str) -> str:

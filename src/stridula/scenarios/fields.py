@@ -17,10 +17,12 @@ from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaH
 from pydantic_core import CoreSchema, PydanticCustomError
 from pydantic_core.core_schema import no_info_plain_validator_function
 
-from ..bodies import Rayleigh, RisingDamping, SampledDamping
-from ..bodies.modes import Array
-from ..checks import STATUS_WORDS, at_least, at_most
-from ..drives import MOST_UNSTABLE
+from .. import declared as declarations
+from ..arrays import Array
+from ..bodies import Rayleigh
+from ..bodies.damping import DAMPING_LAWS
+from ..checks import ArgumentError
+from ..declared import Kind, Number, declared, texts
 from ..records.packed import is_packed, unpacked
 from .quantities import UNITS, is_quantity, quantity
 
@@ -37,7 +39,11 @@ class Table(BaseModel):
         Read when asked for: to take them into the fields costs more than to load a scenario.
         """
         own = [table for table in cls.__mro__[::-1] if issubclass(table, Table)]
-        return {key: text for table in own for key, text in _texts(table.__module__)[table.__name__].items()}
+        return {key: text for table in own for key, text in table._own_descriptions().items()}
+
+    @classmethod
+    def _own_descriptions(cls) -> dict[str, str]:
+        return _texts(cls.__module__)[cls.__name__]
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
@@ -65,7 +71,7 @@ def _texts_in(table: ast.ClassDef) -> dict[str, str]:
 
 
 class _Kind:
-    """A value read by `read`, which raises ValueError with the words that follow the key."""
+    """A value read by `read`, which raises ArgumentError: the key and the value are told by who asks."""
 
     def read(self, value: Any) -> Any:
         raise NotImplementedError
@@ -84,39 +90,24 @@ def _in_words(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
     def validate(value: Any) -> Any:
         try:
             return read(value)
-        except ValueError as error:
+        except ArgumentError as error:
             # The words go in as a value: braces in them are no placeholders.
-            raise PydanticCustomError("words", "{words}", {"words": str(error)}) from None
+            raise PydanticCustomError("words", "{words}", {"words": f"must {error.allowed}"}) from None
 
     return validate
 
 
-@dataclass(frozen=True)
-class Quantity(_Kind):
-    """A number with an SI unit, in a range.
+class Quantity(Number, _Kind):
+    """A number in a range, or a text with one and a unit.
 
     Attributes
     ----------
-    unit : str
-        SI unit.
-    above, least, below : float or None
-        Strictly above, from here on, strictly below; no bound where None.
+    unit, above, least, below, meaning : str, float or None
+        As of `Number`.
     """
 
-    unit: str
-    above: float | None = None
-    least: float | None = None
-    below: float | None = None
-
     def read(self, value: Any) -> float:
-        number = quantity(value, self.unit)
-        if self.above is not None and number <= self.above:
-            raise ValueError(f"must be above {at_least(self.above)}")
-        if self.least is not None and number < self.least:
-            raise ValueError(f"must be {at_least(self.least)} or above")
-        if self.below is not None and number >= self.below:
-            raise ValueError(f"must be below {at_most(self.below)}")
-        return number
+        return self.check("value", quantity(value, self.unit))
 
     def json_schema(self) -> dict[str, Any]:
         limits = {"exclusiveMinimum": self.above, "minimum": self.least, "exclusiveMaximum": self.below}
@@ -149,56 +140,59 @@ class OneOrEach(_Kind):
 class DampingTable(_Kind):
     """A law of damping: its name and its parameters."""
 
-    forms: ClassVar[dict[str, Any]] = {
-        Rayleigh.form: (
-            Rayleigh,
-            {
-                "mass": (Quantity("1/s", least=0.0), "share of the mass matrix [1/s]"),
-                "stiffness": (Quantity("s", least=0.0), "share of the stiffness matrix [s]"),
-            },
-        ),
-        RisingDamping.form: (
-            RisingDamping,
-            {
-                "ratio": (Quantity("1", least=0.0, below=1.0), "damping ratio at low frequencies"),
-                "rise": (Quantity("1/Hz", least=0.0), "rise of the damping ratio with the frequency of a mode [1/Hz]"),
-            },
-        ),
-        SampledDamping.form: (
-            SampledDamping,
-            {
-                "frequency": (OneOrEach(Quantity("Hz", least=0.0)), "frequencies at which the ratio is given [Hz]"),
-                "ratio": (OneOrEach(Quantity("1", least=0.0, below=1.0)), "damping ratio at each, linear between them"),
-            },
-        ),
-    }
+    forms: ClassVar[dict[str, type]] = {law.form: law for law in DAMPING_LAWS}
 
     def read(self, value: Any) -> Any:
         form = value.get("form", Rayleigh.form)
         if form not in self.forms:
-            raise ValueError(f"must be of a form that is one of {', '.join(self.forms)}")
-        build, parameters = self.forms[form]
-        if value.keys() - {"form"} != parameters.keys():
-            raise ValueError(f"must have, in the form {form}, {' and '.join(parameters)}")
+            raise _refused(f"be of a form that is one of {', '.join(self.forms)}")
+        parameters = declared(self.forms[form])
+        if value.keys() - {"form"} != {parameter.name for parameter in parameters}:
+            names = " and ".join(parameter.name for parameter in parameters)
+            raise _refused(f"have, in the form {form}, {names}")
         given = {}
-        for key, (kind, _) in parameters.items():
+        for parameter in parameters:
             try:
-                given[key] = kind.read(value[key])
-            except ValueError as error:
-                raise ValueError(f"must have a {key} that {error}") from None
+                given[parameter.name] = read_as(parameter.kind).read(value[parameter.name])
+            except ArgumentError as error:
+                raise _refused(f"have a {parameter.name} that must {error.allowed}") from None
         try:
-            build(**given)
-        except ValueError as error:
-            raise ValueError(f"must be in order: {error}") from None
+            self.forms[form](**given)
+        except ArgumentError as error:
+            raise _refused(f"be in order: {error}") from None
         return {"form": form, **given}
 
     def json_schema(self) -> dict[str, Any]:
         laws = []
-        for form, (_, parameters) in self.forms.items():
-            keys = {key: kind.json_schema() | {"description": words} for key, (kind, words) in parameters.items()}
+        for form, law in self.forms.items():
             name = {"const": form, "description": f"form of damping: {', '.join(self.forms)}"}
+            words = texts(law)
+            keys = {
+                parameter.name: read_as(parameter.kind).json_schema() | {"description": words[parameter.name]}
+                for parameter in declared(law)
+            }
             laws.append({"type": "object", "properties": {"form": name, **keys}, "additionalProperties": False})
         return {"anyOf": laws}
+
+
+def read_as(kind: Kind) -> _Kind:
+    """Return how a scenario gives what a field may be."""
+    match kind:
+        case declarations.Number():
+            return Quantity(**vars(kind))
+        case declarations.Choice(words):
+            return Words(words)
+        case declarations.NumberOrWord(words):
+            return NumberOrWord(Words(words))
+        case declarations.Whole(least):
+            return Whole(least)
+        case declarations.Own("damping"):
+            return RatioOrLaw(each=True)
+        case declarations.OneOrEach(declarations.Choice(words)):
+            return Words(words, each=True)
+        case declarations.OneOrEach(one) | declarations.Each(one):
+            return OneOrEach(Quantity(**vars(one)))
+    raise TypeError(f"no scenario can give {kind}")
 
 
 LAW_OF_DAMPING = DampingTable()
@@ -246,7 +240,7 @@ class Words(_Kind):
     def read(self, value: Any) -> Any:
         words = value if self.each and isinstance(value, list) else [value]
         if any(word not in self.allowed for word in words):
-            raise ValueError(f"must be one of {', '.join(self.allowed)}{' or a list of them' if self.each else ''}")
+            raise _refused(f"be one of {', '.join(self.allowed)}{' or a list of them' if self.each else ''}")
         return value
 
     def json_schema(self) -> dict[str, Any]:
@@ -268,9 +262,9 @@ class Whole(_Kind):
 
     def read(self, value: Any) -> int:
         if isinstance(value, bool) or not isinstance(value, Integral):
-            raise ValueError("must be a whole number")
+            raise _refused("be a whole number")
         if value < self.least:
-            raise ValueError(f"must be at least {self.least}")
+            raise _refused(f"be at least {self.least}")
         return int(value)
 
     def json_schema(self) -> dict[str, Any]:
@@ -292,8 +286,8 @@ class NumberOrWord(_Kind):
     def read(self, value: Any) -> int | str:
         try:
             return self.words.read(value) if isinstance(value, str) else Whole(0).read(value)
-        except ValueError:
-            raise ValueError(f"must be a whole number from 0 on or {' or '.join(self.words.allowed)}") from None
+        except ArgumentError:
+            raise _refused(f"be a whole number from 0 on or {' or '.join(self.words.allowed)}") from None
 
     def json_schema(self) -> dict[str, Any]:
         return {"anyOf": [Whole(0).json_schema(), self.words.json_schema()]}
@@ -316,11 +310,12 @@ class Pair(_Kind):
 
     def read(self, value: Any) -> tuple[Any, Any]:
         if not isinstance(value, (list, tuple)) or len(value) != 2:
-            raise ValueError(f"must be two {self.words}, along length and width")
+            raise _refused(f"be two {self.words}, along length and width")
         try:
             first, second = (self.each.read(one) for one in value)
-        except ValueError as error:
-            raise ValueError(f"must be two {self.words}, along length and width, each of which {error}") from None
+        except ArgumentError as error:
+            words = f"be two {self.words}, along length and width, each of which must {error.allowed}"
+            raise _refused(words) from None
         return first, second
 
     def json_schema(self) -> dict[str, Any]:
@@ -343,8 +338,8 @@ class Place(_Kind):
             return DISTANCES.read(value)
         try:
             return quantity(value, "m")
-        except ValueError as error:
-            raise ValueError(f"must be the name of a point or a position, which {error}") from None
+        except ArgumentError as error:
+            raise _refused(f"be the name of a point or a position, which must {error.allowed}") from None
 
     def json_schema(self) -> dict[str, Any]:
         return {"anyOf": [{"enum": list(self.names)}, {"type": "string"}, {"type": "number"}, DISTANCES.json_schema()]}
@@ -381,9 +376,9 @@ class Numbers(_Kind):
         else:
             array = _array(value)
         if array is None or array.ndim not in self.dimensions:
-            raise ValueError(self._words())
+            raise _refused(self._words())
         if not np.isfinite(array).all():
-            raise ValueError("must hold finite numbers only")
+            raise _refused("hold finite numbers only")
         return array
 
     def json_schema(self) -> dict[str, Any]:
@@ -397,7 +392,7 @@ class Numbers(_Kind):
         words = [kinds[dimension] for dimension in self.dimensions]
         words += ["a law of damping"] if self.damping else []
         words += ["a file"] if self.file else []
-        return f"must be {' or '.join(words)}"
+        return f"be {' or '.join(words)}"
 
 
 @dataclass(frozen=True)
@@ -406,7 +401,7 @@ class Points(_Kind):
 
     def read(self, value: Any) -> dict[str, Any]:
         if not isinstance(value, dict):
-            raise ValueError("must be a table of points by name")
+            raise _refused("be a table of points by name")
         return {name: self._point(name, point) for name, point in value.items()}
 
     def json_schema(self) -> dict[str, Any]:
@@ -423,9 +418,9 @@ class Points(_Kind):
             return tuple(tuple(label) if isinstance(label, list) else label for label in point)
         try:
             return Numbers((2,)).read(point)
-        except ValueError:
-            raise ValueError(
-                f"must give the point {name} as rows on the degrees of freedom, shape (2, n), or by the degrees of "
+        except ArgumentError:
+            raise _refused(
+                f"give the point {name} as rows on the degrees of freedom, shape (2, n), or by the degrees of "
                 "freedom that it moves with: {x = 0, y = 1}"
             ) from None
 
@@ -441,6 +436,10 @@ class Motion(_Kind):
 
     def json_schema(self) -> dict[str, Any]:
         return {"anyOf": [{"type": "array", "items": {"type": "integer"}}, *Numbers((2,)).json_schema()["anyOf"]]}
+
+
+def _refused(allowed: str) -> ArgumentError:
+    return ArgumentError("value", allowed)
 
 
 def _array(value: Any) -> Array | None:
@@ -469,41 +468,21 @@ def _is_label_or_none(value: Any) -> bool:
     return value is None or _is_whole(value) or is_label
 
 
-Ratio = Annotated[float, Quantity("1")]
-Poisson = Annotated[float, Quantity("1", above=-1.0, below=0.5)]
-Friction = Annotated[float, Quantity("1", least=0.0)]
 Damping = Annotated[Any, RatioOrLaw(each=False)]
 Length = Annotated[float, Quantity("m", above=0.0)]
 Distance = Annotated[float, Quantity("m", least=0.0)]
-Area = Annotated[float, Quantity("m2", above=0.0)]
-SecondMoment = Annotated[float, Quantity("m4", above=0.0)]
 Angle = Annotated[float, Quantity("rad")]
-Modulus = Annotated[float, Quantity("Pa", above=0.0)]
-Density = Annotated[float, Quantity("kg/m3", above=0.0)]
 Frequency = Annotated[float, Quantity("Hz", above=0.0)]
 Time = Annotated[float, Quantity("s", above=0.0)]
-Instant = Annotated[float, Quantity("s", least=0.0)]
-Newtons = Annotated[float, Quantity("N")]
 Velocity = Annotated[float, Quantity("m/s")]
-Velocities = Annotated[Any, OneOrEach(Quantity("m/s"))]
-Statuses = Annotated[Any, Words(STATUS_WORDS, each=True)]
-Mode = Annotated[int | str, NumberOrWord(Words((MOST_UNSTABLE,)))]
-Acceleration = Annotated[float, Quantity("m/s2", above=0.0)]
 AnyAcceleration = Annotated[float, Quantity("m/s2")]
 Count = Annotated[int, Whole(1)]
-CountOrNone = Annotated[int, Whole(0)]
 Counts = Annotated[tuple[int, int], Pair(Whole(1), "whole numbers")]
 CountsOrNone = Annotated[tuple[int, int], Pair(Whole(0), "whole numbers")]
 Point = Annotated[str | float | tuple[float, float], Place()]
 Spot = Annotated[tuple[float, float], DISTANCES]
 Position = Annotated[float, Quantity("m")]
-Mass = Annotated[float, Quantity("kg", above=0.0)]
-Stiffness = Annotated[float, Quantity("N/m", above=0.0)]
-Viscosity = Annotated[float, Quantity("N s/m", above=0.0)]
-Speed = Annotated[float, Quantity("m/s", above=0.0)]
 PositiveRatio = Annotated[float, Quantity("1", above=0.0)]
-Bristles = Annotated[float, Quantity("1/m", above=0.0)]
-Slope = Annotated[float, Quantity("s/m", least=0.0)]
 Matrix = Annotated[Any, Numbers((2,), file=True)]
 ModalDamping = Annotated[Any, RatioOrLaw(each=True)]
 ReducedDamping = Annotated[Any, Numbers((0, 1, 2), file=True, damping=True)]

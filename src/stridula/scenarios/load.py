@@ -11,12 +11,13 @@ from typing import Any
 import xarray as xr
 from pydantic import ValidationError
 
-from ..checks import by_key
+from ..bodies.ordinary import NotOrdinary
+from ..checks import ArgumentError, by_key
 from ..integration import SCHEMES, CentralDifference, ExactModal, GaussSeidel, simulate
 from ..records import Probe
 from ..records.provenance import body_table
 from ..system import System
-from .build import Builder, out_of_range, overflows
+from .build import Builder, out_of_range
 from .errors import MOST_PROBLEMS, ScenarioError, as_written, explain, wrong_form
 from .inheritance import shared_out
 from .keys import overridden
@@ -75,13 +76,12 @@ class Scenario:
         own = {name: getattr(self, name) for name in names}
         try:
             return simulate(self.system, **(own | kwargs))
-        except ValueError as error:
-            if overflows(error):
-                raise ScenarioError([out_of_range("")]) from error
-            word = str(error).partition(" ")[0]
-            if word not in own or word in kwargs:
+        except NotOrdinary as error:
+            raise ScenarioError([out_of_range("")]) from error
+        except ArgumentError as error:
+            if error.argument not in own or error.argument in kwargs:
                 raise
-            raise ScenarioError([f"simulation.{error}"]) from error
+            raise ScenarioError([str(error.renamed(f"simulation.{error.argument}"))]) from error
 
 
 def load_scenario(name_or_path: str | Path | xr.Dataset, overrides: Mapping[str, Any] | None = None) -> Scenario:

@@ -8,6 +8,8 @@ from decimal import Decimal
 from numbers import Real
 from typing import Any
 
+from ..checks import ArgumentError
+
 DEGREES = "degrees"
 # For each SI unit, the spellings that are read and their factors; decimal, so that "9.8 mm" is exactly 0.0098.
 UNITS: dict[str, dict[str, str]] = {
@@ -34,7 +36,7 @@ UNITS: dict[str, dict[str, str]] = {
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?|[+-]?inf|nan)\s*(.*?)\s*")
 
 
-def quantity(value: Any, unit: str) -> float:
+def quantity(value: Any, unit: str, name: str = "value") -> float:
     """Return a number in SI from a number or a text such as ``"20 mm"``.
 
     Parameters
@@ -43,24 +45,26 @@ def quantity(value: Any, unit: str) -> float:
         A number in `unit`, or a text with a number and a unit of the same dimension.
     unit : str
         SI unit, a key of `UNITS`; ``"1"`` for a ratio.
+    name : str, optional
+        What it is called in messages.
 
     Raises
     ------
-    ValueError
+    ArgumentError
         If it is not a finite number, or its unit is of another dimension.
     """
     if isinstance(value, bool) or not isinstance(value, (Real, str)):
-        raise ValueError(f"must be a number{_units(unit)}")
+        raise ArgumentError(name, f"be a number{_units(unit)}", value)
     if not isinstance(value, str):
-        return _finite(value)
+        return _finite(value, name, value)
     match = _NUMBER.fullmatch(value)
     if match is None:
-        raise ValueError(f"must be a number{_units(unit)}")
+        raise ArgumentError(name, f"be a number{_units(unit)}", value)
     number, spelling = match.groups()
-    _finite(float(number))
+    _finite(float(number), name, value)
     factor = UNITS[unit].get(spelling.replace("²", "2").replace("³", "3"), "1" if not spelling else None)
     if factor is None:
-        raise ValueError(f"must be a number{_units(unit)}")
+        raise ArgumentError(name, f"be a number{_units(unit)}", value)
     return math.radians(float(number)) if factor == DEGREES else float(Decimal(number) * Decimal(factor))
 
 
@@ -84,13 +88,13 @@ def is_quantity(value: Any, unit: str) -> bool:
     return True
 
 
-def _finite(number: Real | float) -> float:
+def _finite(number: Real | float, name: str, value: Any) -> float:
     try:
         if math.isfinite(number):
             return float(number)
     except OverflowError:
         pass
-    raise ValueError("must be finite")
+    raise ArgumentError(name, "be finite", value)
 
 
 def _units(unit: str) -> str:

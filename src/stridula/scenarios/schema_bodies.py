@@ -2,108 +2,38 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-from pydantic import Field
-
-from ..bodies import FiniteElementBeam, ModalBeam, ModalPlate
+from .. import bodies
 from ..bodies import Line as Straight
-from ..bodies import Material as Solid
+from ..bodies import ModalPlate
+from ..bodies.sections import SECTIONS
 from . import fields as is_
+from .derived import Keys, one_of, table_of
 from .fields import Table
 
-Support = Literal["free", "guided", "pinned", "clamped"]
+KINDS = "finite-element beam, modal beam, modal plate, point mass or reduced"
+OWN_NAME = "what it is called in records, the table's own name if left out"
 
+if TYPE_CHECKING:
+    Material = Any
+    Section = Any
+    Slider = Any
+    Track = Any
+else:
+    Material = table_of(bodies.Material)
+    Section = one_of(
+        "shape", [table_of(section, "shape", section.shape, "rectangle, circle or general") for section in SECTIONS]
+    )
 
-class Material(Table):
-    young: is_.Modulus
-    """Young's modulus [Pa]"""
-    density: is_.Density
-    """mass density [kg/m³]"""
-    poisson: is_.Poisson = Solid.poisson
-    """Poisson's ratio, of plates"""
+    def _made(what: str) -> Keys:
+        return {
+            "material": (Material, ..., f"what {what} is made of"),
+            "section": (Section, ..., f"cross-section of {what}"),
+        }
 
-
-class Rectangle(Table):
-    shape: Literal["rectangle"]
-    """rectangle, circle or general"""
-    width: is_.Length
-    """side normal to the plane of motion [m]"""
-    height: is_.Length
-    """side in the plane of motion, the one that bends [m]"""
-
-
-class Circle(Table):
-    shape: Literal["circle"]
-    """rectangle, circle or general"""
-    diameter: is_.Length
-    """diameter [m]"""
-
-
-class General(Table):
-    shape: Literal["general"]
-    """rectangle, circle or general"""
-    area: is_.Area
-    """area [m²]"""
-    second_moment: is_.SecondMoment
-    """second moment of area in the plane of motion [m⁴]"""
-
-
-Section = Annotated[Rectangle | Circle | General, Field(discriminator="shape")]
-
-
-class Slider(Table):
-    material: Material
-    """what the slider is made of"""
-    section: Section
-    """cross-section of the slider"""
-    length: is_.Length
-    """length, from tip to root [m]"""
-    angle: is_.Angle = FiniteElementBeam.angle
-    """angle from the track's normal; above zero the root is ahead of the tip in x [rad]"""
-    elements: is_.Count = FiniteElementBeam.elements
-    """number of finite elements"""
-    damping: is_.ModalDamping = FiniteElementBeam.damping
-    """damping ratio of every mode, one for each, or a law of frequency"""
-    root_support: Support = "guided"
-    """support of the root: free, guided (no rotation), pinned or clamped"""
-    tip_support: Support = "free"
-    """support of the tip: free, guided, pinned or clamped"""
-    mass: Literal["consistent", "lumped"] = "consistent"
-    """mass matrix of the elements: consistent or lumped"""
-    cutoff: is_.Frequency | None = None
-    """keep the modes up to this frequency, all if left out [Hz]"""
-    name: str = ""
-    """what it is called in records"""
-
-
-class Track(Table):
-    material: Material
-    """what the track is made of"""
-    section: Section
-    """cross-section of the track"""
-    length: is_.Length
-    """length [m]"""
-    bending_modes: is_.Count = ModalBeam.bending_modes
-    """number of bending modes, unless there is a cutoff"""
-    axial_modes: is_.CountOrNone = ModalBeam.axial_modes
-    """number of axial modes, unless there is a cutoff"""
-    damping: is_.ModalDamping = ModalBeam.damping
-    """damping ratio of every mode, one for each, or a law of frequency"""
-    cutoff: is_.Frequency | None = None
-    """keep the modes up to this frequency [Hz]"""
-    name: str = ""
-    """what it is called in records"""
-
-
-class FiniteElementBody(Slider):
-    kind: Literal["finite-element beam"]
-    """finite-element beam, modal beam, modal plate, point mass or reduced"""
-
-
-class ModalBody(Track):
-    kind: Literal["modal beam"]
-    """finite-element beam, modal beam, modal plate, point mass or reduced"""
+    Slider = table_of(bodies.FiniteElementBeam, title="Slider", before=_made("the slider"))
+    Track = table_of(bodies.ModalBeam, title="Track", before=_made("the track"))
 
 
 class Line(Table):
@@ -140,15 +70,6 @@ class Plate(Table):
     """what it is called in records, the table's own name if left out"""
 
 
-class PointMass(Table):
-    kind: Literal["point mass"]
-    """finite-element beam, modal beam, modal plate, point mass or reduced"""
-    mass: is_.Mass
-    """mass [kg]"""
-    name: str = ""
-    """what it is called in records, the table's own name if left out"""
-
-
 class Reduced(Table):
     kind: Literal["reduced"]
     """finite-element beam, modal beam, modal plate, point mass or reduced"""
@@ -170,4 +91,14 @@ class Reduced(Table):
     """what it is called in records, the table's own name if left out"""
 
 
-Body = Annotated[FiniteElementBody | ModalBody | Plate | PointMass | Reduced, Field(discriminator="kind")]
+if TYPE_CHECKING:
+    Body = Any
+else:
+    _named = {"name": (str, "", OWN_NAME)}
+    _words = {"before": _made("the beam"), "after": _named}
+    _beam = table_of(
+        bodies.FiniteElementBeam, "kind", "finite-element beam", KINDS, title="FiniteElementBody", **_words
+    )
+    _exact = table_of(bodies.ModalBeam, "kind", "modal beam", KINDS, title="ModalBody", **_words)
+    _mass = table_of(bodies.PointMass, "kind", "point mass", KINDS, after=_named)
+    Body = one_of("kind", [_beam, _exact, Plate, _mass, Reduced])

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import Any
 
-from ..checks import brief, suggestion
+from ..checks import ArgumentError, brief, suggestion
 from . import outline
 from .errors import ScenarioError, as_written, shown
 from .fields import UNIT_OF_PATTERN
@@ -72,9 +72,9 @@ class Varied:
             raise ScenarioError([f"{self.full} must be finite, got {shown(value)}"])
         if self.unit is not None:
             try:
-                quantity(value, self.unit)
-            except ValueError as error:
-                raise ScenarioError([f"{self.full} {error}, got {shown(value)}"]) from None
+                quantity(value, self.unit, self.full)
+            except ArgumentError as error:
+                raise ScenarioError([str(error)]) from None
         elif outline.is_whole(self.node):
             if not is_number or value != int(value):
                 raise ScenarioError([f"{self.full} must be a whole number, got {shown(value)}"])

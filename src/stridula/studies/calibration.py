@@ -15,8 +15,8 @@ import scipy.stats
 import xarray as xr
 
 from ..analysis.regimes import REGIMES
-from ..bodies.modes import Array
-from ..checks import brief, choice, count, finite, instance, listed, non_negative, positive, suggestion
+from ..arrays import Array
+from ..checks import ArgumentError, brief, choice, count, finite, instance, listed, non_negative, positive, suggestion
 from ..linear.equilibrium import HELD, JAMMED, LIFTED_OFF
 from ..linear.structure import SLIDING
 from .measures import MEASURES, Value, value_of
@@ -62,15 +62,19 @@ class Target:
         for name in ("low", "high"):
             value = getattr(self, name)
             if not isinstance(value, (int, float)) or isinstance(value, bool) or value != value:
-                raise ValueError(f"{name} must be a number, got {brief(value)}")
+                raise ArgumentError(name, "be a number", value)
             if isinstance(value, int):
                 finite(name, value)
         if self.low > self.high or (math.isinf(self.low) and math.isinf(self.high)):
-            raise ValueError(f"low and high must be a range with an end, got {brief(self.low)} and {brief(self.high)}")
+            raise ArgumentError(
+                "low and high", "be a range with an end", self.low, got=f"{brief(self.low)} and {brief(self.high)}"
+            )
         if self.scale is not None:
             positive("scale", self.scale)
         elif self._scale <= 0.0:
-            raise ValueError(f"scale must be given for a target at one value, got {self.low!r} to {self.high!r}")
+            raise ArgumentError(
+                "scale", "be given for a target at one value", self.low, got=f"{self.low!r} to {self.high!r}"
+            )
 
     @property
     def _scale(self) -> float:
@@ -175,7 +179,7 @@ def calibrate(
     searched = ranges_of("ranges", ranges)
     aimed = _targets(targets)
     if count("population", population, low=5) > LARGEST_POPULATION:
-        raise ValueError(f"population must be at most {LARGEST_POPULATION}, got {brief(population)}")
+        raise ArgumentError("population", f"be at most {LARGEST_POPULATION}", population)
     count("generations", generations, high=MOST_GENERATIONS)
     count("seed", seed, low=0)
     non_negative("spread", spread)
@@ -227,20 +231,20 @@ def _own_errors() -> Iterator[None]:
 
 def _targets(targets: Any) -> dict[str, Target | str]:
     if not isinstance(targets, Mapping) or not targets:
-        raise ValueError(f"targets must be targets by the names of measures, got {brief(targets)}")
+        raise ArgumentError("targets", "be targets by the names of measures", targets)
     found: dict[str, Target | str] = {}
     for name, given in targets.items():
         if name in OWN:
-            raise ValueError(f"targets must not be called as what a calibration says, got {brief(name)}")
+            raise ArgumentError("targets", "not be called as what a calibration says", name)
         if isinstance(given, (Target, str)):
             found[str(name)] = given
         elif isinstance(given, (tuple, list)) and len(given) == 2:
             try:
                 found[str(name)] = Target(*given)
-            except ValueError as error:
-                raise ValueError(f"targets[{name!r}]: {error}") from None
+            except ArgumentError as error:
+                raise error.inside(f"targets[{name!r}]") from None
         else:
-            raise ValueError(f"targets[{name!r}] must be a Target, its two bounds or a word, got {brief(given)}")
+            raise ArgumentError(f"targets[{name!r}]", "be a Target, its two bounds or a word", given)
     return found
 
 
@@ -259,7 +263,7 @@ def _sweeping(
     instance("measures", functions, Mapping)
     for option in ("out", "watchers"):
         if option in options:
-            raise ValueError(f"{option} must not be given: every generation is a sweep of its own")
+            raise ArgumentError(option, "not be given: every generation is a sweep of its own")
     for name, target in targets.items():
         if name not in functions:
             _check_target(name, target, list(functions))
@@ -272,7 +276,7 @@ def _sweeping(
         found = sweep(scenario, points, asked, **options)
         if (found["message"].values != "").all() and not evaluated:
             example = found["message"].values[0]
-            raise ValueError(f"ranges must hold sets that can be run, got {len(points)} that cannot: {example}")
+            raise ArgumentError("ranges", "hold sets that can be run", got=f"{len(points)} that cannot: {example}")
         evaluated.append(len(points))
         return [{name: found[name].values[k] for name in shown} for k in range(len(points))]
 
@@ -284,12 +288,12 @@ def _check_target(name: str, target: Target | str, functions: Sequence[str]) -> 
     """Raise ValueError if a target is of no measure, or a word where that is a number, or the other way round."""
     known = [*functions, *COLUMNS]
     if name not in COLUMNS:
-        raise ValueError(f"targets must be of {', '.join(known)}, got {brief(name)}{suggestion(name, known)}")
+        raise ArgumentError("targets", f"be of {', '.join(known)}", name, got=f"{brief(name)}{suggestion(name, known)}")
     if isinstance(target, str) and name in WORDS:
         choice(f"target of {name}", target, WORDS[name])
     elif COLUMNS[name].is_text != isinstance(target, str):
         kind = f"one of {', '.join(WORDS[name])}" if name in WORDS else "bounds"
-        raise ValueError(f"target of {name} must be {kind}, got {brief(target)}")
+        raise ArgumentError(f"target of {name}", f"be {kind}", target)
 
 
 def _first_population(
@@ -304,7 +308,7 @@ def _first_population(
         return np.asarray(scipy.stats.qmc.LatinHypercube(len(ranges), rng=random).random(population))
     given = [start] if isinstance(start, Mapping) else start
     if not isinstance(given, Sequence) or not 0 < len(given) <= population:
-        raise ValueError(f"start must be a set of parameters or a list of 1 to {population}, got {brief(start)}")
+        raise ArgumentError("start", f"be a set of parameters or a list of 1 to {population}", start)
     centres = np.array([_shares_of(one, ranges) for one in given])
     around = centres[np.arange(population) % len(centres)]
     around += random.normal(size=around.shape) * spread
@@ -316,11 +320,11 @@ def _shares_of(start: Any, ranges: Mapping[str, Range]) -> list[float]:
     """Return a set of parameters as shares of the ranges."""
     instance("start", start, Mapping)
     if set(start) != set(ranges):
-        raise ValueError(f"start must have the keys of ranges, {listed(ranges)}, got {listed(map(str, start))}")
+        raise ArgumentError("start", f"have the keys of ranges, {listed(ranges)}", start, got=listed(map(str, start)))
     shares = [one.share(start[key]) for key, one in ranges.items()]
     outside = [key for key, share in zip(ranges, shares, strict=True) if not -1e-9 <= share <= 1.0 + 1e-9]
     if outside:
-        raise ValueError(f"start must lie in the ranges, got {outside[0]} = {start[outside[0]]!r}")
+        raise ArgumentError("start", "lie in the ranges", start, got=f"{outside[0]} = {start[outside[0]]!r}")
     return shares
 
 
@@ -370,14 +374,14 @@ class _Search:
         """Return the measures of each set of parameters, checked."""
         found = self.evaluate(points)
         if not isinstance(found, Sequence) or len(found) != len(points):
-            raise ValueError(f"source must return the measures of each of {len(points)} points, got {brief(found)}")
+            raise ArgumentError("source", f"return the measures of each of {len(points)} points", found)
         for one in found:
             lacking = next((name for name in self.targets if not isinstance(one, Mapping) or name not in one), None)
             if lacking is not None:
-                raise ValueError(f"source must return {lacking!r} for each point, got {brief(one)}")
+                raise ArgumentError("source", f"return {lacking!r} for each point", one)
             clash = next((name for name in one if name in self.ranges or name in OWN), None)
             if clash is not None:
-                raise ValueError(f"measures must not be called as parameters or results, got {brief(clash)}")
+                raise ArgumentError("measures", "not be called as parameters or results", clash)
         return [{name: value_of(value) for name, value in one.items()} for one in found]
 
     def dataset(self) -> xr.Dataset:

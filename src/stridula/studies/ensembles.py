@@ -13,11 +13,9 @@ import scipy.special
 import xarray as xr
 
 from ..analysis import status_share
-from ..bodies import ReducedBody
-from ..bodies.modes import Array
-from ..checks import brief, count, instance, positive, within
-from ..contact import RigidTrack
-from ..drives import Drive, ImposedVelocity, InitialEquilibrium, InitialVelocity
+from ..arrays import Array
+from ..checks import ArgumentError, brief, count, instance, positive, within
+from ..drives import Drive, InitialVelocity
 from ..drives import InitialState as State
 from ..integration import simulate_many
 from ..system import System
@@ -91,7 +89,7 @@ def ensemble(
         count("workers", workers)
     for word in ("start", "watchers", "reduce"):
         if word in options:
-            raise ValueError(f"{word} must be left out of an ensemble, which sets its own, got {brief(options[word])}")
+            raise ArgumentError(word, "be left out of an ensemble, which sets its own", options[word])
     shares = _shares(runs, perturbation, seed)
     systems = [_perturbed(system, float(share)) for share in shares]
     results = _run_all(systems, duration, named, options, workers or os.cpu_count() or 1)
@@ -165,14 +163,16 @@ def median_and_interval(values: Sequence[float] | Array, confidence: float = 0.9
 def _checked(measures: Any) -> dict[str, Measure]:
     instance("measures", measures, Mapping)
     if not measures:
-        raise ValueError("measures must hold at least one function of a record, got none")
+        raise ArgumentError("measures", "hold at least one function of a record", measures, got="none")
     for name, measure in measures.items():
         if not isinstance(name, str) or not name or not callable(measure):
-            raise ValueError(f"measures must be functions of a record by name, got {brief(name)}: {brief(measure)}")
+            raise ArgumentError(
+                "measures", "be functions of a record by name", name, got=f"{brief(name)}: {brief(measure)}"
+            )
     taken = {*OWN, *(f"{name}{end}" for name in measures for end in ("_mean", "_interval"))}
     clash = next((name for name in measures if name in taken), None)
     if clash is not None:
-        raise ValueError(f"measures must have names other than {', '.join(OWN)} and results of others, got {clash!r}")
+        raise ArgumentError("measures", f"have names other than {', '.join(OWN)} and results of others", clash)
     return dict(measures)
 
 
@@ -195,24 +195,17 @@ def _perturbed(system: System, share: float) -> System:
 
 def _prescribed(system: System) -> float:
     """Return the largest velocity that is prescribed [m/s], 1 if there is none."""
-    found = [0.0]
-    for drive in system.drives:
-        if isinstance(drive, ImposedVelocity):
-            found.append(drive.velocity)
-        elif isinstance(drive, InitialVelocity):
-            found += [drive.x, drive.y]
-        elif isinstance(drive, InitialEquilibrium):
-            found += np.atleast_1d(drive.velocity or 0.0).tolist()
+    found = [velocity for drive in system.drives for velocity in drive.velocities] or [0.0]
     for contact in system.contacts:
-        if isinstance(contact.track, RigidTrack):
-            found += [contact.track.velocity, contact.track.normal_velocity]
+        if contact.rigid_track is not None:
+            found += [contact.rigid_track.velocity, contact.rigid_track.normal_velocity]
     return max(abs(velocity) for velocity in found) or 1.0
 
 
 def _push(system: System, velocity: float) -> Drive:
     """Return what gives the slider a small velocity."""
     slider = system.slider
-    if isinstance(slider, ReducedBody) and not slider.has_translation:
+    if not slider.has_translation:
         return State(slider, velocity=(velocity,) * slider.mass.shape[0])
     held = system.is_held(slider)
     normal, tangent = system.contacts[0].frame
@@ -241,7 +234,7 @@ def _run_all(
 def _number(name: str, value: Any) -> float:
     plain = value.item() if getattr(value, "size", 0) == 1 and hasattr(value, "item") else value
     if isinstance(plain, bool) or not isinstance(plain, Real):
-        raise ValueError(f"measures[{name!r}] must return a number, got a {type(value).__name__}")
+        raise ArgumentError(f"measures[{name!r}]", "return a number", got=f"a {type(value).__name__}")
     return float(plain)
 
 

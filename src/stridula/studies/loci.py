@@ -11,8 +11,8 @@ import xarray as xr
 from scipy.optimize import linear_sum_assignment
 
 from ..analysis.stability import sliding_stability
-from ..bodies.modes import Array
-from ..checks import brief, by_key, finite, instance, positive
+from ..arrays import Array
+from ..checks import ArgumentError, brief, by_key, finite, instance, positive
 from ..records.provenance import toml
 from ..records.variables import described
 from ..scenarios import load_scenario
@@ -75,7 +75,9 @@ def root_loci(
     """
     modes_of = _modes_of(source, key, units, overrides, options)
     if key in OWN:
-        raise ValueError(f"key must not be called as a result of the loci, got {brief(key)}: write its full key")
+        raise ArgumentError(
+            "key", "not be called as a result of the loci", key, got=f"{brief(key)}: write its full key"
+        )
     grid = _rising(values)
     if highest is not None:
         positive("highest", highest)
@@ -146,7 +148,7 @@ def critical_value(
     """
     modes_of = _modes_of(source, key, units, overrides, options)
     if finite("high", high) <= finite("low", low):
-        raise ValueError(f"high must be above low ({brief(low)}), got {brief(high)}")
+        raise ArgumentError("high", f"be above low ({brief(low)})", high)
     positive("tolerance", tolerance)
     low, high = float(low), float(high)
     with one_thread_each():
@@ -160,9 +162,10 @@ def _bisected(
     at = {value: modes_of(value) for value in (low, high)}
     grows = {value: bool(one.unstable.any()) for value, one in at.items()}
     if grows[low] == grows[high]:
-        raise ValueError(
-            f"low and high must be stable and unstable in {key}, got {_verdict(at[low])} at {low!r} and "
-            f"{_verdict(at[high])} at {high!r}"
+        raise ArgumentError(
+            "low and high",
+            f"be stable and unstable in {key}",
+            got=f"{_verdict(at[low])} at {low!r} and {_verdict(at[high])} at {high!r}",
         )
     width = tolerance * max(abs(low), abs(high))
     while high - low > width:
@@ -229,7 +232,7 @@ def _modes_of(
     instance("units", units, str)
     given = dict(by_key("overrides", overrides))
     if key in given:
-        raise ValueError(f"key must be set or varied, got both for {key!r}")
+        raise ArgumentError("key", "be set or varied", key, got=f"both for {key!r}")
 
     def system_of(value: float) -> System:
         if callable(source):
@@ -255,7 +258,7 @@ def _rising(values: Sequence[float] | Array) -> Array:
     except (TypeError, ValueError):
         grid = np.empty(0)
     if grid.ndim != 1 or grid.size < 2 or not np.isfinite(grid).all() or (np.diff(grid) <= 0.0).any():
-        raise ValueError(f"values must be at least 2 finite numbers that rise, got {brief(values)}")
+        raise ArgumentError("values", "be at least 2 finite numbers that rise", values)
     return grid
 
 

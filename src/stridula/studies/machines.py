@@ -6,6 +6,7 @@ from collections.abc import Generator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
+from ..checks import ArgumentError
 from ..version import __version__
 from .measures import message_of
 from .task import Outcome, Task, use_one_thread
@@ -34,7 +35,7 @@ def client_of(address: str) -> Any:
         # Not for all that dask does in this process: one that cannot connect would stay in the way.
         return Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
-        raise ValueError(f"scheduler must answer, got {address!r}: {message_of(error)}") from None
+        raise ArgumentError("scheduler", "answer", address, got=f"{address!r}: {message_of(error)}") from None
 
 
 def on_machines(client: Any, task: Task, parts: Mapping[int, Points]) -> Generator[tuple[int, list[Outcome]]]:

@@ -15,7 +15,7 @@ from ..analysis import advance, dominant_frequency, status_share
 from ..analysis.regimes import MEANINGS, regime_of
 from ..analysis.signals import samples
 from ..analysis.stability import stability_of
-from ..checks import brief, suggestion
+from ..checks import ArgumentError, brief, suggestion
 from ..records.variables import STATUS_WORDS
 from ..system import System
 
@@ -227,7 +227,7 @@ def asked_for(measures: Any) -> Asked:
     """
     entries = [measures] if isinstance(measures, (str, Mapping)) else measures
     if not isinstance(entries, Sequence) or not entries:
-        raise ValueError(f"measures must be names of measures or functions by name, got {brief(measures)}")
+        raise ArgumentError("measures", "be names of measures or functions by name", measures)
     names: list[str] = []
     functions: dict[str, Callable[[xr.Dataset], Value]] = {}
     for entry in entries:
@@ -235,20 +235,24 @@ def asked_for(measures: Any) -> Asked:
             functions |= {_own_name(name, function): function for name, function in entry.items()}
         elif not isinstance(entry, str) or entry not in MEASURES:
             known = ", ".join(MEASURES)
-            raise ValueError(f"measure must be one of {known}, got {brief(entry)}{suggestion(entry, list(MEASURES))}")
+            raise ArgumentError(
+                "measure", f"be one of {known}", entry, got=f"{brief(entry)}{suggestion(entry, list(MEASURES))}"
+            )
         elif entry not in names:
             names.append(entry)
     asked = Asked(tuple(names), functions)
     given = [column.name for column in asked.columns]
     clash = next((name for name in given if given.count(name) > 1 or name in OWN), None)
     if clash is not None:
-        raise ValueError(f"measures must have names other than {', '.join(OWN)} and those of others, got {clash!r}")
+        raise ArgumentError("measures", f"have names other than {', '.join(OWN)} and those of others", clash)
     return asked
 
 
 def _own_name(name: Any, function: Any) -> str:
     if not isinstance(name, str) or not name or "/" in name or not callable(function):
-        raise ValueError(f"measures must be functions of a record by name, got {brief(name)}: {brief(function)}")
+        raise ArgumentError(
+            "measures", "be functions of a record by name", name, got=f"{brief(name)}: {brief(function)}"
+        )
     return name
 
 

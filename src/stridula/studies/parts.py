@@ -9,6 +9,7 @@ from typing import Any
 
 import xarray as xr
 
+from ..checks import ArgumentError
 from ..disk import check_writable, one_line, write
 from ..records.files import is_record, load, save
 from .task import Outcome
@@ -48,11 +49,16 @@ class Parts:
         if not self.out.exists():
             return None
         if not self.out.is_file() or not is_record(self.out):
-            raise ValueError(f"out must be a new file or that of this sweep, got {str(self.out)!r}, another file")
+            raise ArgumentError(
+                "out", "be a new file or that of this sweep", str(self.out), got=f"{str(self.out)!r}, another file"
+            )
         found = load(self.out)
         if {name: found.attrs.get(name) for name in self.identity} != self.identity:
-            raise ValueError(
-                f"out must be a new file or that of this sweep, got {str(self.out)!r}{self._why(found.attrs)}"
+            raise ArgumentError(
+                "out",
+                "be a new file or that of this sweep",
+                str(self.out),
+                got=f"{str(self.out)!r}{self._why(found.attrs)}",
             )
         return found
 
@@ -61,13 +67,15 @@ class Parts:
         if not self.folder.exists():
             return
         if not self.folder.is_dir():
-            raise ValueError(f"{str(self.folder)!r} must be left for the parts of the sweep, got a file")
+            raise ArgumentError(f"{str(self.folder)!r}", "be left for the parts of the sweep", got="a file")
         known = self._identity_on_disk()
         if known is None and all(path.name.startswith(".stridula-") for path in self.folder.iterdir()):
             # Stopped before it knew of which sweep.
             return
         if known != self.identity:
-            raise ValueError(f"{str(self.folder)!r} must hold parts of this sweep, got others{self._why(known or {})}")
+            raise ArgumentError(
+                f"{str(self.folder)!r}", "hold parts of this sweep", got=f"others{self._why(known or {})}"
+            )
 
     def _identity_on_disk(self) -> dict[str, str] | None:
         try:

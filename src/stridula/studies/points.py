@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import brief, count, finite, listed
+from ..checks import ArgumentError, brief, count, finite, listed
 from ..scenarios.quantities import parts
 
 POINT = "point"
@@ -42,11 +42,13 @@ class Range:
     def __post_init__(self) -> None:
         (low, unit), (high, other) = self._end("low"), self._end("high")
         if unit != other:
-            raise ValueError(f"high must be in the unit of low, got {brief(self.low)} and {brief(self.high)}")
+            raise ArgumentError(
+                "high", "be in the unit of low", self.low, got=f"{brief(self.low)} and {brief(self.high)}"
+            )
         if low >= high:
-            raise ValueError(f"high must be above low ({brief(self.low)}), got {brief(self.high)}")
+            raise ArgumentError("high", f"be above low ({brief(self.low)})", self.high)
         if self.logarithmic and low <= 0.0:
-            raise ValueError(f"low must be above 0 on a logarithmic range, got {brief(self.low)}")
+            raise ArgumentError("low", "be above 0 on a logarithmic range", self.low)
 
     @property
     def unit(self) -> str:
@@ -67,7 +69,7 @@ class Range:
         """Return where a value lies in the range, 0 at its low end and 1 at its high one."""
         known = parts(value)
         if known is None or known[1] != self.unit:
-            raise ValueError(f"start must be in the unit of its range ({self.unit or 'SI'}), got {brief(value)}")
+            raise ArgumentError("start", f"be in the unit of its range ({self.unit or 'SI'})", value)
         low, high = self._end("low")[0], self._end("high")[0]
         if self.logarithmic:
             return math.log(known[0] / low) / math.log(high / low) if known[0] > 0.0 else -math.inf
@@ -77,7 +79,7 @@ class Range:
         given = getattr(self, name)
         known = parts(given)
         if known is None:
-            raise ValueError(f"{name} must be a number, with a unit or in SI, got {brief(given)}")
+            raise ArgumentError(name, "be a number, with a unit or in SI", given)
         finite(name, known[0])
         return known
 
@@ -102,15 +104,15 @@ class Grid:
 
     def __post_init__(self) -> None:
         if not isinstance(self.values, Mapping) or not self.values:
-            raise ValueError(f"values must be lists of values by key, got {brief(self.values)}")
+            raise ArgumentError("values", "be lists of values by key", self.values)
         for key, given in self.values.items():
             if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)):
-                raise ValueError(f"values[{key!r}] must be a list of values, got {brief(given)}")
+                raise ArgumentError(f"values[{key!r}]", "be a list of values", given)
             if not len(given):
-                raise ValueError(f"values[{key!r}] must hold at least one value, got none")
+                raise ArgumentError(f"values[{key!r}]", "hold at least one value", got="none")
         object.__setattr__(self, "values", {key: _plain(key, given) for key, given in self.values.items()})
         if self.count > MOST_POINTS:
-            raise ValueError(f"values must make at most {MOST_POINTS} points, got {self.count}")
+            raise ArgumentError("values", f"make at most {MOST_POINTS} points", self.values, got=self.count)
 
     @property
     def count(self) -> int:
@@ -172,7 +174,7 @@ def ranges_of(name: str, given: Any) -> dict[str, Range]:
         If it is anything else, or a range does not rise.
     """
     if not isinstance(given, Mapping) or not given:
-        raise ValueError(f"{name} must be ranges by key, got {brief(given)}")
+        raise ArgumentError(name, "be ranges by key", given)
     return {str(key): range_of(f"{name}[{key!r}]", one) for key, one in given.items()}
 
 
@@ -194,11 +196,11 @@ def range_of(name: str, given: Any) -> Range:
     if isinstance(given, Range):
         return given
     if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)) or len(given) != 2:
-        raise ValueError(f"{name} must be a Range or its two ends, got {brief(given)}")
+        raise ArgumentError(name, "be a Range or its two ends", given)
     try:
         return Range(*(plain_python(end) for end in given))
-    except ValueError as error:
-        raise ValueError(f"{name}: {error}") from None
+    except ArgumentError as error:
+        raise error.inside(name) from None
 
 
 @dataclass(frozen=True)
@@ -248,20 +250,18 @@ def laid_out(points: Grid | LatinHypercube | Sequence[Mapping[str, Any]]) -> Lay
         asked = {"latin hypercube": {"ranges": ranges, "count": points.count, "seed": points.seed}}
         return Layout(tuple(columns), tuple(zip(*columns.values(), strict=True)), {POINT: points.count}, False, asked)
     if isinstance(points, (str, Mapping)) or not isinstance(points, Sequence):
-        raise ValueError(f"points must be a Grid, a LatinHypercube or a list of values by key, got {brief(points)}")
+        raise ArgumentError("points", "be a Grid, a LatinHypercube or a list of values by key", points)
     return _listed(points)
 
 
 def _listed(points: Sequence[Mapping[str, Any]]) -> Layout:
     if not points:
-        raise ValueError("points must hold at least one point, got none")
+        raise ArgumentError("points", "hold at least one point", points, got="none")
     for number, point in enumerate(points):
         if not isinstance(point, Mapping) or not point:
-            raise ValueError(f"points[{number}] must be values by key, got {brief(point)}")
+            raise ArgumentError(f"points[{number}]", "be values by key", point)
         if set(point) != set(points[0]):
-            raise ValueError(
-                f"points[{number}] must have the keys of points[0], {listed(points[0])}, got {brief(point)}"
-            )
+            raise ArgumentError(f"points[{number}]", f"have the keys of points[0], {listed(points[0])}", point)
     keys = tuple(points[0])
     columns = [_plain(key, [point[key] for point in points]) for key in keys]
     values = tuple(zip(*columns, strict=True))
@@ -272,11 +272,11 @@ def _listed(points: Sequence[Mapping[str, Any]]) -> Layout:
 def _plain(key: str, given: Sequence[Any]) -> list[Any]:
     """Return values as Python's own, finite where they are numbers."""
     if not isinstance(key, str) or not key.strip():
-        raise ValueError(f"key must be a text, got {brief(key)}")
+        raise ArgumentError("key", "be a text", key)
     plain = [plain_python(value) for value in given]
     for value in plain:
         if isinstance(value, Real) and not math.isfinite(value):
-            raise ValueError(f"{key} must be finite, got {brief(value)}")
+            raise ArgumentError(key, "be finite", value)
     return plain
 
 

@@ -12,8 +12,8 @@ import scipy.stats
 import xarray as xr
 
 from ..analysis.regimes import REGIMES
-from ..bodies.modes import Array
-from ..checks import brief, count, within
+from ..arrays import Array
+from ..checks import ArgumentError, count, within
 from ..records.variables import described
 from .points import Range, range_of
 from .sweeps import sweep
@@ -78,7 +78,7 @@ def sensitivity(
     """
     named = _distributions(uncertain)
     if count("samples", samples, high=MOST_SAMPLES) & (samples - 1):
-        raise ValueError(f"samples must be a power of 2, got {brief(samples)}")
+        raise ArgumentError("samples", "be a power of 2", samples)
     count("seed", seed, low=0)
     count("resamples", resamples, high=MOST_RESAMPLES)
     within("confidence", confidence, 0.0, 1.0, ends=False)
@@ -105,12 +105,12 @@ def sensitivity(
 
 def _distributions(uncertain: Any) -> dict[str, Any]:
     if not isinstance(uncertain, Mapping) or not uncertain:
-        raise ValueError(f"uncertain must be distributions by key, got {brief(uncertain)}")
+        raise ArgumentError("uncertain", "be distributions by key", uncertain)
     found: dict[str, Any] = {}
     for key, given in uncertain.items():
         is_distribution = callable(getattr(given, "ppf", None))
         if is_distribution and not _is_one_number(given):
-            raise ValueError(f"uncertain[{key!r}] must be a frozen distribution of one number, got {brief(given)}")
+            raise ArgumentError(f"uncertain[{key!r}]", "be a frozen distribution of one number", given)
         found[str(key)] = given if is_distribution else range_of(f"uncertain[{key!r}]", given)
     return found
 

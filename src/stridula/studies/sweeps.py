@@ -16,7 +16,7 @@ from typing import Any
 
 import xarray as xr
 
-from ..checks import brief, by_key, count
+from ..checks import ArgumentError, by_key, count
 from ..records.provenance import toml
 from ..scenarios.errors import ScenarioError
 from ..scenarios.keys import located, with_values
@@ -132,9 +132,9 @@ def sweep(
     if workers is not None:
         count("workers", workers)
     if not isinstance(watchers, Sequence):
-        raise ValueError(f"watchers must be a list of callables, got {brief(watchers)}")
+        raise ArgumentError("watchers", "be a list of callables", watchers)
     if client is not None and not callable(getattr(client, "submit", None)):
-        raise ValueError(f"client must be a client of dask.distributed, got {brief(client)}")
+        raise ArgumentError("client", "be a client of dask.distributed", client)
     plan = _planned(scenario, points, measures, by_key("overrides", overrides), duration, sample_rate, probes)
     store = None if out is None else Parts(out, plan.identity)
     if store is not None and store.finished is not None:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..checks import ArgumentError
 from ..scenarios.varied import Varied
 from .measures import OWN, Column
 from .points import POINT, Layout
@@ -31,7 +32,9 @@ def check_names(layout: Layout, columns: Sequence[Column]) -> None:
     taken = {*OWN, *(column.name for column in columns)} - ({POINT} if layout.is_grid else set())
     clash = next((key for key in layout.keys if key in taken), None)
     if clash is not None:
-        raise ValueError(f"key must not be called as a result of the sweep, got {clash!r}: write its full key")
+        raise ArgumentError(
+            "key", "not be called as a result of the sweep", clash, got=f"{clash!r}: write its full key"
+        )
 
 
 def swept(

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..analysis.regimes import REGIMES
-from ..checks import instance, listed
+from ..checks import ArgumentError, instance, listed
 
 UNSTABLE = "unstable"
 VERDICTS = (UNSTABLE, "sliding", "held", "lifted off", "jammed")
@@ -44,8 +44,8 @@ def agreement(found: xr.Dataset) -> xr.Dataset:
     instance("found", found, xr.Dataset)
     for name in ("regime", "unstable_modes", "equilibrium"):
         if name not in found:
-            raise ValueError(
-                f"found must have {name}, which the measure regime gives, got {listed(map(str, found.data_vars))}"
+            raise ArgumentError(
+                "found", f"have {name}, which the measure regime gives", found, got=listed(map(str, found.data_vars))
             )
     regime = found["regime"].values.ravel()
     grows = np.nan_to_num(found["unstable_modes"].values.ravel()) > 0

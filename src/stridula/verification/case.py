@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..bodies.modes import Array
+from ..arrays import Array
 from ..integration import SCHEMES
 from ..integration.schemes import Scheme
 

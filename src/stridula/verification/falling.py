@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from math import exp, sqrt
 
-from ..contact import ExponentialWeakening, LinearWeakening, Stribeck
-from ..contact.point_contact import FrictionLaw
+from ..contact import ExponentialWeakening, FrictionLaw, LinearWeakening, Stribeck
 from ..integration.schemes import Scheme
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
 from .instabilities import exponents, only_sliding

@@ -9,8 +9,8 @@ from math import pi, sqrt
 import numpy as np
 from scipy.optimize import brentq
 
+from ..arrays import Array
 from ..bodies import FiniteElementBeam, Material, ModalBeam, Rectangle
-from ..bodies.modes import Array
 from .case import Case, Curve, Outcome, Row, Sketch
 
 STEEL = Material(2.1e11, 7800.0)

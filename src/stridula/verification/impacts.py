@@ -8,8 +8,8 @@ from math import floor, pi, sqrt
 import numpy as np
 import xarray as xr
 
+from ..arrays import Array
 from ..bodies import FiniteElementBeam, Material, Section
-from ..bodies.modes import Array
 from ..contact import PointContact, RigidTrack
 from ..drives import Gravity, InitialVelocity
 from ..integration import simulate

@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 from scipy.optimize import brentq
 
+from ..arrays import Array
 from ..bodies import ReducedBody
-from ..bodies.modes import Array
 from ..contact import Coulomb, PointContact, RigidTrack
 from ..drives import Force, InitialState
 from ..integration import simulate
@@ -92,7 +92,7 @@ class Coupled:
     def run(self, friction: float, scheme: Scheme, step: float, duration: float) -> xr.Dataset:
         """March and record every step."""
         system = self.system(friction)
-        point = system.drives[0].point  # type: ignore[union-attr]
+        point = system.drives[0].point  # type: ignore[attr-defined]
         probes = [Displacement(point, "x"), Displacement(point, "y")]
         return simulate(system, duration, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes)
 

@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 from scipy.integrate import solve_ivp
 
+from ..arrays import Array
 from ..bodies import PointMass
-from ..bodies.modes import Array
 from ..connections import Spring
 from ..contact import LuGre, PointContact, RateAndState, RigidTrack
 from ..drives import Force, InitialState

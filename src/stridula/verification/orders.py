@@ -8,8 +8,8 @@ from math import pi, radians
 import numpy as np
 from scipy.linalg import expm
 
+from ..arrays import Array
 from ..bodies import BodyPoint, FiniteElementBeam, Material, ModalBeam, Rectangle
-from ..bodies.modes import Array
 from ..contact import PointContact
 from ..drives import Drive, Force, InitialVelocity
 from ..histories import Harmonic

@@ -7,8 +7,8 @@ from math import pi, sqrt
 import numpy as np
 from scipy.special import j1
 
+from ..arrays import Array
 from ..bodies import Material, ModalBeam, ModalPlate, Rectangle
-from ..bodies.modes import Array
 from .case import Case, Curve, Outcome, Row, Sketch
 
 STEEL = Material(2.1e11, 7800.0, 0.3)

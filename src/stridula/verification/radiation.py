@@ -18,8 +18,8 @@ from ..acoustics.panels import Panel, panel_of
 from ..acoustics.rayleigh import baffled_pressure, baffled_response
 from ..acoustics.resistance import mean_square, radiation_damping, radiation_efficiency
 from ..acoustics.surfaces import Surface, surface_of
+from ..arrays import Array
 from ..bodies import Material, ModalPlate
-from ..bodies.modes import Array
 from .case import Case, Curve, Outcome, Row, Sketch
 
 AIR = Air()

@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..checks import ArgumentError
 from ..disk import write
 from ..plot import save as save_figure
 from ..version import __version__
@@ -49,7 +50,7 @@ def verify(
     """
     chosen = [case for case in cases if only is None or only.lower() in f"{case.name} {case.title}".lower()]
     if not chosen:
-        raise ValueError(f"only must be a word of one of {', '.join(case.name for case in cases)}, got {only!r}")
+        raise ArgumentError("only", f"be a word of one of {', '.join(case.name for case in cases)}", only)
     target = Path(folder)
     try:
         target.mkdir(parents=True, exist_ok=True)

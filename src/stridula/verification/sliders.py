@@ -8,11 +8,10 @@ from math import atan, cos, hypot, pi, sin, sqrt
 import numpy as np
 import xarray as xr
 
+from ..arrays import Array
 from ..bodies import PointMass
-from ..bodies.modes import Array
 from ..connections import Spring
-from ..contact import Coulomb, PointContact, RigidTrack, StaticKinetic
-from ..contact.point_contact import FrictionLaw
+from ..contact import Coulomb, FrictionLaw, PointContact, RigidTrack, StaticKinetic
 from ..drives import Force, InitialState
 from ..histories import Harmonic
 from ..integration import simulate
@@ -109,7 +108,7 @@ def stuck_from(run: xr.Dataset) -> float:
 
 def _settles(slider: Slider, step: float, units: str = "m") -> Outcome:
     angular = sqrt(slider.stiffness / slider.mass)
-    offset = slider.friction.coefficient * slider.normal / slider.stiffness  # type: ignore[union-attr]
+    offset = slider.friction.coefficient * slider.normal / slider.stiffness  # type: ignore[attr-defined]
     points, time = turning_points(slider.position, slider.velocity, angular, offset)
     curves = [Curve(_turning_times(points, time, angular), np.array(points), "expected turning points", marks=True)]
     # Friction turns over at a step instead of inside it.

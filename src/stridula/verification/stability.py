@@ -10,8 +10,8 @@ import scipy.linalg
 import xarray as xr
 
 from ..analysis.stability import sliding_stability
+from ..arrays import Array
 from ..bodies import FiniteElementBeam, ModalBeam, ReducedBody
-from ..bodies.modes import Array
 from ..contact import Coulomb, PointContact
 from ..drives import Force, InitialState
 from ..integration import simulate

@@ -1,0 +1,101 @@
+"""What a law of friction says of itself."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import ClassVar
+
+import numpy as np
+
+from ..arrays import Array
+from ..checks import ArgumentError
+from ..declared import check_declared
+from .linearised import Linearised
+
+
+class FrictionLaw(ABC):
+    """A law of friction: a frozen dataclass with its range beside each field, and what the march has to know.
+
+    Attributes
+    ----------
+    law : str
+        Its name in scenarios.
+    set_valued : bool
+        Whether a contact sticks exactly, under any force up to a limit.
+    depends_on_speed : bool
+        Whether friction in sliding depends on its speed.
+    over_decades : bool
+        Whether it changes over decades of the slip speed.
+    state_units : str
+        SI unit of its internal state, empty without one.
+    state_is_positive : bool
+        Whether the internal state stays above zero.
+    """
+
+    law: ClassVar[str]
+    set_valued: ClassVar[bool] = True
+    depends_on_speed: ClassVar[bool] = True
+    over_decades: ClassVar[bool] = False
+    state_units: ClassVar[str] = ""
+    state_is_positive: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        check_declared(self)
+
+    @property
+    def has_state(self) -> bool:
+        """Whether it has an internal state."""
+        return bool(self.state_units)
+
+    @property
+    def state_at_start(self) -> float:
+        """Internal state at the start, in its unit."""
+        return 0.0
+
+    @property
+    def state_at_landing(self) -> float:
+        """Internal state of a contact that closes later."""
+        return 0.0
+
+    def state_in_sliding(self, velocity: float, change: float = 0.0) -> float:
+        """Return the internal state in steady sliding at `velocity` [m/s], not 0, moved in the sense of sliding."""
+        return 0.0
+
+    @property
+    def kernel_code(self) -> str:
+        """Name of its code in the layout of the march."""
+        return self.law.upper().replace("-", "_").replace(" ", "_")
+
+    @abstractmethod
+    def parameters(self) -> dict[str, float]:
+        """Return the numbers that the march gets, by name and in its order."""
+
+    @abstractmethod
+    def coefficient_at(self, velocity: Array | float) -> Array:
+        """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]."""
+
+    def linearised_at(self, velocity: float) -> Linearised:
+        """Return small changes about steady sliding at `velocity` [m/s], not 0; none by default."""
+        return Linearised()
+
+    @property
+    def holding(self) -> float:
+        """Ratio up to which a contact is held at rest [1]."""
+        return float(self.coefficient_at(np.zeros(1))[0])
+
+    @property
+    def reach(self) -> float:
+        """Slip speed [m/s] up to which it shows all that it does."""
+        return 1.0
+
+
+class StaticAndKinetic(FrictionLaw):
+    """A law with a static coefficient that is not below the kinetic one."""
+
+    static: float
+    kinetic: float
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.static < self.kinetic:
+            raise ArgumentError("static", f"be at least kinetic ({self.kinetic!r})", self.static)

@@ -1,0 +1,268 @@
+"""What the fields of a description may be: declared in `Annotated` beside each, checked here, read elsewhere."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from .checks import ArgumentError, at_least, at_most, choice, count, finite, instance, one_or_each
+
+_UNIT = re.compile(r"\s*\[([^\]]*)\]")
+_NAMED_AFTER = re.compile(r"[A-Z]\w*'s\b")
+
+
+@dataclass(frozen=True)
+class Number:
+    """A finite number in a range.
+
+    Attributes
+    ----------
+    unit : str
+        SI unit, "1" for a ratio.
+    above, least, below : float or None
+        Strictly above, from here on, strictly below; no bound where None.
+    meaning : str
+        What `below` is, for messages.
+    """
+
+    unit: str = "1"
+    above: float | None = None
+    least: float | None = None
+    below: float | None = None
+    meaning: str = ""
+
+    def check(self, name: str, value: Any) -> float:
+        """Return a value as a float if it is in the range."""
+        number = finite(name, value)
+        if self.above is not None and number <= self.above:
+            raise ArgumentError(name, f"be above {at_least(self.above)}", value)
+        if self.least is not None and number < self.least:
+            raise ArgumentError(name, f"be {at_least(self.least)} or above", value)
+        if self.below is not None and number >= self.below:
+            meaning = f" ({self.meaning})" if self.meaning else ""
+            raise ArgumentError(name, f"be below {at_most(self.below)}{meaning}", value)
+        return number
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A word of a choice.
+
+    Attributes
+    ----------
+    words : tuple of str
+        The words.
+    """
+
+    words: tuple[str, ...]
+
+    def check(self, name: str, value: Any) -> str:
+        """Return a value if it is one of the words."""
+        return choice(name, value, self.words)
+
+
+@dataclass(frozen=True)
+class Each:
+    """A sequence of numbers.
+
+    Attributes
+    ----------
+    one : Number
+        What each is.
+    """
+
+    one: Number
+
+    def check(self, name: str, value: Any) -> tuple[float, ...]:
+        """Return a sequence as a tuple if each number is in the range."""
+        if isinstance(value, str) or not isinstance(value, (Sequence, np.ndarray)):
+            raise ArgumentError(name, "be a list of numbers", value)
+        return tuple(self.one.check(f"{name}[{k}]", one) for k, one in enumerate(np.asarray(value).tolist()))
+
+
+@dataclass(frozen=True)
+class OneOrEach:
+    """One number or word, or a sequence of them.
+
+    Attributes
+    ----------
+    one : Number or Choice
+        What each is.
+    """
+
+    one: Number | Choice
+
+    def check(self, name: str, value: Any) -> Any:
+        """Return one, or a sequence as a tuple, if each is what it may be."""
+        return one_or_each(name, value, self.one.check)
+
+
+@dataclass(frozen=True)
+class NumberOrWord:
+    """A whole number from 0 on, or a word of a choice.
+
+    Attributes
+    ----------
+    words : tuple of str
+        The words.
+    """
+
+    words: tuple[str, ...]
+
+    def check(self, name: str, value: Any) -> int | str:
+        """Return a value if it is such a number or one of the words."""
+        return choice(name, value, self.words) if isinstance(value, str) else count(name, value, low=0)
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A whole number.
+
+    Attributes
+    ----------
+    least : int
+        Smallest one allowed.
+    """
+
+    least: int = 1
+
+    def check(self, name: str, value: Any) -> int:
+        """Return a value as an int if it is such a number."""
+        return count(name, value, low=self.least)
+
+
+@dataclass(frozen=True)
+class Text:
+    """A text."""
+
+    def check(self, name: str, value: Any) -> str:
+        """Return a value if it is a text."""
+        instance(name, value, str)
+        return str(value)
+
+
+@dataclass(frozen=True)
+class Own:
+    """What a description checks itself.
+
+    Attributes
+    ----------
+    what : str
+        What it is, for those who read it.
+    """
+
+    what: str
+
+    def check(self, name: str, value: Any) -> Any:
+        """Return a value as it is."""
+        return value
+
+
+Kind = Number | Choice | Each | OneOrEach | NumberOrWord | Whole | Text | Own
+# What is kept as it was checked: sequences as tuples, numbers of NumPy as Python's.
+_KEPT = (Each, OneOrEach, NumberOrWord)
+
+
+@dataclass(frozen=True)
+class Declared:
+    """A field of a description, as it is declared.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    kind : Number, Choice, Each, OneOrEach, NumberOrWord, Whole, Text or Own
+        What it may be.
+    is_optional : bool
+        Whether it may be None, too.
+    default : object
+        Its default, `dataclasses.MISSING` if it must be given.
+    """
+
+    name: str
+    kind: Kind
+    is_optional: bool
+    default: Any
+
+
+@cache
+def declared(description: type) -> tuple[Declared, ...]:
+    """Return the fields of a dataclass that are declared, in order."""
+    hints = get_type_hints(description, include_extras=True)
+    found = []
+    for field in dataclasses.fields(description):
+        options = [hints[field.name], *get_args(hints[field.name])]
+        kinds = [one for hint in options if get_origin(hint) is Annotated for one in hint.__metadata__]
+        if kinds:
+            found.append(Declared(field.name, kinds[0], type(None) in options, field.default))
+    return tuple(found)
+
+
+def check_declared(record: object) -> None:
+    """Raise ArgumentError at the first declared field of a record that is not what it may be; make lists tuples."""
+    description: Any = type(record)
+    for field in declared(description):
+        value = getattr(record, field.name)
+        if value is not None or not field.is_optional:
+            checked = field.kind.check(field.name, value)
+            if isinstance(field.kind, _KEPT):
+                object.__setattr__(record, field.name, checked)
+
+
+def texts(description: type) -> dict[str, str]:
+    """Return what each parameter of a class is, in a few words: the beginning of its entry in the docstring.
+
+    Up to a semicolon or the end of the first sentence, the unit last.
+    """
+    found: dict[str, str] = {}
+    names: list[str] = []
+    _, _, parameters = (inspect.getdoc(description) or "").partition("Parameters\n----------\n")
+    for line in parameters.splitlines():
+        if line.startswith("---"):
+            # What was taken for text was the title of the next section.
+            break
+        if not line.startswith(" ") and " : " in line:
+            names = line.partition(" : ")[0].split(", ")
+            found |= dict.fromkeys(names, "")
+        elif line.startswith(" "):
+            found |= {name: f"{found[name]} {line.strip()}".strip() for name in names}
+    return {name: _in_a_few_words(text) for name, text in found.items()}
+
+
+def _in_a_few_words(text: str) -> str:
+    words = re.split(r"; |\. |\.$", text, maxsplit=1)[0].replace("`", "")
+    unit = _UNIT.search(words)
+    if unit:
+        words = _UNIT.sub("", words, count=1) + ("" if unit[1] == "1" else f" [{unit[1]}]")
+    return words if _NAMED_AFTER.match(words) else words[:1].lower() + words[1:]
+
+
+# Numbers that several descriptions have.
+Ratio = Annotated[float, Number()]
+PositiveRatio = Annotated[float, Number(above=0.0)]
+DAMPING_RATIO = Number(least=0.0, below=1.0, meaning="critical")
+DampingRatio = Annotated[float, DAMPING_RATIO]
+Coefficient = Annotated[float, Number(least=0.0)]
+Length = Annotated[float, Number("m", above=0.0)]
+Distance = Annotated[float, Number("m", least=0.0)]
+Position = Annotated[float, Number("m")]
+Angle = Annotated[float, Number("rad")]
+Area = Annotated[float, Number("m2", above=0.0)]
+Frequency = Annotated[float, Number("Hz", above=0.0)]
+Newtons = Annotated[float, Number("N")]
+Velocity = Annotated[float, Number("m/s")]
+Acceleration = Annotated[float, Number("m/s2")]
+Axis = Annotated[str, Choice(("x", "y"))]
+Count = Annotated[int, Whole(1)]
+CountFrom0 = Annotated[int, Whole(0)]
+Name = Annotated[str, Text()]
+Time = Annotated[float, Number("s", above=0.0)]
+Speed = Annotated[float, Number("m/s", above=0.0)]
+Slope = Annotated[float, Number("s/m", least=0.0)]

@@ -1,0 +1,91 @@
+"""Tables of a scenario file that follow from the dataclasses they make."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+from functools import reduce
+from operator import or_
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, create_model
+
+from ..declared import Choice, Declared, Each, Text, declared, texts
+from .fields import Table, read_as
+
+# Type, default (... if it must be given) and text by key.
+Keys = Mapping[str, tuple[Any, Any, str]]
+
+
+class Derived(Table):
+    """A table whose keys are the declared fields of a dataclass, beside one that says which dataclass it is."""
+
+    made: ClassVar[type]
+    own_texts: ClassVar[Mapping[str, str]]
+
+    @classmethod
+    def _own_descriptions(cls) -> dict[str, str]:
+        if cls is Derived:
+            return {}
+        return {key: text for key, text in texts(cls.made).items() if key in cls.model_fields} | dict(cls.own_texts)
+
+
+def table_of(
+    description: type,
+    tag: str = "",
+    word: str = "",
+    text: str = "",
+    *,
+    title: str = "",
+    is_usual: bool = False,
+    before: Keys | None = None,
+    after: Keys | None = None,
+) -> type[Table]:
+    """Return the table of a dataclass.
+
+    Parameters
+    ----------
+    description : type
+        The dataclass.
+    tag, word, text : str, optional
+        The key that tells tables of several kinds apart, its value for this one, and what it is; empty where there is
+        one kind only.
+    title : str, optional
+        What the schema calls it, as the dataclass if left out.
+    is_usual : bool, optional
+        Whether this is the kind of a table that does not say.
+    before, after : mapping, optional
+        Type, default and text of other keys, before and after the declared fields.
+    """
+    before, after = before or {}, after or {}
+    keys: dict[str, Any] = {tag: (Literal[word], word if is_usual else ...)} if tag else {}
+    keys |= {key: (kind, default) for key, (kind, default, _) in before.items()}
+    keys |= {
+        field.name: (_read(field), ... if field.default is dataclasses.MISSING else field.default)
+        for field in declared(description)
+    }
+    keys |= {key: (kind, default) for key, (kind, default, _) in after.items()}
+    table = create_model(title or description.__name__, __base__=Derived, __module__=__name__, **keys)
+    others = {key: words for key, (*_, words) in {**before, **after}.items()}
+    table.made, table.own_texts = description, ({tag: text} if tag else {}) | others
+    return table
+
+
+def one_of(tag: str, tables: Iterable[type[Table]]) -> Any:
+    """Return the type of a table that is of one of several kinds, as its `tag` says."""
+    return Annotated[reduce(or_, tables), Field(discriminator=tag)]
+
+
+def _read(field: Declared) -> Any:
+    """Return the kind of a declared field, as tables read it."""
+    kind: Any
+    match field.kind:
+        case Choice(words):
+            kind = Literal[words]
+        case Each(one):
+            kind = list[Annotated[float, read_as(one)]]
+        case Text():
+            kind = str
+        case one:
+            kind = Annotated[Any, read_as(one)]
+    return kind | None if field.is_optional else kind

@@ -1,0 +1,41 @@
+"""What a thing is, it says itself: the package does not ask more and more of what kind its things are."""
+
+from __future__ import annotations
+
+import pytest
+
+from .kinds import asked_kinds, counts
+
+# As many as there are. What lowers it lowers this, too; a new thing says what it is instead of being asked.
+MOST = 77
+
+
+def test_kinds_are_not_asked_more_often():
+    assert counts().total() <= MOST, counts().most_common(12)
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "from ..contact import Coulomb\nif isinstance(law, Coulomb): pass",
+        "from ..contact import Coulomb\nif isinstance(law, (float, Coulomb)): pass",
+        "from .. import contact\nif isinstance(law, contact.Coulomb): pass",
+        "class Own: pass\ndef f(x): return isinstance(x, Own)",
+        "from ..contact import Coulomb\nmatch law:\n    case Coulomb(): pass",
+    ],
+)
+def test_the_count_sees_a_kind_that_is_asked(source):
+    assert len(asked_kinds(source)) == 1
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "isinstance(x, (float, str))",
+        "from numbers import Real\nisinstance(x, Real)",
+        "from ..bodies import HasRoot\nisinstance(x, HasRoot)",
+        "from ..contact import Coulomb\nx == Coulomb",
+    ],
+)
+def test_the_count_leaves_the_rest(source):
+    assert not asked_kinds(source)
