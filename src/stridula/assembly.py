@@ -332,7 +332,7 @@ def _contact(contact: PointContact, layout: _Layout) -> ContactRows:
     if contact.path_body is None:
         return ContactRows(contact, fixed)
     first, end = layout.spans[contact.path_body]
-    axial = first + contact.path_body.harmonics[0]
+    axial = first + len(contact.path_body.path().normal.multiples)
     return ContactRows(contact, fixed, (first, axial), (axial, end))
 
 

@@ -139,7 +139,7 @@ def test_slopes_are_the_derivative_of_traces_along_the_line(line):
     low, high = sheet.ends
     for place in np.linspace(low + 0.01, high - 0.01, 5):
         there = (sheet.trace(place + 1e-6) - sheet.trace(place - 1e-6)) / 2e-6
-        np.testing.assert_allclose(sheet.trace_slope(place), there, atol=1e-6 * abs(there).max())
+        np.testing.assert_allclose(sheet.path().traces(place)[1], there, atol=1e-6 * abs(there).max())
         np.testing.assert_array_equal(sheet.trace(place), sheet.trace(sheet.track_line.point(place)))
         assert not sheet.trace(place)[1, sheet.harmonics[0] :].any()
 
@@ -163,7 +163,7 @@ def test_stretched_along_its_length_only_it_is_a_beam():
     np.testing.assert_allclose(wide.modes().translation[0], beam.modes().translation[0], rtol=1e-12, atol=1e-12)
     for place in (0.1, 0.3, 0.77):
         np.testing.assert_allclose(wide.trace(place), beam.trace(place), atol=1e-12)
-        np.testing.assert_allclose(wide.trace_slope(place)[0], beam.trace_slope(place)[0], atol=1e-10)
+        np.testing.assert_allclose(wide.path().traces(place)[1][0], beam.path().traces(place)[1][0], atol=1e-10)
 
 
 def test_a_slider_on_it_is_on_a_beam():

@@ -5,12 +5,10 @@ from .finite_element_beam import FiniteElementBeam
 from .modal_beam import ModalBeam
 from .modal_plate import Line, ModalPlate
 from .modes import Body, BodyPoint, HasRoot, Modes
+from .paths import Path, Track, Waves
 from .point_mass import PointMass
 from .reduced_body import ReducedBody
 from .sections import Circle, Material, Rectangle, Section
-
-# Bodies along which a contact point moves.
-Track = ModalBeam | ModalPlate
 
 __all__ = [
     "Body",
@@ -23,6 +21,7 @@ __all__ = [
     "ModalBeam",
     "ModalPlate",
     "Modes",
+    "Path",
     "PointMass",
     "Rayleigh",
     "Rectangle",
@@ -31,4 +30,5 @@ __all__ = [
     "SampledDamping",
     "Section",
     "Track",
+    "Waves",
 ]

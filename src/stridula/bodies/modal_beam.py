@@ -155,16 +155,6 @@ class ModalBeam:
         bending, axial = (along_one_angle(np.arange(1, count + 1), self.amplitude) for count in self.harmonics)
         return Path(self.ends, np.array([np.pi / self.length, 0.0]), np.zeros(2), bending, axial)
 
-    def trace_slope(self, position: float) -> Array:
-        """Return the derivative of `trace` along the beam [1/m], shape (2, modes)."""
-        self.check_position(position)
-        bending, axial = self.harmonics
-        rows = np.zeros((2, bending + axial))
-        for row, kind, size in ((1, slice(0, bending), bending), (0, slice(bending, None), axial)):
-            numbers = np.arange(1, size + 1) * np.pi / self.length
-            rows[row, kind] = self.amplitude * numbers * np.cos(numbers * position)
-        return rows
-
     def _bending(self, harmonic: int | Array) -> Array:
         rigidity = self.material.young * self.section.second_moment
         line_density = self.material.density * self.section.area

@@ -303,7 +303,7 @@ class ModalPlate:
         (x, y), direction = self.track_line.origin, np.array(self.track_line.tangent)
         sides = np.array([self.length, self.width])
         rate, phase = np.pi / sides * direction, np.pi / sides * [x, y]
-        numbers, in_plane, (u, v) = self.numbers, self.in_plane_numbers, self.in_plane_shares[:2]
+        numbers, in_plane, (u, v) = self.numbers, self.in_plane_numbers, self.in_plane_shares
         for side in (0, 1):
             if rate[1 - side] == 0.0:
                 across, there = phase[1 - side], (rate[[side, 1 - side]], phase[[side, 1 - side]])
@@ -315,32 +315,14 @@ class ModalPlate:
         moved[in_plane[:, 1] == 0] = np.stack([u, np.zeros_like(u)], axis=1)[in_plane[:, 1] == 0]
         return Path(self.ends, rate, phase, bending, Waves(in_plane, moved))
 
-    def trace_slope(self, position: Any) -> Array:
-        """Return the derivative of `trace` along the line [1/m], shape (2, modes)."""
-        x, y = self._point(position)
-        along, across = self.wavenumbers.T
-        cosine, sine = self.track_line.tangent
-        bending, in_plane = self.harmonics
-        rows = np.zeros((2, bending + in_plane))
-        rows[1, :bending] = cosine * along * np.cos(along * x) * np.sin(across * y)
-        rows[1, :bending] += sine * across * np.sin(along * x) * np.cos(across * y)
-        rows[1] *= self.amplitude
-        (along, across), shares = _in_plane(self).wavenumbers, self.in_plane_shares
-        rows[0, bending:] = shares[2] * np.cos(along * x) * np.cos(across * y)
-        rows[0, bending:] += shares[3] * np.sin(along * x) * np.sin(across * y)
-        return rows
-
     @property
     def in_plane_shares(self) -> Array:
         """What products of sines S and cosines C, of kx x times of ky y, give of each mode in the plane on the line.
 
-        Displacement along the line is ``shares[0] S C + shares[1] C S`` [kg^(-1/2)], its derivative along the line
-        ``shares[2] C C + shares[3] S S`` [kg^(-1/2)/m]; shape (4, in-plane modes).
+        Displacement along the line is ``shares[0] S C + shares[1] C S`` [kg^(-1/2)]; shape (2, in-plane modes).
         """
-        sheet, direction = _in_plane(self), np.array(self.track_line.tangent)[:, None]
-        u, v = direction * sheet.amplitudes / math.sqrt(self.total_mass)
-        along, across = direction * sheet.wavenumbers
-        return np.stack([u, v, along * u + across * v, -along * v - across * u])
+        direction = np.array(self.track_line.tangent)[:, None]
+        return np.asarray(direction * _in_plane(self).amplitudes / math.sqrt(self.total_mass))
 
     def _point(self, position: Any) -> tuple[float, float]:
         """Return the distances along length and width [m] of an abscissa or a pair."""

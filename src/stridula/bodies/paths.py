@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from ..arrays import Array
+from .modes import Body, BodyPoint
 
 
 @dataclass(frozen=True)
@@ -69,13 +70,32 @@ class Path:
     normal: Waves
     tangential: Waves
 
+    def traces(self, abscissa: float) -> tuple[Array, Array]:
+        """Return the displacements (tangent, normal) at an abscissa [m] from the modes, and their derivatives along it.
 
-class HasPath(Protocol):
-    """A body that others slide along."""
+        Both of shape (2, modes).
+        """
+        bending = len(self.normal.multiples)
+        rows, slopes = np.zeros((2, 2, bending + len(self.tangential.multiples)))
+        rows[1, :bending], slopes[1, :bending] = self.normal.traces(self, abscissa)
+        rows[0, bending:], slopes[0, bending:] = self.tangential.traces(self, abscissa)
+        return rows, slopes
+
+
+@runtime_checkable
+class Track(Body, Protocol):
+    """A body that others slide along: any that has a path."""
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Abscissas of the ends of its path [m]."""
+
+    @property
+    def centre(self) -> BodyPoint:
+        """The point in its middle."""
 
     def path(self) -> Path:
-        """Return the line along which they do."""
-        ...
+        """Return the line along which others slide."""
 
 
 def along_one_angle(numbers: Array, amplitude: float | Array, cosines: bool = False) -> Waves:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..arrays import Array
-from ..bodies import BodyPoint, Track
+from ..bodies import BodyPoint, ModalBeam, ModalPlate, Track
 from ..checks import ArgumentError, brief, instance, within
 from ..declared import Angle, Distance, Position, check_declared
 from .coulomb import Coulomb
@@ -57,7 +57,8 @@ class PointContact:
 
     def __post_init__(self) -> None:
         instance("tip", self.tip, BodyPoint)
-        instance("track", self.track, (*Track.__args__, RigidTrack, BodyPoint))
+        if not isinstance(self.track, Track):
+            instance("track", self.track, (ModalBeam, ModalPlate, RigidTrack, BodyPoint))
         if self.path_body is not None:
             within("at", self.at, *self.path_body.ends, ends=False)
             if self.inclination != 0.0:
@@ -68,7 +69,8 @@ class PointContact:
             raise ArgumentError(
                 "track", "be another body than the tip's (equal ones need names)", self.track, got=f"{body} for both"
             )
-        instance("friction", self.friction, LAWS)
+        if not isinstance(self.friction, FrictionLaw):
+            instance("friction", self.friction, LAWS)
         if abs(self.inclination) > 2.0 * math.pi:
             raise ArgumentError("inclination", "be from -2 pi to 2 pi rad", self.inclination)
         instance("name", self.name, str)

@@ -11,7 +11,6 @@ from .._kernels.contact import SEPARATED, SLIDING, STICKING
 from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
 from ..arrays import Array
 from ..assembly import Assembly, ContactRows
-from ..bodies import Track
 from ..checks import ArgumentError
 from ..contact import FrictionLaw
 from ..records.state import State
@@ -177,10 +176,10 @@ class _Start:
 
 def rows_at(one: ContactRows, place: float) -> Array:
     """Return the rows of a contact along normal and tangent, those of a track's modes at an abscissa [m]."""
-    if not isinstance(one.contact.track, Track):
+    if one.contact.path_body is None:
         return one.fixed
-    full, (low, high) = one.fixed.copy(), one.contact.track.ends
-    full[:, one.bending[0] : one.axial[1]] -= one.contact.track.trace(min(max(place, low), high))[::-1]
+    full, (low, high) = one.fixed.copy(), one.contact.path_body.ends
+    full[:, one.bending[0] : one.axial[1]] -= one.contact.path_body.trace(min(max(place, low), high))[::-1]
     return full
 
 

@@ -247,7 +247,7 @@ def _line(one: ContactRows, system: System, spans: Mapping[str, tuple[int, int]]
     at = one.contact.at + shift
     place(1, track, at)
     slope = np.zeros((2, nothing.size))
-    slope[:, one.bending[0] : one.axial[1]] = track.trace_slope(at)
+    slope[:, one.bending[0] : one.axial[1]] = track.path().traces(at)[1]
     # A trace is along x, then along y: tangent and normal.
     trace = points[1]
     return ContactLine(one.fixed[0] - trace[1], one.fixed[1] - trace[0], one.fixed[1], slope[1], slope[0], points)
