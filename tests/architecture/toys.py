@@ -64,7 +64,7 @@ class Cable:
 
 @dataclass(frozen=True)
 class Halving(FrictionLaw):
-    """Friction that falls to its half with the speed of slip, as 2 ** -(speed / velocity): a form that the march has."""
+    """Friction that falls to its half with the speed of slip: in a form that the march has."""
 
     coefficient: float
     velocity: float

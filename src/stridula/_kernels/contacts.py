@@ -13,7 +13,7 @@ from .contact import SLIDING, STICKING
 from .direct import solve_states
 from .faces import displace, displace_freely, own_compliance
 from .lanes import anywhere, choose, entry, everywhere, held, hold, magnitude
-from .modes import ENTRY, OPTIONS
+from .modes import ENTRY, OPTIONS, PASTED
 from .solves import carried_by, forces_of_one, strayed
 
 # Sweeps after which, and then between which, the forces of the states that were found are solved for directly.
@@ -120,7 +120,7 @@ def largest_of(one, other):
     return choose(other > one, other, one)
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
     """Solve contacts in turn until no force changes; return sweeps made and error estimated from the changes.
 

@@ -5,7 +5,7 @@ import numba
 from . import layout as at
 from .coupled import energy_of
 from .lanes import anywhere, choose, held, hold, magnitude, write
-from .modes import OPTIONS
+from .modes import OPTIONS, PASTED
 
 # What became of a run: samples completed, what ended it.
 COMPLETED, ENDED = range(2)
@@ -46,7 +46,7 @@ def any_beyond_ends(sizes, paths, contacts, state, run, zero):
     return leaves, why
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def end(parts, ended, completed, run, zero):
     """Say what became of the runs; let those that have ended carry what they had when they did."""
     carried, stops = parts.state.carried, parts.records.stops

@@ -6,7 +6,7 @@ from . import layout as at
 from .block_rows import CONTACTS
 from .bookkeeping import add
 from .lanes import anywhere, held, hold, magnitude, read
-from .modes import OPTIONS, set_load, work_of_unit_load
+from .modes import OPTIONS, PASTED, set_load, work_of_unit_load
 
 
 @numba.njit(**OPTIONS)
@@ -35,7 +35,7 @@ def credit_loads(parts, n, run, runs, zero):
         hold(modes.given, j, run, work)
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def change_loads(parts, n, run, runs, zero):
     """Let the loads of step `n` push, where they are others than before."""
     sizes = parts.sizes

@@ -14,7 +14,7 @@ from .coupled import energy_of
 from .lanes import anywhere, choose, everywhere, hold, magnitude, spread
 from .leaving import end, leave
 from .loads import change_loads, credit_loads, differ
-from .modes import ENTRY, OPTIONS
+from .modes import ENTRY, PASTED
 from .recording import begin_sample, height_of, keep_probes_at, record_contact, record_energies, remember_probes
 from .several import keep_many, touch_many
 from .single import keep_one, touch_one
@@ -22,7 +22,7 @@ from .trying import complete_one, gap_of
 from .vectors import LANES
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def begin(parts, run, zero):
     """Remember the probes as they are at the beginning."""
     first = CONTACTS + 2 * parts.sizes.contacts + 2 * parts.sizes.loads
@@ -30,7 +30,7 @@ def begin(parts, run, zero):
     remember_probes(parts.modes.rows, first, probes.kinds, probes.spans, probes.last, run, zero)
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def begin_row(parts, run, zero):
     """Begin the sums of a sample."""
     begin_sample(parts.contacts.sums, parts.state.carried, parts.sizes.contacts, run, zero)
@@ -38,7 +38,7 @@ def begin_row(parts, run, zero):
     hold(parts.state.energies, at.UNSOLVED, run, zero)
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def record_row(parts, sample, n, run, runs, zero):
     """Record energies and contacts after the steps of a sample."""
     contacts, paths, timing, state = parts.contacts, parts.paths, parts.timing, parts.state

@@ -36,6 +36,8 @@ from .lanes import fused, load, spread, store, total
 # No rule of arithmetic is relaxed: a step is the same to the last bit wherever it is completed. No counting of
 # references: arrays come from Python and stay.
 OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "forceinline": True, "fastmath": False, "_nrt": False}
+# What does little but call others is pasted as Python: compiled apart, all that it calls would be optimised once more.
+PASTED: dict[str, Any] = {"cache": True, "error_model": "numpy", "inline": "always", "fastmath": False, "_nrt": False}
 # What is called from Python lets other threads run.
 ENTRY: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
 

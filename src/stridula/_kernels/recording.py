@@ -6,7 +6,7 @@ from . import layout as at
 from .block_rows import CONTACTS, D, Q
 from .contact import SLIDING, STICKING
 from .lanes import choose, held, hold, read, write
-from .modes import OPTIONS, product
+from .modes import OPTIONS, PASTED, product
 
 
 @numba.njit(**OPTIONS)
@@ -96,7 +96,7 @@ def height_of(rows, i, spans, first, end, run, zero):
     return height
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def keep_probes_at(parts, n, run, runs, zero):
     """Record the probes at step `n`, which is complete."""
     sizes = parts.sizes

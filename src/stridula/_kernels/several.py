@@ -9,14 +9,14 @@ from .contacts import solve_all, start_from_last
 from .faces import own_compliance
 from .lanes import anywhere, choose, entry, held, hold
 from .leaving import any_beyond_ends
-from .modes import OPTIONS
+from .modes import OPTIONS, PASTED
 from .trying import complete_many, place_after, soften, try_many
 
 # Error of the contact forces, relative to the largest, beyond which none can be believed.
 UNBELIEVABLE = 1e-3
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero):
     """Put forces, status, gap and slip of all contacts; return the error of the forces."""
     now, faces, count = contacts.now, contacts.faces, sizes.contacts
@@ -60,7 +60,7 @@ def keep_unsolved(contacts, state, sizes, unsolved, run, zero):
             hold(state.carried, base + row, run, kept)
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def keep_books_of(i, contacts, state, imposed, timing, n, run, runs, zero):
     """Do the bookkeeping of contact `i` among several."""
     now, here = contacts.now, i * at.IN_STEP
@@ -80,7 +80,7 @@ def keep_books_of(i, contacts, state, imposed, timing, n, run, runs, zero):
     keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, runs, zero)
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def touch_many(parts, n, ended, run, runs, zero):
     """Try step `n` and find the forces of all contacts; return where a run leaves, and why."""
     sizes, contacts, state = parts.sizes, parts.contacts, parts.state
@@ -98,7 +98,7 @@ def touch_many(parts, n, ended, run, runs, zero):
     return leaves, why
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def keep_many(parts, n, run, runs, zero):
     """Complete step `n` under the forces of all contacts, and do their bookkeeping."""
     contacts, state, imposed = parts.contacts, parts.state, parts.imposed

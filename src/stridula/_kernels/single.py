@@ -6,13 +6,13 @@ from . import layout as at
 from .bookkeeping import credit, keep_books, keep_place
 from .lanes import anywhere, choose, held, hold
 from .leaving import beyond_ends
-from .modes import OPTIONS
+from .modes import PASTED
 from .recording import keep_probes_at
 from .solves import carried_by, forces_of_one, strayed
 from .trying import try_one
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def solve_single(free, contacts, carried, w, timing, run, zero):
     """Return normal and tangential force, status and whether it is jammed of the only contact."""
     _, gap, slip = free
@@ -23,7 +23,7 @@ def solve_single(free, contacts, carried, w, timing, run, zero):
     return forces_of_one(gap, slip, away, w, law, contacts.laws, run, at_rest, before, zero, timing.step, zero)
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def touch_one(parts, n, loop, ended, run, runs, zero):
     """Complete a pending step of the only contact, try step `n`, and find the forces.
 
@@ -55,7 +55,7 @@ def touch_one(parts, n, loop, ended, run, runs, zero):
     return free, w, solve_single(free, contacts, state.carried, w, parts.timing, run, zero), leaves, why
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def keep_one(parts, n, free, w, touch, run, runs, zero):
     """Do the bookkeeping of the only contact; return half its way in the last two steps."""
     contacts, state = parts.contacts, parts.state

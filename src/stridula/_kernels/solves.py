@@ -7,7 +7,7 @@ from . import layout as at
 from .contact import SLIDING, STICKING, solve_contact, turn_round
 from .friction import STRICT, next_state, set_valued
 from .lanes import anywhere, choose, everywhere, held, lane, magnitude, spread, with_lane
-from .modes import OPTIONS
+from .modes import OPTIONS, PASTED
 from .vectors import LANES, VECTOR
 
 
@@ -159,7 +159,7 @@ def strayed(carried, i, run, zero):
     return choose(stuck, away, zero)
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def forces_of_one(gap, slip, away, w, law, laws, number, at_rest, before, let_go, step, zero):
     """Return normal force, tangential force, status and whether it is jammed of one contact."""
     if law == at.COULOMB and everywhere(w[3] > 0.0):

@@ -9,6 +9,7 @@ from .coupled import complete_coupled, try_coupled
 from .lanes import anywhere, choose, fused, held, hold, read, total
 from .modes import (
     OPTIONS,
+    PASTED,
     add_push,
     clear_push,
     complete_all,
@@ -173,7 +174,7 @@ def try_many(modes, paths, contacts, state, imposed, sizes, n, ended, run, runs,
         put_free(i, now, place, choose(ended > 0.0, zero, gap), slip, run)
 
 
-@numba.njit(**OPTIONS)
+@numba.njit(**PASTED)
 def soften(modes, paths, contacts, sizes, run, zero):
     """Put the compliance of contacts on paths where they will be."""
     if sizes.coupled_paths:
