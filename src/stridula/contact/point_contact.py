@@ -9,7 +9,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies import BodyPoint, Track
-from ..checks import ArgumentError, brief, finite, instance, non_negative, within
+from ..checks import ArgumentError, brief, instance, within
+from ..declared import Angle, Distance, Position, check_declared
 from .coulomb import Coulomb
 from .friction_law import FrictionLaw
 from .laws import LAWS
@@ -40,7 +41,7 @@ class PointContact:
     gap : float, optional
         Distance between tip and track at the start [m].
     inclination : float, optional
-        Angle from world x to the track's tangent [rad], counter-clockwise; the normal, from the track to the tip, is
+        Angle from world x to the track's tangent, counter-clockwise [rad]; the normal, from the track to the tip, is
         the tangent turned by 90 degrees counter-clockwise. Zero on a beam or a plate.
     name : str, optional
         What it is called in records.
@@ -48,10 +49,10 @@ class PointContact:
 
     tip: BodyPoint
     track: Track | RigidTrack | BodyPoint
-    at: float = 0.0
+    at: Position = 0.0
     friction: FrictionLaw = field(default_factory=lambda: Coulomb(0.0))
-    gap: float = 0.0
-    inclination: float = 0.0
+    gap: Distance = 0.0
+    inclination: Angle = 0.0
     name: str = ""
 
     def __post_init__(self) -> None:
@@ -61,15 +62,14 @@ class PointContact:
             within("at", self.at, *self.path_body.ends, ends=False)
             if self.inclination != 0.0:
                 raise ArgumentError("inclination", f"be 0 on a {type(self.track).__name__}", self.inclination)
-        finite("at", self.at)
+        check_declared(self)
         if self.track_body == self.tip.body:
             body = brief(self.tip.body)
             raise ArgumentError(
                 "track", "be another body than the tip's (equal ones need names)", self.track, got=f"{body} for both"
             )
         instance("friction", self.friction, LAWS)
-        non_negative("gap", self.gap)
-        if abs(finite("inclination", self.inclination)) > 2.0 * math.pi:
+        if abs(self.inclination) > 2.0 * math.pi:
             raise ArgumentError("inclination", "be from -2 pi to 2 pi rad", self.inclination)
         instance("name", self.name, str)
 

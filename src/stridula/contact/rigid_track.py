@@ -8,7 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import finite, instance
+from ..checks import instance
+from ..declared import Acceleration, Velocity, check_declared
 from ..histories import HISTORIES, Constant, Harmonic, History, Ramp, Sampled
 
 
@@ -23,29 +24,31 @@ class RigidTrack:
     Parameters
     ----------
     velocity : float, optional
-        Velocity along its tangent [m/s], as of a belt or a disc.
+        Velocity along its tangent [m/s], as of a belt or a disc, where an acceleration is given at the start.
     normal_velocity : float, optional
-        Velocity along its normal, towards the tip [m/s], as of a shaken plane.
+        Velocity along its normal, towards the tip [m/s], as of a shaken plane, where an acceleration is given at the
+        start.
     history, normal_history : Constant, Ramp, Harmonic or Sampled, optional
         Factors over time on the velocities, or on the accelerations where those are given.
     name : str, optional
         What it is called in records.
-    acceleration, normal_acceleration : float, optional
-        Acceleration along its tangent, and along its normal towards the tip [m/s²].
+    acceleration : float, optional
+        Acceleration along its tangent [m/s²].
+    normal_acceleration : float, optional
+        Acceleration along its normal, towards the tip [m/s²], as of shaken ground.
     """
 
     kind: ClassVar[str] = "rigid"
-    velocity: float = 0.0
-    normal_velocity: float = 0.0
+    velocity: Velocity = 0.0
+    normal_velocity: Velocity = 0.0
     history: Constant | Ramp | Harmonic | Sampled = field(default_factory=Constant)
     normal_history: Constant | Ramp | Harmonic | Sampled = field(default_factory=Constant)
     name: str = ""
-    acceleration: float = 0.0
-    normal_acceleration: float = 0.0
+    acceleration: Acceleration = 0.0
+    normal_acceleration: Acceleration = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("velocity", "normal_velocity", "acceleration", "normal_acceleration"):
-            finite(name, getattr(self, name))
+        check_declared(self)
         instance("history", self.history, HISTORIES)
         instance("normal_history", self.normal_history, HISTORIES)
         instance("name", self.name, str)

@@ -274,11 +274,17 @@ class Builder:
         body = self._named_body((*path, "body"), table.pop("body", "slider")) if place else None
         if table.get("history") is not None:
             table["history"] = self._history((*path, "history"), table["history"])
-        where: tuple[Any, ...] = (body,) if place else ()
-        if place == "point":
-            where = (self._point((*path, "point"), body, table.pop("point", None), "root"),)
+        where = self._acted_on(path, place, body, table)
         with self._within(*path):
-            return made(*((self._root(path, body),) if place == "root" else where), **table)
+            return made(*where, **table)
+
+    def _acted_on(self, path: Place, place: str, body: Any, table: Tables) -> tuple[Any, ...]:
+        """Return what a drive acts on, its first argument: nothing if that is the whole system."""
+        if place == "point":
+            return (self._point((*path, "point"), body, table.pop("point", None), "root"),)
+        if place == "root":
+            return (self._root(path, body),)
+        return (body,) if place else ()
 
     def _root(self, path: Place, body: Any) -> Any:
         if not isinstance(body, HasRoot):

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
-
-from pydantic import Field
+from typing import TYPE_CHECKING, Any, Literal
 
 from ..connections import CONNECTIONS
 from ..contact import LAWS, Coulomb, PointContact, RigidTrack
@@ -55,25 +53,6 @@ class PlateTrack(Table):
     """modal plate along whose line it slides: its name among the bodies"""
 
 
-class Rigid(Table):
-    kind: Literal["rigid"]
-    """beam, plate, rigid or point"""
-    velocity: is_.Velocity = RigidTrack.velocity
-    """velocity along its tangent, as of a belt [m/s]; where an acceleration is given, at the start"""
-    normal_velocity: is_.Velocity = RigidTrack.normal_velocity
-    """velocity along its normal, towards the tip [m/s]; where an acceleration is given, at the start"""
-    acceleration: is_.AnyAcceleration = RigidTrack.acceleration
-    """acceleration along its tangent [m/s²]"""
-    normal_acceleration: is_.AnyAcceleration = RigidTrack.normal_acceleration
-    """acceleration along its normal, towards the tip, as of shaken ground [m/s²]"""
-    history: History | None = None
-    """factor over time on the acceleration where one is given, else on the velocity; constant if left out"""
-    normal_history: History | None = None
-    """the same along its normal"""
-    name: str = ""
-    """what it is called in records"""
-
-
 class PointTrack(Table):
     kind: Literal["point"]
     """beam, plate, rigid or point"""
@@ -83,28 +62,26 @@ class PointTrack(Table):
     """which point of it; its tip, centre or only point if left out"""
 
 
-class Contact(Table):
-    name: str = ""
-    """what it is called in records"""
-    tip: Place
-    """what touches"""
-    track: Annotated[BeamTrack | PlateTrack | Rigid | PointTrack, Field(discriminator="kind")]
-    """what it slides on"""
-    at: is_.Position = PointContact.at
-    """abscissa of the tip on the track at the start [m]"""
-    gap: is_.Distance = PointContact.gap
-    """distance between tip and track at the start [m]"""
-    inclination: is_.Angle = PointContact.inclination
-    """angle from world x to the track's tangent, counter-clockwise [rad]"""
-    friction: Friction | None = None
-    """friction between tip and track, none if left out"""
-
-
 ENDS: Keys = {"first": (Place, ..., "one end"), "second": (Place | None, None, "other end, the ground if left out")}
 
 if TYPE_CHECKING:
+    Contact = Any
     Connection = Any
 else:
+    _history = "factor over time on the acceleration where one is given, else on the velocity; constant if left out"
+    _moved = {
+        "history": (History | None, None, _history),
+        "normal_history": (History | None, None, "the same along its normal"),
+        "name": (str, "", "what it is called in records"),
+    }
+    _rigid = table_of(RigidTrack, "kind", "rigid", "beam, plate, rigid or point", title="Rigid", after=_moved)
+    _sides = {
+        "name": (str, "", "what it is called in records"),
+        "tip": (Place, ..., "what touches"),
+        "track": (one_of("kind", [BeamTrack, PlateTrack, _rigid, PointTrack]), ..., "what it slides on"),
+    }
+    _friction = {"friction": (Friction | None, None, "friction between tip and track, none if left out")}
+    Contact = table_of(PointContact, title="Contact", before=_sides, after=_friction)
     Connection = one_of(
         "kind", [table_of(kind, "kind", kind.kind, "spring or dashpot", before=ENDS) for kind in CONNECTIONS]
     )
