@@ -16,6 +16,7 @@ from pathlib import Path
 import against_c
 import gpu
 import machine
+import many_contacts
 import many_runs
 import maps
 import peer_speed
@@ -26,7 +27,7 @@ import startup
 from ratios import arguments, as_markdown, as_text, write_between
 
 # Memory first: see there.
-SECTIONS = (speed_and_memory, against_c, peer_speed, real_time, many_runs, maps, scaling, startup, gpu)
+SECTIONS = (speed_and_memory, against_c, many_contacts, peer_speed, real_time, many_runs, maps, scaling, startup, gpu)
 BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
 
 

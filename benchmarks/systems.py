@@ -61,7 +61,9 @@ def on_a_plate(modes: int, line: str) -> st.System:
     """Return the same rod on a plate of some number of modes, along a line on it."""
     count = next(n for n in range(2, modes) if n * -(-modes // n) >= modes and n * n >= 0.4 * modes)
     material = st.Material(2.1e11, 7800.0, poisson=0.3)
-    sheet = st.ModalPlate(material, 0.004, 0.5, 0.3, bending_modes=(-(-modes // count), count), damping=0.2, line=LINES[line])
+    sheet = st.ModalPlate(
+        material, 0.004, 0.5, 0.3, bending_modes=(-(-modes // count), count), damping=0.2, line=LINES[line]
+    )
     return sliding_on(sheet)
 
 

@@ -53,12 +53,10 @@ class Diverged(RuntimeError):
 
     def __init__(self, record: xr.Dataset, contacts: str) -> None:
         ended, step = record.attrs["ended"], record.attrs["step"]
-        self.record, self.reason = (
-            record,
-            (
-                f"{WHAT[ended]} after t = {_end(record):.6g} s (step {step:.3g} s); {contacts}; "
-                f"likely cause: {CAUSE[ended]}"
-            ),
+        self.record = record
+        self.reason = (
+            f"{WHAT[ended]} after t = {_end(record):.6g} s (step {step:.3g} s); {contacts}; "
+            f"likely cause: {CAUSE[ended]}"
         )
         super().__init__(self.reason)
 
