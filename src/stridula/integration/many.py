@@ -18,6 +18,7 @@ from .._kernels.vectors import LANES
 from ..bodies import ModalPlate
 from ..checks import brief, choice, count
 from ..records import Probe
+from ..records.plain import PlainRecord
 from ..system import System
 from .contact_solve import GaussSeidel
 from .cuda_march import CudaMarch, require_cuda
@@ -25,7 +26,6 @@ from .marches import March, SimpleMarch, march_of
 from .run import Run
 from .schemes import Scheme
 from .simulate import Arrays, Asked
-from .stops import Diverged
 from .together import march_together
 from .watchers import Progress, Watcher
 
@@ -41,7 +41,7 @@ DEVICES: dict[str, type[SimpleMarch]] = {"cpu": SimpleMarch, "cuda": CudaMarch}
 def simulate_many(
     systems: Sequence[System],
     duration: float,
-    reduce: Callable[[xr.Dataset], Any] | None = None,
+    reduce: Callable[[Any], Any] | None = None,
     *,
     scheme: Scheme | None = None,
     step: float | None = None,
@@ -54,6 +54,7 @@ def simulate_many(
     title: str = "",
     errors: str = "raise",
     provenance: bool = True,
+    labelled: bool = True,
 ) -> list[Any]:
     """March many systems in time, several at once on each processor.
 
@@ -95,6 +96,9 @@ def simulate_many(
         exception in its place while the others go on.
     provenance : bool, optional
         Whether each record says in ``attrs["scenario"]`` what it is of; those reduced at once can do without.
+    labelled : bool, optional
+        Whether records are labelled Datasets; else each is a `PlainRecord`, its arrays over time by name, which takes
+        a fraction of the time. `analysis.regime_of` takes both.
 
     Returns
     -------
@@ -137,7 +141,7 @@ def simulate_many(
             arrays[number] = one
     if step is None:
         asked.common_step = min(steps, default=None)
-    record = partial(Run.record, provenance=provenance)
+    record = partial(Run.record, provenance=provenance) if labelled else Run.plain_record
     together = _Together(asked, arrays, record, reduce, watchers, DEVICES[device], title, results)
     together.march_all(_groups(arrays, device), workers or os.cpu_count() or 1)
     return [results.found[number] for number in range(len(systems))]
@@ -205,8 +209,8 @@ class _Together:
         self,
         asked: Asked,
         arrays: Mapping[int, Arrays],
-        record: Callable[[Run], xr.Dataset],
-        reduce: Callable[[xr.Dataset], Any] | None,
+        record: Callable[[Run], xr.Dataset | PlainRecord],
+        reduce: Callable[[Any], Any] | None,
         watchers: Sequence[Watcher],
         side_by_side: type[SimpleMarch],
         title: str,
@@ -246,7 +250,7 @@ class _Together:
         for number, run in started.items():
             record = self.record(run)
             if run.has_diverged:
-                record.attrs["message"] = str(Diverged(record, run.why_diverged()))
+                record.attrs["message"] = run.told_of_divergence()
             with self.results.failing(number):
                 self.results.found[number] = record if self.reduce is None else self.reduce(record)
 

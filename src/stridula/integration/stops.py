@@ -48,16 +48,17 @@ class Diverged(RuntimeError):
     """A run whose result can no longer be believed; what was recorded before is in `record`."""
 
     def __init__(self, record: xr.Dataset, contacts: str) -> None:
-        ended, step = record.attrs["ended"], record.attrs["step"]
-        super().__init__(
-            f"{WHAT[ended]} after t = {_end(record):.6g} s (step {step:.3g} s); {contacts}; "
-            f"likely cause: {CAUSE[ended]}"
-        )
+        super().__init__(divergence_words(record.attrs["ended"], _end(record), record.attrs["step"], contacts))
         self.record = record
 
 
 def _end(record: xr.Dataset) -> float:
     return float(record.sizes["time"] * record.attrs["sample_interval"])
+
+
+def divergence_words(ended: str, time: float, step: float, contacts: str) -> str:
+    """Return after which time [s] and why a result can no longer be believed, in words."""
+    return f"{WHAT[ended]} after t = {time:.6g} s (step {step:.3g} s); {contacts}; likely cause: {CAUSE[ended]}"
 
 
 def contact_words(names: tuple[str, ...], carried: Array) -> str:

@@ -16,6 +16,7 @@ from ..analysis.regimes import MEANINGS, regime_of
 from ..analysis.signals import samples
 from ..analysis.stability import stability_of
 from ..checks import brief, suggestion
+from ..records.plain import PlainRecord, plain_of
 from ..records.variables import STATUS_WORDS
 from ..system import System
 
@@ -58,7 +59,7 @@ class Measure:
     columns : tuple of Column
         What it gives.
     of_record : callable or None
-        Function of a record that returns the values of the columns by name.
+        Function of a record as plain arrays that returns the values of the columns by name.
     of_system : callable or None
         Function of a system that returns the values of the columns by name; it needs no run.
     also : tuple of str
@@ -67,32 +68,37 @@ class Measure:
 
     name: str
     columns: tuple[Column, ...]
-    of_record: Callable[[xr.Dataset], Values] | None = None
+    of_record: Callable[[PlainRecord], Values] | None = None
     of_system: Callable[[System], Values] | None = None
     also: tuple[str, ...] = ()
 
 
-def _shares(run: xr.Dataset) -> Values:
-    return {f"{status}_share": status_share(run, status) for status in STATUS_WORDS}
+def _shares(run: PlainRecord) -> Values:
+    known = run.labelled("status_share")
+    return {f"{status}_share": status_share(known, status) for status in STATUS_WORDS}
 
 
-def _dominant_frequency(run: xr.Dataset) -> Values:
-    return {"dominant_frequency": dominant_frequency(run["normal_force"])}
+def _normal_force(run: PlainRecord) -> xr.DataArray:
+    return run.labelled("normal_force")["normal_force"]
 
 
-def _peak_force(run: xr.Dataset) -> Values:
-    return {"peak_force": float(samples(run["normal_force"])[0].max())}
+def _dominant_frequency(run: PlainRecord) -> Values:
+    return {"dominant_frequency": dominant_frequency(_normal_force(run))}
 
 
-def _mean_force(run: xr.Dataset) -> Values:
-    return {"mean_force": float(samples(run["normal_force"])[0].mean())}
+def _peak_force(run: PlainRecord) -> Values:
+    return {"peak_force": float(samples(_normal_force(run))[0].max())}
 
 
-def _travel(run: xr.Dataset) -> Values:
-    return {"travel": advance(run)}
+def _mean_force(run: PlainRecord) -> Values:
+    return {"mean_force": float(samples(_normal_force(run))[0].mean())}
 
 
-def _step(run: xr.Dataset) -> Values:
+def _travel(run: PlainRecord) -> Values:
+    return {"travel": advance(run.labelled("contact_position"))}
+
+
+def _step(run: PlainRecord) -> Values:
     return {name: float(run.attrs[name]) for name in ("step", "sample_interval")}
 
 
@@ -184,8 +190,8 @@ class Asked:
         known = [column for measure in self.measures for column in measure.columns]
         return (*known, *(Column(name, "", name) for name in self.functions))
 
-    def of_record(self, run: xr.Dataset) -> dict[str, Value]:
-        """Return all that is measured of a record.
+    def of_record(self, run: xr.Dataset | PlainRecord) -> dict[str, Value]:
+        """Return all that is measured of a record; functions take a labelled one.
 
         Raises
         ------
@@ -193,13 +199,14 @@ class Asked:
             If a measure fails, or returns neither numbers nor texts; the message names it.
         """
         found: dict[str, Value] = {}
+        plain = run if isinstance(run, PlainRecord) else plain_of(run)
         for measure in self.measures:
             if measure.of_record is not None:
                 with _naming(measure.name):
-                    found |= {name: value_of(value) for name, value in measure.of_record(run).items()}
+                    found |= {name: value_of(value) for name, value in measure.of_record(plain).items()}
         for name, function in self.functions.items():
             with _naming(name):
-                found[name] = value_of(function(run))
+                found[name] = value_of(function(run))  # type: ignore[arg-type]
         return found
 
     def of_system(self, system: System) -> dict[str, Value]:

@@ -11,6 +11,7 @@ import xarray as xr
 from threadpoolctl import threadpool_limits
 
 from ..integration import simulate_many
+from ..records.plain import PlainRecord
 from ..scenarios.keys import with_values
 from ..scenarios.load import Scenario, scenario_of_tables
 from ..scenarios.outline import Path
@@ -102,7 +103,7 @@ class Task:
     ) -> None:
         """Run scenarios of the same options and keep what is measured of their records."""
 
-        def measured(record: xr.Dataset) -> Outcome:
+        def measured(record: xr.Dataset | PlainRecord) -> Outcome:
             found: Outcome = {"ended": record.attrs["ended"], "message": record.attrs.get("message", ""), "values": {}}
             if not found["message"]:
                 with _failing(found, NOT_MEASURED):
@@ -115,8 +116,8 @@ class Task:
             workers=workers,
             watchers=[lambda progress: watch()],
             errors="return",
-            # What a sweep measures by name does not look at it, and it takes as long as a measure.
-            provenance=bool(self.asked.functions),
+            # Labels take longer than what a sweep measures by name, which does without.
+            labelled=bool(self.asked.functions),
             **self._options(scenarios[0]),
         )
         for outcome, result in zip(outcomes, results, strict=True):
