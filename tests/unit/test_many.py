@@ -331,3 +331,16 @@ def test_a_plain_record_of_a_run_that_diverged_says_why():
     assert "no longer finite" in plain.attrs["message"]
     assert plain.attrs["message"] == labelled.attrs["message"]
     assert plain.time.size == labelled.sizes["time"]
+
+
+def test_plain_records_may_hold_some_variables_only():
+    names = ("normal_force", "status_share", "impact_loss")
+    words = {"labelled": False, **WORDS}
+    (whole,), (some,) = (st.simulate_many(squeals(1), 100 * STEP, variables=each, **words) for each in (None, names))
+    assert set(some) == {"time", *names}
+    for name in some:
+        np.testing.assert_array_equal(some[name], whole[name])
+    for wrong in ({"variables": ["normal_forc"]}, {"variables": "gap"}, {"variables": names, "labelled": True}):
+        with pytest.raises(ValueError, match="variables must be") as error:
+            st.simulate_many(squeals(1), 100 * STEP, **(words | wrong))
+        assert "\n" not in str(error.value)

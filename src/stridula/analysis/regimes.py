@@ -36,6 +36,8 @@ NEEDED = (
     "impact_loss",
     "friction_loss",
 )
+# What it may have: landings are counted from the shares where it has none.
+TAKEN = (*NEEDED, "landings")
 MEANINGS = {
     "regime": ("1", "regime of the contact"),
     "confidence": ("1", "confidence in the regime, 0.5 at a threshold"),

@@ -18,6 +18,7 @@ from .._kernels.vectors import LANES
 from ..bodies import ModalPlate
 from ..checks import brief, choice, count
 from ..records import Probe
+from ..records.dataset import RECORDED
 from ..records.plain import PlainRecord
 from ..system import System
 from .contact_solve import GaussSeidel
@@ -55,6 +56,7 @@ def simulate_many(
     errors: str = "raise",
     provenance: bool = True,
     labelled: bool = True,
+    variables: Sequence[str] | None = None,
 ) -> list[Any]:
     """March many systems in time, several at once on each processor.
 
@@ -99,6 +101,8 @@ def simulate_many(
     labelled : bool, optional
         Whether records are labelled Datasets; else each is a `PlainRecord`, its arrays over time by name, which takes
         a fraction of the time. `analysis.regime_of` takes both.
+    variables : sequence of str, optional
+        Names of the variables that plain records hold; all if left out.
 
     Returns
     -------
@@ -128,6 +132,7 @@ def simulate_many(
     if not isinstance(device, str) or device not in DEVICES:
         raise ValueError(f"device must be one of {', '.join(DEVICES)}, got {brief(device)}")
     choice("errors", errors, ("raise", "return"))
+    wanted = _wanted(variables, labelled)
     if device == "cuda":
         require_cuda()
     asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve)
@@ -142,9 +147,20 @@ def simulate_many(
     if step is None:
         asked.common_step = min(steps, default=None)
     record = partial(Run.record, provenance=provenance) if labelled else Run.plain_record
-    together = _Together(asked, arrays, record, reduce, watchers, DEVICES[device], title, results)
+    together = _Together(asked, arrays, record, reduce, watchers, DEVICES[device], title, results, wanted)
     together.march_all(_groups(arrays, device), workers or os.cpu_count() or 1)
     return [results.found[number] for number in range(len(systems))]
+
+
+def _wanted(variables: Sequence[str] | None, labelled: bool) -> Sequence[str]:
+    """Return the names of the variables that records hold."""
+    if variables is None:
+        return RECORDED
+    if labelled or isinstance(variables, str) or not isinstance(variables, Sequence):
+        raise ValueError(f"variables must be a list of names, and labelled False, got {brief(variables)}")
+    for name in variables:
+        choice("variables", name, RECORDED)
+    return variables
 
 
 class _Results:
@@ -215,10 +231,11 @@ class _Together:
         side_by_side: type[SimpleMarch],
         title: str,
         results: _Results,
+        wanted: Sequence[str] = RECORDED,
     ) -> None:
         self.side_by_side, self.title, self.began = side_by_side, title, time.perf_counter()
         self.asked, self.arrays, self.reduce, self.watchers = asked, arrays, reduce, watchers
-        self.record, self.results = record, results
+        self.record, self.results, self.wanted = record, results, wanted
         self.stop, self.lock, self.simulated = threading.Event(), threading.Lock(), 0.0
 
     def march_all(self, groups: Sequence[Sequence[int]], workers: int) -> None:
@@ -242,6 +259,8 @@ class _Together:
         for number in group:
             with self.results.failing(number):
                 started[number] = self.asked.run(self.arrays[number], title=self.title)
+                if self.wanted is not RECORDED:
+                    started[number].keep_only(self.wanted)
         runs = list(started.values())
         if not runs:
             return

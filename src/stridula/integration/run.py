@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -13,10 +13,11 @@ from .._kernels import layout as at
 from ..assembly import Assembly
 from ..bodies.modes import Array
 from ..records import Probe
-from ..records.dataset import over_time, to_dataset
+from ..records.dataset import RECORDED, over_time, to_dataset
 from ..records.plain import PlainRecord
 from ..records.provenance import scenario_toml
 from ..records.state import LAYOUT, State
+from ..records.variables import STATUS_SHARE
 from ..system import System
 from ..version import __version__
 from .belief import Belief
@@ -53,6 +54,8 @@ ENERGY_COLUMN = {
     "contact_sweeps": at.ITERATIONS,
     "unsolved_steps": at.UNSOLVED,
 }
+# All of them.
+ALL_COLUMNS = tuple(range(at.COLUMNS))
 
 
 class Run:
@@ -90,10 +93,18 @@ class Run:
         self.energy_record = np.empty((at.ENERGIES, timing.samples))
         self.contact_record = np.empty((at.COLUMNS, len(system.contacts), timing.samples))
         self.probe_record = np.empty((timing.samples, len(probes)))
+        self.wanted: Collection[str] = RECORDED
+        self.columns: tuple[int, ...] = ALL_COLUMNS
         self.done = self.filled = 0
         self.ended = at.FINISHED
         self.tail: Array | None = None
         self.compile_time = self.wall_time = 0.0
+
+    def keep_only(self, wanted: Collection[str]) -> None:
+        """Keep only some variables, of which the plain record is."""
+        shares = range(at.SEPARATED, at.SLIDING + 1) if STATUS_SHARE.name in wanted else ()
+        columns = [column for name, column in CONTACT_COLUMN.items() if name in wanted]
+        self.wanted, self.columns = wanted, (*columns, *shares)
 
     @property
     def has_diverged(self) -> bool:
@@ -115,10 +126,10 @@ class Run:
         """Record a chunk, up to what ends the run."""
         if self.ended != at.FINISHED:
             return
-        completed, self.ended = self.belief.of(chunk)
+        completed, self.ended = self.belief.of(chunk, self.energy_record, self.done)
         kept = slice(self.done, self.done + completed)
-        self.energy_record[:, kept] = chunk.energies[:completed].T
-        self.contact_record[:, :, kept] = chunk.contacts[:completed].transpose(2, 1, 0)
+        for column in self.columns:
+            self.contact_record[column, :, kept] = chunk.contacts[:completed, :, column].T
         self.done += completed
         if self.probes:
             self._keep_probes(chunk.raw[: completed * self.timing.ratio])
@@ -169,7 +180,7 @@ class Run:
 
     def plain_record(self) -> PlainRecord:
         """Return the record as plain arrays, in a fraction of the time."""
-        over = over_time(self.system, *self._over_time())
+        over = over_time(self.system, *self._over_time(), self.wanted)
         variables = {name: values for name, (_, values) in over.items()}
         return PlainRecord(self._time(), variables, self.system.contact_names, self._attributes(False, {}))
 
@@ -188,13 +199,15 @@ class Run:
         record, energies = self.contact_record[:, :, :done], self.energy_record[:, :done]
         columns = {name: record[column] for name, column in CONTACT_COLUMN.items()}
         sums = {name: energies[column] for name, column in ENERGY_COLUMN.items()}
-        sums["impact_loss"] = sums["convection_work"] - sums["friction_loss"] - sums["contact_work"]
-        sums["ledger_residual"] = (
-            (sums["kinetic_and_elastic"] - self.initial_energy)
-            + sums["damping_loss"]
-            - sums["drive_work"]
-            - sums["contact_work"]
-        )
+        if "impact_loss" in self.wanted:
+            sums["impact_loss"] = sums["convection_work"] - sums["friction_loss"] - sums["contact_work"]
+        if "ledger_residual" in self.wanted:
+            sums["ledger_residual"] = (
+                (sums["kinetic_and_elastic"] - self.initial_energy)
+                + sums["damping_loss"]
+                - sums["drive_work"]
+                - sums["contact_work"]
+            )
         return columns, record[at.SEPARATED : at.SLIDING + 1].transpose(2, 1, 0), sums
 
     def _attributes(self, interrupted: bool, scenario: dict[str, str]) -> dict[str, Any]:

@@ -169,6 +169,10 @@ def _ratio_at(speed: float, law: FrictionLaw, contact: str) -> float:
 
 def _acceleration(structure: Structure) -> float:
     """Return the largest acceleration that the loads could give a contact [m/s²]."""
+    return structure.once("acceleration", lambda: _largest_acceleration(structure))
+
+
+def _largest_acceleration(structure: Structure) -> float:
     rows = np.array([line.tangent for line in structure.lines])
     return float(np.linalg.norm(rows, axis=1).max() * np.linalg.norm(structure.load))
 
@@ -203,7 +207,7 @@ class _Equations:
 
     def __init__(self, structure: Structure, status: Sequence[str], share: Array) -> None:
         held, pushes, self.closed, self.stuck = held_rows(structure, status, share)
-        _check_held(structure, held, [*self.closed, *self.stuck])
+        structure.once(("checked", *status), lambda: _check_held(structure, held, [*self.closed, *self.stuck]))
         self.free, modes = structure.free_motions(held), structure.mode_count
         _check_unbraked(structure, self.free)
         self.parts = modes, modes + self.free.shape[1]
@@ -330,6 +334,8 @@ def _rank_is_short(rows: Array) -> bool:
     sizes = np.linalg.norm(rows, axis=1, keepdims=True)
     if not sizes.all() or len(rows) > rows.shape[1]:
         return True
+    if len(rows) == 1:
+        return False
     return bool(np.linalg.svd(rows / sizes, compute_uv=False)[-1] < UNMOVED)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,8 @@ from .variables import (
 
 # Variables over time that are the same for all systems.
 OVER_TIME = {variable.name: variable for variable in (*CONTACT, *ENERGY, STATUS_SHARE, *SOLVE)}
+# All variables over time but the probes.
+RECORDED = (*OVER_TIME, STATUS.name, FRICTION_STATE.name)
 
 
 def to_dataset(
@@ -85,25 +87,33 @@ def to_dataset(
 
 
 def over_time(
-    system: System, contact_columns: dict[str, Array], status_share: Array, energies: dict[str, Array]
+    system: System,
+    contact_columns: Mapping[str, Array],
+    status_share: Array,
+    energies: Mapping[str, Array],
+    wanted: Collection[str] = RECORDED,
 ) -> dict[str, tuple[tuple[str, ...], Array]]:
     """Return what is recorded of contacts and energies, with its dimensions; arguments as those of `to_dataset`."""
     along = ("time", "contact")
     found: dict[str, tuple[tuple[str, ...], Array]] = {
-        variable.name: (along, contact_columns[variable.name].T) for variable in CONTACT
+        variable.name: (along, contact_columns[variable.name].T) for variable in CONTACT if variable.name in wanted
     }
-    found |= {variable.name: (("time",), energies[variable.name]) for variable in ENERGY}
-    found[STATUS.name] = (along, contact_columns[STATUS.name].T.astype(np.int8))
-    found[STATUS_SHARE.name] = ((*along, "contact_status"), status_share)
+    found |= {variable.name: (("time",), energies[variable.name]) for variable in ENERGY if variable.name in wanted}
+    if STATUS.name in wanted:
+        found[STATUS.name] = (along, contact_columns[STATUS.name].T.astype(np.int8))
+    if STATUS_SHARE.name in wanted:
+        found[STATUS_SHARE.name] = ((*along, "contact_status"), status_share)
     for name in ("jammed_steps", "landings"):
-        found[name] = (along, contact_columns[name].T.astype(np.int64))
+        if name in wanted:
+            found[name] = (along, contact_columns[name].T.astype(np.int64))
     units = _units_of_states(system)
-    if any(units):
+    if FRICTION_STATE.name in wanted and any(units):
         # NaN for contacts whose law has no state.
         kept = np.where(np.array(units)[:, None] != "", contact_columns[FRICTION_STATE.name], np.nan).T
         found[FRICTION_STATE.name] = (along, kept)
     if len(system.contacts) > 1:
-        return found | {one.name: (("time",), energies[one.name].astype(np.int64)) for one in SOLVE}
+        solved = [one.name for one in SOLVE if one.name in wanted]
+        return found | {name: (("time",), energies[name].astype(np.int64)) for name in solved}
     return {name: _of_the_one_contact(*given) for name, given in found.items()}
 
 

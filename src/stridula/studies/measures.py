@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from ..analysis import advance, dominant_frequency, status_share
-from ..analysis.regimes import MEANINGS, regime_of
+from ..analysis.regimes import MEANINGS, TAKEN, regime_of
 from ..analysis.signals import samples
 from ..analysis.stability import stability_of
 from ..checks import brief, suggestion
@@ -64,6 +64,8 @@ class Measure:
         Function of a system that returns the values of the columns by name; it needs no run.
     also : tuple of str
         Other measures that belong to it.
+    needs : tuple of str
+        Variables of a record that it looks at.
     """
 
     name: str
@@ -71,6 +73,7 @@ class Measure:
     of_record: Callable[[PlainRecord], Values] | None = None
     of_system: Callable[[System], Values] | None = None
     also: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
 
 
 def _shares(run: PlainRecord) -> Values:
@@ -119,25 +122,33 @@ MEASURES = {
                 Column("sliding_share", "1", "share of the time in which the contact slides"),
             ),
             _shares,
+            needs=("status_share",),
         ),
         Measure(
             "dominant_frequency",
             (Column("dominant_frequency", "Hz", "dominant frequency of the normal force"),),
             _dominant_frequency,
+            needs=("normal_force",),
         ),
         Measure(
             "peak_force",
             (Column("peak_force", "N", "largest normal force, of means over the sample interval"),),
             _peak_force,
+            needs=("normal_force",),
         ),
-        Measure("mean_force", (Column("mean_force", "N", "mean normal force"),), _mean_force),
-        Measure("travel", (Column("travel", "m", "net way of the contact point along the track"),), _travel),
+        Measure("mean_force", (Column("mean_force", "N", "mean normal force"),), _mean_force, needs=("normal_force",)),
+        Measure(
+            "travel",
+            (Column("travel", "m", "net way of the contact point along the track"),),
+            _travel,
+            needs=("contact_position",),
+        ),
         Measure(
             "step",
             (Column("step", "s", "time step of the run"), Column("sample_interval", "s", "time between samples")),
             _step,
         ),
-        Measure("regime", tuple(map(_regime_column, MEANINGS)), regime_of, also=("stability",)),
+        Measure("regime", tuple(map(_regime_column, MEANINGS)), regime_of, also=("stability",), needs=TAKEN),
         Measure(
             "stability",
             (
@@ -183,6 +194,12 @@ class Asked:
     def needs_record(self) -> bool:
         """Whether anything is measured of a record."""
         return bool(self.functions) or any(measure.of_record for measure in self.measures)
+
+    @property
+    def variables(self) -> tuple[str, ...] | None:
+        """The variables of a record that are looked at, None where functions may look at all."""
+        needed = [name for measure in self.measures for name in measure.needs]
+        return None if self.functions else tuple(dict.fromkeys(needed))
 
     @property
     def columns(self) -> tuple[Column, ...]:

@@ -101,6 +101,7 @@ class Task:
             errors="return",
             # Labels take longer than what a sweep measures by name, which does without.
             labelled=bool(self.asked.functions),
+            variables=self.asked.variables,
             **self._options(scenarios[0]),
         )
         for outcome, result in zip(outcomes, results, strict=True):
