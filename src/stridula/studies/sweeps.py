@@ -23,6 +23,7 @@ from .machines import on_machines
 from .measures import asked_for
 from .parts import Parts
 from .points import Grid, LatinHypercube, Layout, laid_out, plain_python
+from .processes import Helpers
 from .sources import SystemOf, varying
 from .swept import check_names, swept
 from .task import Outcome, Task, one_thread_each
@@ -222,7 +223,10 @@ class _Stopped(Exception):
 def _here(
     task: Task, parts: Mapping[int, Sequence[Sequence[Any]]], workers: int | None
 ) -> Generator[tuple[int, list[Outcome]]]:
-    """Go through the parts as they are done in threads of this process, with what came of their points."""
+    """Go through the parts as they are done on this machine, with what came of their points.
+
+    Threads compute them, and processes from when on that takes less time.
+    """
     if not parts:
         return
     processors = workers or os.cpu_count() or 1
@@ -233,11 +237,12 @@ def _here(
         if stop.is_set():
             raise _Stopped
 
-    pool = ThreadPoolExecutor(threads)
+    pool, helpers = ThreadPoolExecutor(threads), Helpers(task, len(parts), threads)
     try:
-        futures = {pool.submit(task.outcomes, part, processors // threads, watch): n for n, part in parts.items()}
+        futures = {pool.submit(helpers.outcomes, part, processors // threads, watch): n for n, part in parts.items()}
         for future in as_completed(futures):
             yield futures[future], future.result()
     finally:
         stop.set()
+        helpers.close()
         pool.shutdown(wait=False, cancel_futures=True)
