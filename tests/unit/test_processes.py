@@ -113,3 +113,14 @@ def test_one_worker_needs_no_process():
     assert helpers.outcomes(points, 1, lambda: None) == task.outcomes(points)
     assert helpers.decided
     helpers.close()
+
+
+def test_where_no_process_can_begin_threads_go_on(monkeypatch):
+    def fails(asked, ready):
+        raise OSError("no more processes")
+
+    monkeypatch.setattr(processes, "Helper", fails)
+    monkeypatch.setattr(processes, "COST", -1e9)
+    monkeypatch.setattr("stridula.studies.sweeps.POINTS_OF_A_PART", 4)
+    found = st.sweep("squeal", POINTS, "mean_force", duration="2 ms", workers=2)
+    assert set(found["message"].values.tolist()) == {""}

@@ -19,7 +19,7 @@ from .finite_elements import (
     element_mass,
     element_stiffness,
 )
-from .modes import Array, BodyPoint, Modes
+from .modes import Array, BodyPoint, Modes, hashed_once
 from .ordinary import of_ordinary_size
 from .sections import Circle, Material, Rectangle, Section
 
@@ -30,6 +30,7 @@ FEW_ELEMENTS, MANY_BEAMS, FEW_BEAMS = 60, 128, 16
 MANY_POINTS = 16
 
 
+@hashed_once
 @dataclass(frozen=True)
 class FiniteElementBeam:
     """A straight beam of Hermite cubic and bar elements, inclined to the normal of the track.

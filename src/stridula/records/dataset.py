@@ -121,7 +121,7 @@ def _of_the_one_contact(dimensions: tuple[str, ...], values: Array) -> tuple[tup
     """Return a variable without the dimension of the contacts, of which there is one."""
     if "contact" not in dimensions:
         return dimensions, values
-    return tuple(name for name in dimensions if name != "contact"), values[:, 0]
+    return (dimensions[0], *dimensions[2:]), values[:, 0]
 
 
 def _units_of_states(system: System) -> list[str]:

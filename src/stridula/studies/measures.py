@@ -16,12 +16,13 @@ from ..analysis.regimes import MEANINGS, TAKEN, regime_of
 from ..analysis.signals import samples
 from ..analysis.stability import stability_of
 from ..checks import brief, suggestion
-from ..records.plain import PlainRecord, plain_of
+from ..records.plain import PlainRecord
 from ..records.variables import STATUS_WORDS
 from ..system import System
 
 Value = float | str
 Values = Mapping[str, Value]
+Run = xr.Dataset | PlainRecord
 # Variables that every sweep has.
 OWN = ("ended", "message", "point")
 
@@ -59,7 +60,7 @@ class Measure:
     columns : tuple of Column
         What it gives.
     of_record : callable or None
-        Function of a record as plain arrays that returns the values of the columns by name.
+        Function of a record, labelled or plain, that returns the values of the columns by name.
     of_system : callable or None
         Function of a system that returns the values of the columns by name; it needs no run.
     also : tuple of str
@@ -70,38 +71,43 @@ class Measure:
 
     name: str
     columns: tuple[Column, ...]
-    of_record: Callable[[PlainRecord], Values] | None = None
+    of_record: Callable[[Run], Values] | None = None
     of_system: Callable[[System], Values] | None = None
     also: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
 
 
-def _shares(run: PlainRecord) -> Values:
-    known = run.labelled("status_share")
+def _labelled(run: Run, *names: str) -> xr.Dataset:
+    """Return a record with labels on some of its variables at least."""
+    return run.labelled(*names) if isinstance(run, PlainRecord) else run
+
+
+def _shares(run: Run) -> Values:
+    known = _labelled(run, "status_share")
     return {f"{status}_share": status_share(known, status) for status in STATUS_WORDS}
 
 
-def _normal_force(run: PlainRecord) -> xr.DataArray:
-    return run.labelled("normal_force")["normal_force"]
+def _normal_force(run: Run) -> xr.DataArray:
+    return _labelled(run, "normal_force")["normal_force"]
 
 
-def _dominant_frequency(run: PlainRecord) -> Values:
+def _dominant_frequency(run: Run) -> Values:
     return {"dominant_frequency": dominant_frequency(_normal_force(run))}
 
 
-def _peak_force(run: PlainRecord) -> Values:
+def _peak_force(run: Run) -> Values:
     return {"peak_force": float(samples(_normal_force(run))[0].max())}
 
 
-def _mean_force(run: PlainRecord) -> Values:
+def _mean_force(run: Run) -> Values:
     return {"mean_force": float(samples(_normal_force(run))[0].mean())}
 
 
-def _travel(run: PlainRecord) -> Values:
-    return {"travel": advance(run.labelled("contact_position"))}
+def _travel(run: Run) -> Values:
+    return {"travel": advance(_labelled(run, "contact_position"))}
 
 
-def _step(run: PlainRecord) -> Values:
+def _step(run: Run) -> Values:
     return {name: float(run.attrs[name]) for name in ("step", "sample_interval")}
 
 
@@ -207,7 +213,7 @@ class Asked:
         known = [column for measure in self.measures for column in measure.columns]
         return (*known, *(Column(name, "", name) for name in self.functions))
 
-    def of_record(self, run: xr.Dataset | PlainRecord) -> dict[str, Value]:
+    def of_record(self, run: Run) -> dict[str, Value]:
         """Return all that is measured of a record; functions take a labelled one.
 
         Raises
@@ -216,11 +222,10 @@ class Asked:
             If a measure fails, or returns neither numbers nor texts; the message names it.
         """
         found: dict[str, Value] = {}
-        plain = run if isinstance(run, PlainRecord) else plain_of(run)
         for measure in self.measures:
             if measure.of_record is not None:
                 with _naming(measure.name):
-                    found |= {name: value_of(value) for name, value in measure.of_record(plain).items()}
+                    found |= {name: value_of(value) for name, value in measure.of_record(run).items()}
         for name, function in self.functions.items():
             with _naming(name):
                 found[name] = value_of(function(run))  # type: ignore[arg-type]

@@ -73,8 +73,11 @@ class Helpers:
         return waiting * passed * (self.parts - self.done) / self.done > COST
 
     def _begin(self) -> None:
-        asked = portable(self.task)
-        begun = [] if asked is None else [Helper(asked, self._take) for _ in range(self.threads - 1)]
+        asked, begun = portable(self.task), list[Helper]()
+        if asked is not None:
+            # Where none can begin, threads go on.
+            with suppress(OSError):
+                begun += [Helper(asked, self._take) for _ in range(self.threads - 1)]
         with self.lock:
             self.all += begun
             closed = self.closed

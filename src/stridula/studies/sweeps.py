@@ -88,7 +88,7 @@ def sweep(
         `Grid`.
     measures : str, mapping or sequence of them
         What is measured: names of measures, functions by names of one's own. A function takes a record and returns a
-        number or a text; it runs in threads, and with a `client` on other machines.
+        number or a text; it runs in threads, in processes, and with a `client` on other machines.
     overrides : mapping, optional
         Values of other keys, the same at every point.
     duration : float or str, optional
@@ -101,7 +101,9 @@ def sweep(
         NetCDF file to write. Parts that are done are kept in a folder beside it, ``<out>.parts``; the same call resumes
         from there. Two processes may compute the same sweep at once.
     workers : int, optional
-        Parts at a time; as many as there are processors if left out.
+        Parts at a time; as many as there are processors if left out. They are computed in threads, and in processes
+        once threads wait for each other; functions that no other process can import, such as those of the script
+        itself, keep all of it in threads.
     client : distributed.Client, optional
         Machines that compute the parts, in place of this one.
     watchers : sequence of callable, optional
