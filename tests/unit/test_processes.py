@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 import threading
+import types
 
 import numpy as np
 import pytest
@@ -77,6 +79,19 @@ def test_what_no_other_process_can_import_stays_in_threads(monkeypatch):
     monkeypatch.setattr(printed, "__module__", "__main__")
     monkeypatch.setattr("__main__.printed", printed, raising=False)
     assert portable(task_of(measures=({"peak": printed},))[0]) is None
+
+
+def test_a_process_that_cannot_import_a_function_is_never_ready_and_says_nothing(monkeypatch, capfd):
+    nowhere = types.ModuleType("nowhere")
+    nowhere.printed = printed
+    monkeypatch.setitem(sys.modules, "nowhere", nowhere)
+    monkeypatch.setattr(printed, "__module__", "nowhere")
+    seen = []
+    helper = Helper(portable(task_of(measures=({"peak": printed},))[0]), seen.append)
+    assert helper._process.wait(PATIENCE) == 1
+    helper.end()
+    assert seen == []
+    assert capfd.readouterr().err == ""
 
 
 def test_processes_begin_once_threads_wait_for_each_other(monkeypatch):

@@ -24,6 +24,10 @@ def main() -> None:
     use_one_thread()
     try:
         task = pickle.load(asked)
+    except Exception:
+        # What cannot be imported here is computed where it was asked for.
+        os._exit(1)
+    try:
         answers.write(processes.READY)
         answers.flush()
         while True:
