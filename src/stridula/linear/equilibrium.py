@@ -179,6 +179,10 @@ def _largest_acceleration(structure: Structure) -> float:
 
 def _force(structure: Structure) -> float:
     """Return the largest force that the loads could give a contact [N]."""
+    return structure.once("force", lambda: _largest_force(structure))
+
+
+def _largest_force(structure: Structure) -> float:
     rows = np.array([line.normal for line in structure.lines])
     return float(np.linalg.norm(structure.load) / np.linalg.norm(rows, axis=1).min())
 
@@ -222,9 +226,12 @@ class _Equations:
     def solved(self, load: Array, closed: Array, stuck: Array) -> list[Array]:
         """Return displacement, accelerations of free motions and forces under a load; what contacts hold is given."""
         right = np.concatenate([load, np.zeros(self.parts[1] - self.parts[0]), closed, stuck])
-        if not self.determinant:
-            return np.split(np.full(right.size, np.nan), self.parts)
-        return np.split(np.linalg.solve(self.matrix, right / self.scale) / self.scale, self.parts)
+        if self.determinant:
+            found = np.linalg.solve(self.matrix, right / self.scale) / self.scale
+        else:
+            found = np.full(right.size, np.nan)
+        first, second = self.parts
+        return [found[:first], found[first:second], found[second:]]
 
 
 def travelling(structure: Structure, at: Equilibrium, speed: Array) -> Array:
