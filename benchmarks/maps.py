@@ -2,27 +2,60 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from ratios import REPEATS, Ratio, over, seconds, show, sized
+from ratios import REPEATS, SHORT, Ratio, over, seconds, show, sized
 
 SIDE, DURATION = sized((40, 1.0), (3, 0.02))
 TITLE = f"map of {SIDE} x {SIDE} points: squeal over friction and angle, {DURATION:g} s each"
 LONGEST_WALL_TIME = 20.0
 ASKED = ("--vary", f"friction=0.2:2.0:{SIDE}", "--vary", f"angle=10deg:80deg:{SIDE}", "--duration", f"{DURATION}")
 VERB = "from stridula.cli import main; main()"
+# The commit whose sources it is compared with, and the bar.
+BEFORE, SHARE = "4514ce1", 0.7
+ROOT = Path(__file__).resolve().parents[1]
 
 
-def rows() -> Iterator[Ratio]:
-    """Yield the wall time of the whole command over its bar, and over that of one worker."""
+def rows() -> Iterator[Ratio | str]:
+    """Yield the wall time of the whole command over its bar, over that of one worker, and over that of before."""
     all_cores, one = seconds(sweep, lambda: sweep("--workers", "1"), agree=same)
     bar = [LONGEST_WALL_TIME] * REPEATS
     yield Ratio("whole command with its figure, over 20 s", over(all_cores, bar), most=1.0)
     yield Ratio("one worker over all processors", over(one, all_cores))
+    yield from over_before()
+
+
+def over_before() -> Iterator[Ratio | str]:
+    """Yield the wall time of the whole command over that of the sources of before, or why there is none."""
+    if SHORT or shutil.which("git") is None:
+        yield f"the map of the sources of {BEFORE} takes {'the usual form' if SHORT else 'git, which is not installed'}"
+        return
+    with sources_of_before() as sources:
+        if sources is None:
+            yield f"the map of before takes the commit {BEFORE}, which is not in this copy of the sources"
+            return
+        now, before = seconds(sweep, lambda: sweep(sources=sources))
+    yield Ratio("whole command with its figure, over that of before", over(now, before), most=SHARE)
+
+
+@contextmanager
+def sources_of_before() -> Iterator[Path | None]:
+    """Put the sources of before into a folder of their own, where git has them."""
+    with tempfile.TemporaryDirectory() as folder:
+        packed = Path(folder) / "sources.tar"
+        asked = ["git", "-C", str(ROOT), "archive", "--output", str(packed), BEFORE, "src"]
+        if subprocess.run(asked, capture_output=True).returncode:
+            yield None
+            return
+        shutil.unpack_archive(packed, folder, filter="data")
+        yield Path(folder) / "src"
 
 
 def same(found: bytes, expected: bytes) -> None:
@@ -31,13 +64,14 @@ def same(found: bytes, expected: bytes) -> None:
         raise SystemExit("maps of one worker and of all must be the same bytes, differ")
 
 
-def sweep(*options: str) -> bytes:
-    """Run the command in an empty folder and return the file it writes."""
+def sweep(*options: str, sources: Path | None = None) -> bytes:
+    """Run the command in an empty folder, by other sources if they are given, and return the file it writes."""
+    environment = os.environ | ({"PYTHONPATH": str(sources)} if sources else {})
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "map.nc"
         files = ("--measure", "regime", "--out", str(out), "--plot", str(out.with_suffix(".png")))
         command = [sys.executable, "-c", VERB, "sweep", "squeal", *ASKED, *files, *options]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=environment)
         return out.read_bytes()
 
 

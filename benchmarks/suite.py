@@ -22,12 +22,25 @@ import maps
 import peer_speed
 import real_time
 import scaling
+import short_runs
 import speed_and_memory
 import startup
 from ratios import arguments, as_markdown, as_text, write_between
 
 # Memory first: see there.
-SECTIONS = (speed_and_memory, against_c, many_contacts, peer_speed, real_time, many_runs, maps, scaling, startup, gpu)
+SECTIONS = (
+    speed_and_memory,
+    against_c,
+    many_contacts,
+    peer_speed,
+    real_time,
+    many_runs,
+    short_runs,
+    maps,
+    scaling,
+    startup,
+    gpu,
+)
 BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
 
 

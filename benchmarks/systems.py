@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from math import radians
 
 import numpy as np
@@ -74,9 +75,15 @@ def sliding_on(track: st.ModalBeam | st.ModalPlate) -> st.System:
     return st.System(contact, [st.Force(rod.root, y=-1.0, x=0.3)])
 
 
+@cache
+def shipped_squeal() -> st.System:
+    """Return the shipped squeal case, read once."""
+    return load_scenario("squeal").system
+
+
 def squeal(angle: float, friction: float) -> st.System:
     """Return the shipped squeal case at another angle [rad] and friction."""
-    shipped = load_scenario("squeal").system
+    shipped = shipped_squeal()
     rod = replace(shipped.slider, angle=angle)
     contact = replace(shipped.contact, tip=rod.tip, friction=st.Coulomb(friction))
     return st.System(contact, [st.Force(rod.root, transverse=shipped.drives[0].transverse)])

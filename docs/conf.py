@@ -121,6 +121,7 @@ HOMES = {
     "records": "Probes",
     "records.files": "Files of records",
     "records.export": "Export",
+    "records.plain": "Plain records",
     "records.compare": "Comparison of records",
     "integration": "Integration in time",
     "analysis": "Regimes",

@@ -44,6 +44,7 @@ _HOME = {
     "records": ("Acceleration", "Displacement", "Reaction", "Velocity"),
     "records.files": ("load", "save"),
     "records.export": ("export",),
+    "records.plain": ("PlainRecord",),
     "records.compare": ("compare",),
     "scenarios": ("Scenario", "ScenarioError", "list_scenarios", "load_scenario", "scenario_schema", "scenario_text"),
     "integration": (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -124,7 +124,15 @@ class Assembly:
 
 @of_ordinary_size("system")
 def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
-    """Turn a system and its probes into flat arrays."""
+    """Turn a system and its probes into flat arrays; those of the system are made once, and not to be changed."""
+    if "assembly" not in system.kept:
+        system.kept["assembly"] = _assembled(system)
+    flat, layout, loads = system.kept["assembly"]
+    return replace(flat, probes=[_probe(probe, layout, loads) for probe in probes]) if probes else flat
+
+
+def _assembled(system: System) -> tuple[Assembly, _Layout, list[_Load]]:
+    """Return a system as flat arrays without probes, and what these are made of."""
     layout = _Layout(system)
     stiffness, dissipation = _matrices(layout)
     modes = [layout.modes(body) for body in layout.order]
@@ -139,7 +147,7 @@ def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
     angular[:size] = rate[:size] = 0.0
     loads, signals, histories = _loads(system, layout)
     position, velocity = _start(system, layout)
-    return Assembly(
+    flat = Assembly(
         angular_frequency=angular,
         damping_rate=rate,
         stiffness=stiffness[:size, :size],
@@ -151,10 +159,11 @@ def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
         position=position,
         velocity=velocity,
         friction_state=np.array([contact.friction.state_at_start for contact in system.contacts]),
-        probes=[_probe(probe, layout, loads) for probe in probes],
+        probes=[],
         prescribed=_prescribed(system, histories),
         spans={system.body_name(body): layout.spans[body] for body in system.bodies},
     )
+    return flat, layout, loads
 
 
 def with_travel(arrays: Assembly, system: System, travel: float) -> Assembly:
@@ -245,6 +254,8 @@ class _Layout:
     """Where the modes of each body lie, and full-width rows of its points."""
 
     system: System
+    # By the body itself: comparing bodies takes longer than anything that is asked of them here.
+    known: dict[int, Modes] = field(default_factory=dict)
 
     @cached_property
     def joined(self) -> tuple[Any, ...]:
@@ -267,15 +278,16 @@ class _Layout:
             start = found[body][1]
         return found
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number of modes."""
         return max(end for _, end in self.spans.values())
 
     def modes(self, body: Any) -> Modes:
         """Return the modes of a body."""
-        modes: Modes = body.modes(self.system.is_held(body))
-        return modes
+        if id(body) not in self.known:
+            self.known[id(body)] = body.modes(self.system.is_held(body))
+        return self.known[id(body)]
 
     def full(self, body: Any, rows: Array) -> Array:
         """Return rows on a body's modes as rows on all."""
@@ -339,10 +351,11 @@ def _contact(contact: PointContact, layout: _Layout) -> ContactRows:
 def _motion(system: System, imposed: Signal) -> Signal:
     """Return the motions imposed on every contact: by a body under an imposed velocity, by a moving rigid track."""
 
+    alongs = [contact.frame[:, 0].tolist() for contact in system.contacts]
+
     def motion(time: Array, step: float) -> Array:
         values = np.zeros((time.size, len(system.contacts), 3))
-        for number, contact in enumerate(system.contacts):
-            (normal_x, _), (tangent_x, _) = contact.frame
+        for number, (contact, (normal_x, tangent_x)) in enumerate(zip(system.contacts, alongs, strict=True)):
             if system.is_held(contact.tip.body):
                 moved = imposed(time, step)
                 values[:, number, 0] += tangent_x * moved

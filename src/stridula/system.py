@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any, TypeVar
 
 from .checks import ArgumentError, instance
@@ -55,12 +56,12 @@ class System:
                 "drives", "hold at most one InitialEquilibrium", self.drives, got=len(self._of_kind(InitialEquilibrium))
             )
 
-    @property
+    @cached_property
     def contacts(self) -> tuple[PointContact, ...]:
         """All contacts."""
         return (self.contact,) if isinstance(self.contact, PointContact) else tuple(self.contact)
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[Any, ...]:
         """The bodies that vibrate: those of the contacts in turn, then those that only connections name."""
         found: list[Any] = []
@@ -68,6 +69,15 @@ class System:
             found += [contact.tip.body, contact.track_body]
         found += [point.body for connection in self.connections for point in ends(connection)]
         return tuple(dict.fromkeys(body for body in found if body is not None))
+
+    @cached_property
+    def kept(self) -> dict[str, Any]:
+        """What has been made of the system, by whom: it never changes, and is asked for in several places."""
+        return {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what makes the system, for copies and other processes."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @property
     def slider(self) -> Any:
@@ -80,12 +90,12 @@ class System:
         first = self.contacts[0]
         return first.track if first.touched_point is None else first.touched_point.body
 
-    @property
+    @cached_property
     def imposed_velocity(self) -> ImposedVelocity | None:
         """The imposed velocity, if there is one."""
         return next(iter(self._of_kind(ImposedVelocity)), None)
 
-    @property
+    @cached_property
     def initial_equilibrium(self) -> InitialEquilibrium | None:
         """The equilibrium in which it starts, if it does."""
         return next(iter(self._of_kind(InitialEquilibrium)), None)
@@ -95,7 +105,7 @@ class System:
         imposed = self.imposed_velocity
         return imposed is not None and imposed.point.body == body
 
-    @property
+    @cached_property
     def contact_names(self) -> tuple[str, ...]:
         """Names of the contacts: their own, or ``contact 1``, ``contact 2``, ..."""
         return tuple(contact.name or f"contact {number}" for number, contact in enumerate(self.contacts, 1))

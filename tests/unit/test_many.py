@@ -15,6 +15,7 @@ from kernels.systems import SYSTEMS
 from physics.cases import CASES, STEP, pair, slider, track, transverse
 
 import stridula as st
+from stridula.analysis import regime_of
 from stridula.integration import many
 from stridula.integration.simulate import Asked
 from stridula.studies.ensembles import _perturbed
@@ -288,3 +289,58 @@ def test_plain_python_gives_the_same():
     assert done.returncode == 0, done.stderr
     expected = [float(st.simulate(one, 6e-5, step=STEP, sample_rate=1e5).kinetic_and_elastic[-1]) for one in squeals(2)]
     np.testing.assert_allclose([float(word) for word in done.stdout.split()], expected * 2, rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["squeal", "several contacts", "law with a state"])
+def test_plain_records_hold_the_arrays_of_labelled_ones(name):
+    systems = {
+        "squeal": lambda: squeals(5),
+        "several contacts": lambda: [SYSTEMS["pad on a belt, bristles and age"][0]()],
+        "law with a state": lambda: [SYSTEMS["slider, bristles"][0]()],
+    }[name]()
+    labelled, plain = (st.simulate_many(systems, 100 * STEP, labelled=each, **WORDS) for each in (True, False))
+    for run, one in zip(labelled, plain, strict=True):
+        assert isinstance(one, st.PlainRecord)
+        assert set(one.attrs) == set(run.attrs) - {"scenario"}
+        recorded = [word for word in run.variables if run[word].dims[:1] == ("time",) and "acceleration" not in word]
+        assert set(one) == set(recorded)
+        for word in recorded:
+            np.testing.assert_array_equal(one[word], run[word].values)
+            assert one[word].dtype == run[word].dtype
+        some = one.labelled("normal_force", "status_share", "damping_loss")
+        for word in some.data_vars:
+            assert some[word].dims == run[word].dims
+        assert some.sizes["time"] == run.sizes["time"]
+    with pytest.raises(KeyError, match="did you mean 'normal_force'"):
+        one["normal_forc"]
+
+
+def test_a_regime_is_that_of_a_labelled_record():
+    systems = [*squeals(5), SYSTEMS["groove"][0]()]
+    words = {**WORDS, "errors": "return"}
+    found = [st.simulate_many(systems, 0.05, regime_of, labelled=each, **words) for each in (True, False)]
+    assert repr(found[0]) == repr(found[1])
+    assert found[0][0]["regime"]
+    assert "run must be of one contact" in str(found[1][5])
+
+
+def test_a_plain_record_of_a_run_that_diverged_says_why():
+    system = squeals(1)[0]
+    huge = replace(system, drives=[replace(system.drives[0], transverse=1e300)])
+    labelled, plain = (st.simulate_many([huge], 100 * STEP, labelled=each, **WORDS)[0] for each in (True, False))
+    assert "no longer finite" in plain.attrs["message"]
+    assert plain.attrs["message"] == labelled.attrs["message"]
+    assert plain.time.size == labelled.sizes["time"]
+
+
+def test_plain_records_may_hold_some_variables_only():
+    names = ("normal_force", "status_share", "impact_loss")
+    words = {"labelled": False, **WORDS}
+    (whole,), (some,) = (st.simulate_many(squeals(1), 100 * STEP, variables=each, **words) for each in (None, names))
+    assert set(some) == {"time", *names}
+    for name in some:
+        np.testing.assert_array_equal(some[name], whole[name])
+    for wrong in ({"variables": ["normal_forc"]}, {"variables": "gap"}, {"variables": names, "labelled": True}):
+        with pytest.raises(ValueError, match="variables must be") as error:
+            st.simulate_many(squeals(1), 100 * STEP, **(words | wrong))
+        assert "\n" not in str(error.value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from physics.cases import dragged, pair, shaken, slider, track, transverse
 
 import stridula as st
+from stridula.assembly import assemble
 
 ROD, BAR = slider(30.0), track()
 SYSTEM = pair(transverse(), mu=0.5, rod=ROD, bar=BAR)
@@ -179,3 +181,38 @@ def test_messages_name_the_kind_of_what_was_given(refused, message):
     with pytest.raises(ValueError) as caught:
         refused()
     assert str(caught.value) == message
+
+
+def test_what_is_kept_of_a_system_and_its_bodies_does_not_travel():
+    """In another process texts have another hash, and functions cannot be read."""
+    system = st.load_scenario("squeal").system
+    arrays = assemble(system)
+    assert assemble(system) is arrays
+    assert hash(system.slider) == hash(replace(system.slider))
+    other = pickle.loads(pickle.dumps(system))
+    assert other == system
+    assert hash(other) == hash(system)
+    assert "kept" not in vars(other)
+    assert "_hash" not in vars(pickle.loads(pickle.dumps(system.slider)))
+    again = assemble(other)
+    assert again is not arrays
+    np.testing.assert_array_equal(again.loads, arrays.loads)
+    assert "kept" not in vars(replace(system))
+
+
+def test_probes_are_added_to_what_is_assembled_once():
+    system = st.load_scenario("squeal").system
+    probes = [st.Acceleration(system.track.centre, "y"), st.Reaction(system.slider, "x")]
+    assert assemble(system).probes == []
+    after, fresh = (assemble(one, probes).probes for one in (system, replace(system)))
+    for one, other in zip(after, fresh, strict=True):
+        np.testing.assert_array_equal(one.rows, other.rows)
+        np.testing.assert_array_equal(one.direct, other.direct)
+    assert assemble(system).probes == []
+
+
+def test_what_a_beam_gives_at_a_point_may_be_changed():
+    rod = st.load_scenario("squeal").system.slider
+    first = rod.trace(0.0)
+    first[:] = 0.0
+    assert rod.trace(0.0).any()

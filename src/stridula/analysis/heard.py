@@ -75,7 +75,7 @@ def frames(forces: Array, interval: float, length: float, lowest: float) -> Fram
     lags = int(np.ceil(min(1.0 / (lowest * interval), size))) + 1
     if size < FEWEST:
         return Frames(np.zeros(0), np.zeros(0))
-    pieces = np.lib.stride_tricks.sliding_window_view(forces, size, axis=1)[:, :: max(size // 2, 1)]
+    pieces = _pieces(forces, size, max(size // 2, 1))
     padded = 2 ** int(np.ceil(np.log2(size + lags)))
     first = int(np.ceil(lowest * padded * interval))
     window, waves = _basis(size, padded, first, min(lags, size // 2))
@@ -85,6 +85,14 @@ def frames(forces: Array, interval: float, length: float, lowest: float) -> Fram
     beyond = np.logical_or.accumulate(correlation < 0.0, axis=1)
     highest = np.where(beyond, correlation, 0.0).max(axis=1)
     return Frames(np.sqrt(power), np.clip(highest / np.maximum(power, 1e-300), 0.0, 1.0))
+
+
+def _pieces(forces: Array, size: int, apart: int) -> Array:
+    """Return frames of a size that begin so far apart, shape (forces, frames, size)."""
+    whole = np.ascontiguousarray(forces)
+    along = whole.strides[1]
+    shape = (len(whole), (whole.shape[1] - size) // apart + 1, size)
+    return np.ndarray(shape, whole.dtype, whole, 0, (whole.strides[0], along * apart, along))
 
 
 @lru_cache(maxsize=16)

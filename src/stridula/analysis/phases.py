@@ -128,8 +128,16 @@ def moving_mean(values: Array, width: int) -> Array:
     """Return the mean over an odd number of samples about each, the first and the last one repeated beyond the ends."""
     # Far beyond the ends there is nothing but what was repeated.
     width = min(width, WIDEST * values.size | 1)
-    sums = np.cumsum(np.pad(values, (width // 2 + 1, width // 2), mode="edge"))
+    sums = np.cumsum(repeated_ends(values, width // 2 + 1, width // 2))
     return np.asarray(sums[width:] - sums[:-width]) / width
+
+
+def repeated_ends(values: Array, before: int, after: int) -> Array:
+    """Return values with the first and the last one repeated so many times more."""
+    whole = np.empty(before + values.size + after, dtype=values.dtype)
+    whole[:before], whole[before : before + values.size] = values[0], values
+    whole[before + values.size :] = values[-1]
+    return whole
 
 
 def _clock(run: xr.Dataset) -> tuple[Array, float]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from ..checks import instance, within
 from ..records import checked
+from ..records.plain import PlainRecord, plain_of
 from .regime_measures import BUDDING, Measures, Signals, Thresholds, measures
 from .signals import record_of_one
 
@@ -34,6 +36,8 @@ NEEDED = (
     "impact_loss",
     "friction_loss",
 )
+# What it may have: landings are counted from the shares where it has none.
+TAKEN = (*NEEDED, "landings")
 MEANINGS = {
     "regime": ("1", "regime of the contact"),
     "confidence": ("1", "confidence in the regime, 0.5 at a threshold"),
@@ -113,12 +117,14 @@ def regime(
     return xr.Dataset({name: ((), values[name], words[name]) for name in MEANINGS})
 
 
-def regime_of(run: xr.Dataset, *, start: float | None = None, limits: Thresholds = LIMITS) -> dict[str, float | str]:
+def regime_of(
+    run: xr.Dataset | PlainRecord, *, start: float | None = None, limits: Thresholds = LIMITS
+) -> dict[str, float | str]:
     """Return the regime of a run, its confidence and the measures of `regime` by name, in a fraction of the time.
 
     Parameters
     ----------
-    run : xarray.Dataset
+    run : xarray.Dataset or PlainRecord
         A record of `simulate`, of one contact.
     start : float, optional
         Time at its beginning that is left aside [s]; a tenth of the record if left out.
@@ -136,21 +142,32 @@ def regime_of(run: xr.Dataset, *, start: float | None = None, limits: Thresholds
     return values | {word: getattr(found, word) for word in MEANINGS if word not in values}
 
 
-def signals_of(run: xr.Dataset) -> Signals:
+def signals_of(run: xr.Dataset | PlainRecord) -> Signals:
     """Return the plain arrays of a record that decide its regime."""
-    held = checked.record("run", record_of_one(run, *NEEDED), least=2).variables
-    if "landings" in held:
-        checked.record("run", run, "landings")
-    time = held["time"].values
+    held = run if isinstance(run, PlainRecord) and _is_usable(run) else _checked(run)
+    time = held["time"]
     return Signals(
         interval=float((time[-1] - time[0]) / (time.size - 1)),
-        share=held["status_share"].values,
-        forces=np.stack([held["normal_force"].values, held["tangential_force"].values]),
-        landings=held["landings"].values if "landings" in held else None,
-        lost=held["damping_loss"].values + held["impact_loss"].values,
-        rubbed=held["friction_loss"].values,
+        share=held["status_share"],
+        forces=np.stack([held["normal_force"], held["tangential_force"]]),
+        landings=held.variables.get("landings"),
+        lost=held["damping_loss"] + held["impact_loss"],
+        rubbed=held["friction_loss"],
         step=float(run.attrs.get("step", 0.0)),
     )
+
+
+def _is_usable(run: PlainRecord) -> bool:
+    return len(run.contacts) == 1 and run.time.size > 1 and all(name in run for name in NEEDED)
+
+
+def _checked(run: Any) -> PlainRecord:
+    """Return the plain arrays of a record of one contact that has what is needed; ValueError if it is none."""
+    given = run.labelled(*run.variables) if isinstance(run, PlainRecord) else run
+    held = checked.record("run", record_of_one(given, *NEEDED), least=2)
+    if "landings" in held.variables:
+        checked.record("run", given, "landings")
+    return plain_of(held)
 
 
 def decide(found: Measures, limits: Thresholds, ended: str = "finished") -> tuple[str, float]:

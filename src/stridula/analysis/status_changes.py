@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
-from .phases import ROUND_OFF, moving_mean
+from .phases import ROUND_OFF, moving_mean, repeated_ends
 
 MIXED = -1
 
@@ -18,8 +18,11 @@ def whole_status(share: Array) -> Array:
     share : ndarray, shape (samples, 3)
         Share of each status in each sample.
     """
-    whole = share >= 1.0 - ROUND_OFF
-    return np.where(whole[:, 0], 0, np.where(whole[:, 1], 1, np.where(whole[:, 2], 2, MIXED)))
+    found = np.full(len(share), MIXED)
+    # Of several, the first.
+    for status in (2, 1, 0):
+        found[share[:, status] >= 1.0 - ROUND_OFF] = status
+    return found
 
 
 def last_rest(status: Array) -> int:
@@ -34,10 +37,9 @@ def last_rest(status: Array) -> int:
     """
     if status[-1] == MIXED:
         return status.size
-    ends = np.flatnonzero(status[1:] != status[:-1]) + 1
-    edges = np.concatenate([[0], ends, [status.size]])
-    lengths = np.where(status[edges[:-1]] == MIXED, 0, np.diff(edges))
-    return int(edges[-2]) if lengths[-1] == lengths.max() else status.size
+    firsts = _begun(status[1:] != status[:-1])
+    lengths = np.where(status[firsts] == MIXED, 0, _lengths(firsts, status.size))
+    return int(firsts[-1]) if lengths[-1] == lengths.max() else status.size
 
 
 def changes(status: Array) -> int:
@@ -95,7 +97,7 @@ def slips(sticking: Array, noise: float, fastest: float) -> Array:
     ends, moves = np.cumsum(lengths), np.flatnonzero(~sticks)
     if not moves.size:
         return np.empty((0, 2))
-    found = np.stack([(ends - lengths)[moves], ends[moves]], axis=1)
+    found = _beside((ends - lengths)[moves], ends[moves])
     firsts = _firsts(found, fastest, fastest / 4.0)
     return _merged(found, firsts)[np.add.reduceat(lengths[moves], firsts) > noise]
 
@@ -116,13 +118,13 @@ def vibrations(found: Array, fastest: float) -> Array:
 def _firsts(found: Array, fastest: float, longest: float) -> Array:
     """Return the slips that are apart from the one before: by a long stick, or by their ends."""
     stuck, period = found[1:, 0] - found[:-1, 1], found[1:, 1] - found[:-1, 1]
-    return np.flatnonzero(np.concatenate([[True], (stuck >= longest) | (period >= fastest)]))
+    return _begun((stuck >= longest) | (period >= fastest))
 
 
 def _merged(found: Array, firsts: Array) -> Array:
     """Return slips from each of the first ones to the last before the next of those."""
-    lasts = np.concatenate([firsts[1:], [len(found)]]) - 1
-    return np.stack([found[firsts, 0], found[lasts, 1]], axis=1)
+    lasts = firsts + _lengths(firsts, len(found)) - 1
+    return _beside(found[firsts, 0], found[lasts, 1])
 
 
 def _pieces(sticking: Array) -> tuple[Array, Array]:
@@ -131,23 +133,45 @@ def _pieces(sticking: Array) -> tuple[Array, Array]:
     Like samples that stick, or slip, for all of their interval count as one.
     """
     mixed = (sticking > 0.0) & (sticking < 1.0)
-    firsts = np.flatnonzero(np.concatenate([[True], mixed[1:] | (sticking[1:] != sticking[:-1])]))
-    share, size = sticking[firsts], np.diff(firsts, append=sticking.size)[:, None]
-    beside = np.pad(share, 1, mode="edge")
+    firsts = _begun(mixed[1:] | (sticking[1:] != sticking[:-1]))
+    share, size = sticking[firsts], _lengths(firsts, sticking.size)[:, None]
+    beside = repeated_ends(share, 1, 1)
     before, after = beside[:-2], beside[2:]
     level = before == after
     slips_amid = level & (share <= before)
-    sticks = np.stack([(before > after) | slips_amid, level & ~slips_amid, (before < after) | slips_amid], axis=1)
+    sticks = _beside((before > after) | slips_amid, level & ~slips_amid, (before < after) | slips_amid)
     inner = np.where(level, np.where(slips_amid, 1.0 - share, share), 0.0)
     first = np.where(level, (1.0 - inner) / 2.0, np.where(before > after, share, 1.0 - share))
-    return sticks.ravel(), (np.stack([first, inner, 1.0 - first - inner], axis=1) * size).ravel()
+    return sticks.ravel(), (_beside(first, inner, 1.0 - first - inner) * size).ravel()
+
+
+def _beside(*columns: Array) -> Array:
+    """Return columns side by side, shape (rows, columns)."""
+    found = np.empty((columns[0].size, len(columns)), dtype=columns[0].dtype)
+    for number, column in enumerate(columns):
+        found[:, number] = column
+    return found
+
+
+def _begun(changes: Array) -> Array:
+    """Return the first of all, and those at which something changes from the one before."""
+    begun = np.empty(changes.size + 1, dtype=bool)
+    begun[0], begun[1:] = True, changes
+    return begun.nonzero()[0]
+
+
+def _lengths(firsts: Array, end: int) -> Array:
+    """Return the distances from each of the first ones to the next, from the last to the end."""
+    found = np.empty(firsts.size, dtype=firsts.dtype)
+    found[:-1], found[-1] = firsts[1:], end
+    return found - firsts
 
 
 def _joined(sticks: Array, lengths: Array) -> tuple[Array, Array]:
     """Return pieces of time with those of a kind that follow each other made one, and empty ones left out."""
     kept = lengths > ROUND_OFF
     sticks, lengths = sticks[kept], lengths[kept]
-    firsts = np.flatnonzero(np.concatenate([[True], sticks[1:] != sticks[:-1]]))
+    firsts = _begun(sticks[1:] != sticks[:-1])
     return sticks[firsts], np.add.reduceat(lengths, firsts)
 
 
@@ -161,10 +185,10 @@ def between_stops(sticking: Array, width: int) -> Array:
     width : int
         Odd number of samples of the moving mean that tells a stop, and of the fall.
     """
-    moves = (moving_mean(sticking, width) < 0.5).astype(float)
-    if not moves.any():
+    moves = moving_mean(sticking, width) < 0.5
+    if moves.all() or not moves.any():
         return np.ones(sticking.size)
-    inside = np.maximum(2.0 * moving_mean(moves, width) - 1.0, 0.0)
+    inside = np.maximum(2.0 * moving_mean(moves.astype(float), width) - 1.0, 0.0)
     return np.asarray(inside * inside * (3.0 - 2.0 * inside))
 
 

@@ -30,13 +30,13 @@ def regimes(tables: dict[str, Any], keys: Sequence[str], points: Sequence[Sequen
     """
     from ..scenarios.keys import located
     from ..studies.measures import asked_for
-    from ..studies.sweeps import SAMPLE_RATE
+    from ..studies.sources import OfTables
     from ..studies.task import Task
 
     changed, places, problems = located(tables, dict(zip(keys, points[0], strict=True)))
     if problems:
         return [""] * len(points)
-    task = Task(changed, tuple(places[key] for key in keys), asked_for(["regime"]), SAMPLE_RATE, False)
+    task = Task(OfTables(changed, tuple(places[key] for key in keys)), asked_for(["regime"]), False)
     return [str(outcome["values"].get("regime", "")) for outcome in task.outcomes(points)]
 
 

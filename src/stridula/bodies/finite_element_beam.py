@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -22,7 +22,7 @@ from .finite_elements import (
     element_mass,
     element_stiffness,
 )
-from .modes import BodyPoint, Modes
+from .modes import BodyPoint, Modes, hashed_once
 from .ordinary import check_overflow, of_ordinary_size
 from .sections import Circle, Material, Rectangle, Section
 
@@ -30,8 +30,11 @@ LARGEST_ELEMENTS = 500
 SUPPORTS = tuple(FIXED_BY_SUPPORT)
 # Beams whose modes are kept: a sweep comes back to the same ones. Of those of many elements fewer, for their memory.
 FEW_ELEMENTS, MANY_BEAMS, FEW_BEAMS = 60, 128, 16
+# Points of a beam whose traces are kept.
+MANY_POINTS = 16
 
 
+@hashed_once
 @dataclass(frozen=True)
 class FiniteElementBeam:
     """A straight beam of Hermite cubic and bar elements, inclined to the normal of the track.
@@ -147,8 +150,13 @@ class FiniteElementBeam:
     def trace(self, position: float, held_x: bool = False) -> Array:
         """Return the rows that give the world displacement (x, y) at `position` from the modes, shape (2, modes)."""
         self.check_position(position)
-        row = displacement_row(position, self.length, self.angle, self.elements)
-        return row @ _reduced(self, held_x).shapes
+        known = _reduced(self, held_x)
+        found = known.traces.get(position)
+        if found is None:
+            found = displacement_row(position, self.length, self.angle, self.elements) @ known.shapes
+            if len(known.traces) < MANY_POINTS:
+                known.traces[position] = found
+        return found.copy()
 
     def node_traces(self, held_x: bool = False) -> Array:
         """Return the rows that give x, y and slope of every node, tip first, from the modes, shape (3 nodes, modes)."""
@@ -161,7 +169,9 @@ class FiniteElementBeam:
 
     def root_reaction(self, held_x: bool = False) -> RootReaction:
         """Return what gives the force that the root's support exerts, from the balance of the whole beam."""
-        reduced = _reduced(self, held_x)
+        return _reduced(self, held_x).reaction
+
+    def _reaction(self, reduced: _Reduced) -> RootReaction:
         held = np.isin(np.arange(3) + 3 * self.elements, reduced.fixed).astype(float)
         nodes = np.linspace(0.0, self.length, self.elements + 1)
         motions = np.zeros((3, 3 * (self.elements + 1)))
@@ -201,10 +211,19 @@ class RootReaction:
 
 @dataclass(frozen=True)
 class _Reduced:
+    """What is kept of a beam: what it is asked for comes back at every point of a sweep."""
+
+    beam: FiniteElementBeam
     modes: Modes
     shapes: Array
     mass: Array
     fixed: Array
+    traces: dict[float, Array] = field(default_factory=dict)
+
+    @cached_property
+    def reaction(self) -> RootReaction:
+        """What gives the force of the root's support."""
+        return self.beam._reaction(self)
 
 
 def _reduced(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
@@ -244,7 +263,7 @@ def _reduce(beam: FiniteElementBeam, held_x: bool) -> _Reduced:
     directions = np.zeros((2, mass.shape[0]))
     directions[0, 0::3] = directions[1, 1::3] = 1.0
     modes = Modes(angular, damping_rates(beam.damping, angular), directions @ mass @ shapes)
-    return _Reduced(modes, shapes, mass, fixed)
+    return _Reduced(beam, modes, shapes, mass, fixed)
 
 
 _small, _large = lru_cache(maxsize=MANY_BEAMS)(_reduce), lru_cache(maxsize=FEW_BEAMS)(_reduce)

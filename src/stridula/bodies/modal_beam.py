@@ -12,12 +12,13 @@ import numpy as np
 from ..checks import ArgumentError, at_least, instance, within
 from ..declared import Count, CountFrom0, Frequency, Length, Name, Own, check_declared
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
-from .modes import Array, BodyPoint, Modes
+from .modes import Array, BodyPoint, Modes, hashed_once
 from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .paths import Path, along_one_angle
 from .sections import Circle, Material, Rectangle, Section
 
 
+@hashed_once
 @dataclass(frozen=True)
 class ModalBeam:
     """A straight beam along world x in its exact modes ``sin(k pi x / L)``, bending ones first, then axial ones.

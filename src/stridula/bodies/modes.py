@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol, runtime_checkable
+from typing import Any, ClassVar, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
@@ -49,6 +50,29 @@ class Modes:
     def frequency(self) -> Array:
         """Natural frequencies [Hz], shape (modes,)."""
         return self.angular_frequency / (2.0 * np.pi)
+
+
+Described = TypeVar("Described", bound=type)
+
+
+def hashed_once(described: Described) -> Described:
+    """Let a frozen dataclass remember its hash: bodies are looked up by all that they are made of, many times a run."""
+    by_value: Callable[[Any], int] = described.__hash__  # type: ignore[assignment]
+
+    def hashed(self: Any) -> int:
+        known = self.__dict__.get("_hash")
+        if known is None:
+            known = self.__dict__["_hash"] = by_value(self)
+        found: int = known
+        return found
+
+    def state(self: Any) -> dict[str, Any]:
+        # In another process texts have another hash.
+        return {name: value for name, value in self.__dict__.items() if name != "_hash"}
+
+    described.__hash__ = hashed  # type: ignore[method-assign, assignment]
+    described.__getstate__ = state  # type: ignore[method-assign, assignment]
+    return described
 
 
 class Body(Protocol):

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from .._kernels import layout as at
+from .._kernels.ledger import believed, keep_beside
 from ..arrays import Array
 from ..assembly import Assembly
 from ..system import System
 from .blocks import Blocks
 from .marches import Chunk
-from .stops import energy_created
 
 
 class Belief:
@@ -48,16 +48,29 @@ class Belief:
         self.dissipative = not any(contact.friction.has_state for contact in system.contacts)
         self.damped_alone = not arrays.coupled
 
-    def of(self, chunk: Chunk) -> tuple[int, int]:
-        """Return how many samples of the next chunk can be believed, and what ended it."""
-        completed, ended = chunk.completed, chunk.ended
-        energies = np.ascontiguousarray(chunk.energies[:completed].T)
-        bad = np.flatnonzero(~np.isfinite(energies).all(axis=0))
-        if bad.size:
-            completed, ended = int(bad[0]), at.NOT_FINITE
-            energies = energies[:, :completed]
-        wrong = energy_created(
-            energies,
+    def of(self, chunk: Chunk, rows: Array | None = None, first: int = 0) -> tuple[int, int]:
+        """Return how many samples of the next chunk can be believed, and what ended it.
+
+        Parameters
+        ----------
+        chunk : Chunk
+            The chunk.
+        rows : ndarray, shape (energies, samples), optional
+            Where its energies are kept.
+        first : int, optional
+            From which sample of these on.
+        """
+        samples = chunk.completed
+        kept = np.empty((at.ENERGIES, samples)) if rows is None else rows
+        if chunk.energies.flags.c_contiguous:
+            kept[:, first : first + samples] = chunk.energies[:samples].T
+        else:
+            # Of another layout, it would be compiled once more.
+            keep_beside(chunk.energies, samples, kept, first)
+        completed, ended, largest = believed(
+            kept,
+            first,
+            samples,
             self.last_energies,
             self.initial_energy,
             self.largest_energy,
@@ -65,9 +78,12 @@ class Belief:
             self.dissipative,
             self.damped_alone,
         )
-        if wrong is not None:
-            return wrong, at.ENERGY_CREATED
+        if ended == at.ENERGY_CREATED:
+            return completed, ended
         if completed:
-            self.largest_energy = max(self.largest_energy, float(np.abs(energies[: at.DAMPING_LOSS + 1]).max()))
-            self.last_energies = energies[:, -1].copy()
-        return completed, ended
+            self.largest_energy = largest if ended < 0 else self._largest(kept[:, first : first + completed])
+            self.last_energies = kept[:, first + completed - 1].copy()
+        return completed, chunk.ended if ended < 0 else ended
+
+    def _largest(self, energies: Array) -> float:
+        return max(self.largest_energy, float(np.abs(energies[: at.DAMPING_LOSS + 1]).max()))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
@@ -62,9 +64,10 @@ class Decimator:
         return np.asarray(sliding_window_view(joined, self.taps.size, axis=0)[:: self.ratio] @ self.taps)
 
 
+@lru_cache(maxsize=32)
 def _taps(ratio: int, reach: int) -> Array:
     if ratio == 1:
         return np.ones(1)
     steps = np.arange(-reach, reach + 1)
     taps = np.sinc(CUTOFF / ratio * steps) * np.kaiser(2 * reach + 1, KAISER)
-    return taps / taps.sum()
+    return np.asarray(taps / taps.sum())

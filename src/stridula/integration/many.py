@@ -18,6 +18,8 @@ from .._kernels.vectors import LANES
 from ..assembly import ContactRows
 from ..checks import ArgumentError, choice, count
 from ..records import Probe
+from ..records.dataset import RECORDED
+from ..records.plain import PlainRecord
 from ..system import System
 from .contact_solve import GaussSeidel
 from .cuda_march import CudaMarch, require_cuda
@@ -25,7 +27,6 @@ from .marches import March
 from .run import Run
 from .schemes import Scheme
 from .simulate import Arrays, Asked
-from .stops import Diverged
 from .together import march_together
 from .watchers import Progress, Watcher
 
@@ -41,7 +42,7 @@ DEVICES: dict[str, type[March]] = {"cpu": March, "cuda": CudaMarch}
 def simulate_many(
     systems: Sequence[System],
     duration: float,
-    reduce: Callable[[xr.Dataset], Any] | None = None,
+    reduce: Callable[[Any], Any] | None = None,
     *,
     scheme: Scheme | None = None,
     step: float | None = None,
@@ -54,6 +55,8 @@ def simulate_many(
     title: str = "",
     errors: str = "raise",
     provenance: bool = True,
+    labelled: bool = True,
+    variables: Sequence[str] | None = None,
 ) -> list[Any]:
     """March many systems in time, several at once on each processor.
 
@@ -95,6 +98,11 @@ def simulate_many(
         exception in its place while the others go on.
     provenance : bool, optional
         Whether each record says in ``attrs["scenario"]`` what it is of; those reduced at once can do without.
+    labelled : bool, optional
+        Whether records are labelled Datasets; else each is a `PlainRecord`, its arrays over time by name, which takes
+        a fraction of the time. `analysis.regime_of` takes both.
+    variables : sequence of str, optional
+        Names of the variables that plain records hold; all if left out.
 
     Returns
     -------
@@ -124,6 +132,7 @@ def simulate_many(
     if not isinstance(device, str) or device not in DEVICES:
         raise ArgumentError("device", f"be one of {', '.join(DEVICES)}", device)
     choice("errors", errors, ("raise", "return"))
+    wanted = _wanted(variables, labelled)
     if device == "cuda":
         require_cuda()
     asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve)
@@ -137,10 +146,21 @@ def simulate_many(
             arrays[number] = one
     if step is None:
         asked.common_step = min(steps, default=None)
-    record = partial(Run.record, provenance=provenance)
-    together = _Together(asked, arrays, record, reduce, watchers, DEVICES[device], title, results)
+    record = partial(Run.record, provenance=provenance) if labelled else Run.plain_record
+    together = _Together(asked, arrays, record, reduce, watchers, DEVICES[device], title, results, wanted)
     together.march_all(_groups(arrays, device), workers or os.cpu_count() or 1)
     return [results.found[number] for number in range(len(systems))]
+
+
+def _wanted(variables: Sequence[str] | None, labelled: bool) -> Sequence[str]:
+    """Return the names of the variables that records hold."""
+    if variables is None:
+        return RECORDED
+    if labelled or isinstance(variables, str) or not isinstance(variables, Sequence):
+        raise ValueError(f"variables must be a list of names, and labelled False, got {brief(variables)}")
+    for name in variables:
+        choice("variables", name, RECORDED)
+    return variables
 
 
 class _Results:
@@ -217,16 +237,17 @@ class _Together:
         self,
         asked: Asked,
         arrays: Mapping[int, Arrays],
-        record: Callable[[Run], xr.Dataset],
-        reduce: Callable[[xr.Dataset], Any] | None,
+        record: Callable[[Run], xr.Dataset | PlainRecord],
+        reduce: Callable[[Any], Any] | None,
         watchers: Sequence[Watcher],
         side_by_side: type[March],
         title: str,
         results: _Results,
+        wanted: Sequence[str] = RECORDED,
     ) -> None:
         self.side_by_side, self.title, self.began = side_by_side, title, time.perf_counter()
         self.asked, self.arrays, self.reduce, self.watchers = asked, arrays, reduce, watchers
-        self.record, self.results = record, results
+        self.record, self.results, self.wanted = record, results, wanted
         self.stop, self.lock, self.simulated = threading.Event(), threading.Lock(), 0.0
 
     def march_all(self, groups: Sequence[Sequence[int]], workers: int) -> None:
@@ -250,6 +271,8 @@ class _Together:
         for number in group:
             with self.results.failing(number):
                 started[number] = self.asked.run(self.arrays[number], title=self.title)
+                if self.wanted is not RECORDED:
+                    started[number].keep_only(self.wanted)
         runs = list(started.values())
         if not runs:
             return
@@ -258,7 +281,7 @@ class _Together:
         for number, run in started.items():
             record = self.record(run)
             if run.has_diverged:
-                record.attrs["message"] = str(Diverged(record, run.why_diverged()))
+                record.attrs["message"] = run.told_of_divergence()
             with self.results.failing(number):
                 self.results.found[number] = record if self.reduce is None else self.reduce(record)
 

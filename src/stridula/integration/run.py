@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -13,9 +13,11 @@ from .._kernels import layout as at
 from ..arrays import Array
 from ..assembly import Assembly
 from ..records import Probe
-from ..records.dataset import to_dataset
+from ..records.dataset import RECORDED, over_time, to_dataset
+from ..records.plain import PlainRecord
 from ..records.provenance import scenario_toml
 from ..records.state import LAYOUT, State
+from ..records.variables import STATUS_SHARE
 from ..system import System
 from ..version import __version__
 from .belief import Belief
@@ -27,7 +29,7 @@ from .marches import Chunk, Imposed, Impositions
 from .restart import imposed_at, motion_about, moved_on, state_of
 from .schemes import Scheme
 from .start import state_at_start
-from .stops import ENDED, contact_words, rank_words
+from .stops import ENDED, contact_words, divergence_words, rank_words
 from .timing import Timing
 
 CONTACT_COLUMN = {
@@ -52,6 +54,8 @@ ENERGY_COLUMN = {
     "contact_sweeps": at.ITERATIONS,
     "unsolved_steps": at.UNSOLVED,
 }
+# All of them.
+ALL_COLUMNS = tuple(range(at.COLUMNS))
 
 
 class Run:
@@ -89,10 +93,18 @@ class Run:
         self.energy_record = np.empty((at.ENERGIES, timing.samples))
         self.contact_record = np.empty((at.COLUMNS, len(system.contacts), timing.samples))
         self.probe_record = np.empty((timing.samples, len(probes)))
+        self.wanted: Collection[str] = RECORDED
+        self.columns: tuple[int, ...] = ALL_COLUMNS
         self.done = self.filled = 0
         self.ended = at.FINISHED
         self.tail: Array | None = None
         self.compile_time = self.wall_time = 0.0
+
+    def keep_only(self, wanted: Collection[str]) -> None:
+        """Keep only some variables, of which the plain record is."""
+        shares = range(at.SEPARATED, at.SLIDING + 1) if STATUS_SHARE.name in wanted else ()
+        columns = [column for name, column in CONTACT_COLUMN.items() if name in wanted]
+        self.wanted, self.columns = wanted, (*columns, *shares)
 
     @property
     def has_diverged(self) -> bool:
@@ -114,10 +126,10 @@ class Run:
         """Record a chunk, up to what ends the run."""
         if self.ended != at.FINISHED:
             return
-        completed, self.ended = self.belief.of(chunk)
+        completed, self.ended = self.belief.of(chunk, self.energy_record, self.done)
         kept = slice(self.done, self.done + completed)
-        self.energy_record[:, kept] = chunk.energies[:completed].T
-        self.contact_record[:, :, kept] = chunk.contacts[:completed].transpose(2, 1, 0)
+        for column in self.columns:
+            self.contact_record[column, :, kept] = chunk.contacts[:completed, :, column].T
         self.done += completed
         if self.probes:
             self._keep_probes(chunk.raw[: completed * self.timing.ratio])
@@ -148,27 +160,67 @@ class Run:
             return words
         return f"{words}; {rank_words(self.arrays, self.blocks, self.state)}"
 
+    def told_of_divergence(self) -> str:
+        """Return when and why the run diverged, in words."""
+        timing = self.timing
+        return divergence_words(ENDED[self.ended], self.done * timing.interval, timing.step, self.why_diverged())
+
     def record(self, interrupted: bool = False, provenance: bool = True) -> xr.Dataset:
         """Return the record, with the scenario that it is of in its attributes unless `provenance` is false."""
         timing, done = self.timing, self.done
-        ended = "interrupted" if interrupted and done < timing.samples else ENDED[self.ended]
+        last_step = self._last_step
+        return to_dataset(
+            self.system,
+            self._time(),
+            *self._over_time(),
+            self.probes,
+            self.probe_record[:done],
+            self.state,
+            np.concatenate([motion_about(self.described, last_step, timing.step), self.offset[None]]),
+            np.empty((0, len(self.probes))) if self.tail is None else self.tail,
+            self._attributes(interrupted, {"scenario": self._scenario()} if provenance else {}),
+        )
+
+    def plain_record(self) -> PlainRecord:
+        """Return the record as plain arrays, in a fraction of the time."""
+        over = over_time(self.system, *self._over_time(), self.wanted)
+        variables = {name: values for name, (_, values) in over.items()}
+        return PlainRecord(self._time(), variables, self.system.contact_names, self._attributes(False, {}))
+
+    @property
+    def _last_step(self) -> int:
+        return self.first_step + self.done * self.timing.ratio
+
+    def _time(self) -> Array:
+        """Return the time at the end of each sample interval [s]."""
+        first_sample = self.first_step // self.timing.ratio
+        return np.asarray((first_sample + np.arange(1, self.done + 1)) * self.timing.interval)
+
+    def _over_time(self) -> tuple[dict[str, Array], Array, dict[str, Array]]:
+        """Return the columns of the contacts, their shares of time and the energies, up to the end."""
+        done = self.done
         record, energies = self.contact_record[:, :, :done], self.energy_record[:, :done]
         columns = {name: record[column] for name, column in CONTACT_COLUMN.items()}
         sums = {name: energies[column] for name, column in ENERGY_COLUMN.items()}
-        sums["impact_loss"] = sums["convection_work"] - sums["friction_loss"] - sums["contact_work"]
-        sums["ledger_residual"] = (
-            (sums["kinetic_and_elastic"] - self.initial_energy)
-            + sums["damping_loss"]
-            - sums["drive_work"]
-            - sums["contact_work"]
-        )
-        first_sample = self.first_step // timing.ratio
-        last_step = self.first_step + done * timing.ratio
-        attributes: dict[str, Any] = {
+        if "impact_loss" in self.wanted:
+            sums["impact_loss"] = sums["convection_work"] - sums["friction_loss"] - sums["contact_work"]
+        if "ledger_residual" in self.wanted:
+            sums["ledger_residual"] = (
+                (sums["kinetic_and_elastic"] - self.initial_energy)
+                + sums["damping_loss"]
+                - sums["drive_work"]
+                - sums["contact_work"]
+            )
+        return columns, record[at.SEPARATED : at.SLIDING + 1].transpose(2, 1, 0), sums
+
+    def _attributes(self, interrupted: bool, scenario: dict[str, str]) -> dict[str, Any]:
+        """Return the attributes of the record."""
+        timing, last_step = self.timing, self._last_step
+        return {
             "title": self.title,
             "source": f"stridula {__version__}",
             "stridula_version": __version__,
-            **({"scenario": self._scenario()} if provenance else {}),
+            **scenario,
             "scheme": self.scheme.name,
             "step": timing.step,
             "steps_per_sample": timing.ratio,
@@ -182,21 +234,8 @@ class Run:
             **(imposed_at(self.arrays, last_step, timing.step) if self.system.imposed_velocity else {}),
             "compile_time": self.compile_time,
             "wall_time": self.wall_time,
-            "ended": ended,
+            "ended": "interrupted" if interrupted and self.done < timing.samples else ENDED[self.ended],
         }
-        return to_dataset(
-            self.system,
-            (first_sample + np.arange(1, done + 1)) * timing.interval,
-            columns,
-            record[at.SEPARATED : at.SLIDING + 1].transpose(2, 1, 0),
-            sums,
-            self.probes,
-            self.probe_record[:done],
-            self.state,
-            np.concatenate([motion_about(self.described, last_step, timing.step), self.offset[None]]),
-            np.empty((0, len(self.probes))) if self.tail is None else self.tail,
-            attributes,
-        )
 
     def _scenario(self) -> str:
         """Return the scenario that runs this run again, as TOML."""

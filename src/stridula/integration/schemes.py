@@ -175,9 +175,15 @@ class ExactModal:
         offset = position - np.where(rigid, 0.0, force / np.where(rigid, 1.0, angular) ** 2)
         swing = step * velocity + 0.5 * decay * offset
         back = np.exp(0.5 * decay) * (offset * np.cos(phase).real - swing * np.sinc(phase / np.pi).real)
-        free = step * velocity * exprel(decay) - 0.5 * force * step**2 * hyp1f1(1.0, 3.0, decay)
+        found = offset - back
+        if rigid.any():
+            free = step * velocity * exprel(decay) - 0.5 * force * step**2 * hyp1f1(1.0, 3.0, decay)
+            found = np.where(rigid, free, found)
+        strong = rate * step > FOLLOWED_BACK
+        if not strong.any():
+            return np.asarray(found)
         centred = _centred(self.coefficients(angular, rate, step), step, position, velocity, force)
-        return np.where(rate * step > FOLLOWED_BACK, centred, np.where(rigid, free, offset - back))
+        return np.where(strong, centred, found)
 
     def coupled_coefficients(self, stiffness: Array, damping: Array, step: float) -> Coefficients:
         """Return the matrices of exact free motion.
@@ -195,6 +201,8 @@ class ExactModal:
 
     def coupled_limit(self, stiffness: Array, damping: Array) -> float:
         """Return half the shortest damped period [s] of the coupled modes."""
+        if not stiffness.size:
+            return np.inf
         zero, one = np.zeros_like(stiffness), np.eye(len(stiffness))
         roots = np.linalg.eigvals(np.block([[zero, one], [-stiffness, -damping]]))
         highest = float(np.max(np.abs(roots.imag), initial=0.0))

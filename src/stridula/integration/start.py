@@ -199,7 +199,7 @@ def _gap(one: ContactRows, rows: Array, arrays: Assembly, terms: Array) -> float
     A displacement comes with the rounding of the largest term of its body, whichever way the contact looks at it.
     """
     gap = float(one.contact.gap + rows[0] @ arrays.position)
-    spans = [slice(*span) for span in arrays.spans.values()]
+    spans = [slice(*span) for span in arrays.spans.values()] if terms.any() else []
     felt = sum(float(np.linalg.norm(rows[0, span]) * np.linalg.norm(terms[span])) for span in spans)
     scale = one.contact.gap + felt
     if gap < -ROUND_OFF * scale:

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from .._kernels import layout as at
+from .._kernels.ledger import believed
 from ..arrays import Array
 from ..assembly import Assembly
 from ..checks import listed
@@ -33,11 +34,6 @@ CAUSE = {
 }
 # Longest list of contacts in a message, but for one that is longer.
 LONGEST_WORDS = 150
-# Share of the largest energy that round-off may make of the ledger, of the stored energy below zero and of losses
-# running back.
-LEDGER_TOLERANCE = 1e-8
-# Share of the largest energy that the contacts may seem to give: their work is centred over a step, their loss is not.
-CONTACT_TOLERANCE = 1e-2
 
 
 class Interrupted(KeyboardInterrupt):
@@ -52,17 +48,18 @@ class Diverged(RuntimeError):
     """A run whose result can no longer be believed; what was recorded before is in `record`, why in `reason`."""
 
     def __init__(self, record: xr.Dataset, contacts: str) -> None:
-        ended, step = record.attrs["ended"], record.attrs["step"]
         self.record = record
-        self.reason = (
-            f"{WHAT[ended]} after t = {_end(record):.6g} s (step {step:.3g} s); {contacts}; "
-            f"likely cause: {CAUSE[ended]}"
-        )
+        self.reason = divergence_words(record.attrs["ended"], _end(record), record.attrs["step"], contacts)
         super().__init__(self.reason)
 
 
 def _end(record: xr.Dataset) -> float:
     return float(record.sizes["time"] * record.attrs["sample_interval"])
+
+
+def divergence_words(ended: str, time: float, step: float, contacts: str) -> str:
+    """Return after which time [s] and why a result can no longer be believed, in words."""
+    return f"{WHAT[ended]} after t = {time:.6g} s (step {step:.3g} s); {contacts}; likely cause: {CAUSE[ended]}"
 
 
 def contact_words(names: tuple[str, ...], carried: Array) -> str:
@@ -121,20 +118,6 @@ def energy_created(
     damped_alone : bool
         Whether each mode is damped on its own, so that damping must take energy at every step, too.
     """
-    terms = np.abs(energies[: at.DAMPING_LOSS + 1])
-    largest_yet = np.maximum(np.maximum.accumulate(terms.max(axis=0)), max(largest, of_loads))
-    scale = LEDGER_TOLERANCE * largest_yet
-    residual = (
-        energies[at.STORED] - initial + energies[at.DAMPING_LOSS] - energies[at.DRIVE_WORK] - energies[at.CONTACT_WORK]
-    )
-    given = energies[at.CONTACT_WORK] - energies[at.CONVECTION_WORK]
-    wrong = (
-        (np.abs(residual) > scale)
-        | (energies[at.STORED] < -scale)
-        | (given > CONTACT_TOLERANCE * largest_yet + of_loads)
-    )
-    for takes, loss in ((dissipative, at.FRICTION_LOSS), (damped_alone, at.DAMPING_LOSS)):
-        if takes:
-            wrong |= np.diff(energies[loss], prepend=before[loss]) < -scale
-    found = np.flatnonzero(wrong)
-    return int(found[0]) if found.size else None
+    rows = np.ascontiguousarray(energies, dtype=float)
+    wrong, ended, _ = believed(rows, 0, rows.shape[1], before, initial, largest, of_loads, dissipative, damped_alone)
+    return wrong if ended == at.ENERGY_CREATED else None

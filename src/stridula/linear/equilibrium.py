@@ -164,12 +164,20 @@ def _ratio_at(speed: float, law: FrictionLaw, contact: str) -> float:
 
 def _acceleration(structure: Structure) -> float:
     """Return the largest acceleration that the loads could give a contact [m/s²]."""
+    return structure.once("acceleration", lambda: _largest_acceleration(structure))
+
+
+def _largest_acceleration(structure: Structure) -> float:
     rows = np.array([line.tangent for line in structure.lines])
     return float(np.linalg.norm(rows, axis=1).max() * np.linalg.norm(structure.load))
 
 
 def _force(structure: Structure) -> float:
     """Return the largest force that the loads could give a contact [N]."""
+    return structure.once("force", lambda: _largest_force(structure))
+
+
+def _largest_force(structure: Structure) -> float:
     rows = np.array([line.normal for line in structure.lines])
     return float(np.linalg.norm(structure.load) / np.linalg.norm(rows, axis=1).min())
 
@@ -198,7 +206,7 @@ class _Equations:
 
     def __init__(self, structure: Structure, status: Sequence[str], share: Array) -> None:
         held, pushes, self.closed, self.stuck = held_rows(structure, status, share)
-        _check_held(structure, held, [*self.closed, *self.stuck])
+        structure.once(("checked", *status), lambda: _check_held(structure, held, [*self.closed, *self.stuck]))
         self.free, modes = structure.free_motions(held), structure.mode_count
         _check_unbraked(structure, self.free)
         self.parts = modes, modes + self.free.shape[1]
@@ -213,9 +221,12 @@ class _Equations:
     def solved(self, load: Array, closed: Array, stuck: Array) -> list[Array]:
         """Return displacement, accelerations of free motions and forces under a load; what contacts hold is given."""
         right = np.concatenate([load, np.zeros(self.parts[1] - self.parts[0]), closed, stuck])
-        if not self.determinant:
-            return np.split(np.full(right.size, np.nan), self.parts)
-        return np.split(np.linalg.solve(self.matrix, right / self.scale) / self.scale, self.parts)
+        if self.determinant:
+            found = np.linalg.solve(self.matrix, right / self.scale) / self.scale
+        else:
+            found = np.full(right.size, np.nan)
+        first, second = self.parts
+        return [found[:first], found[first:second], found[second:]]
 
 
 def travelling(structure: Structure, at: Equilibrium, speed: Array) -> Array:
@@ -330,6 +341,8 @@ def _rank_is_short(rows: Array) -> bool:
     sizes = np.linalg.norm(rows, axis=1, keepdims=True)
     if not sizes.all() or len(rows) > rows.shape[1]:
         return True
+    if len(rows) == 1:
+        return False
     return bool(np.linalg.svd(rows / sizes, compute_uv=False)[-1] < UNMOVED)
 
 

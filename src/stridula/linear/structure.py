@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import Any, TypeVar
 
 import numpy as np
 import scipy.linalg
@@ -17,6 +18,7 @@ from ..contact import PointContact, RigidTrack
 from ..histories import History
 from ..system import System
 
+Found = TypeVar("Found")
 SEPARATED, STICKING, SLIDING = STATUS_WORDS
 CLOSED = (STICKING, SLIDING)
 # Relative size below which a motion does not move a row.
@@ -84,6 +86,7 @@ class Structure:
 
     def __init__(self, system: System, time: float | None = None) -> None:
         self.system, self.arrays = system, assemble(system)
+        self._known: dict[Any, Any] = {}
         settled = settled_time(system) if time is None else time
         # Later it is all the same, and no rate meets the kink of a history that settles.
         now = np.array([2.0 * settled + 1.0 if time is None else settled])
@@ -109,6 +112,7 @@ class Structure:
     def shifted(self, shifts: Array) -> Structure:
         """Return the system with its contact points shifted along their tracks by distances [m], shape (contacts,)."""
         other, spans = copy(self), self.arrays.spans
+        other._known = {}
         pairs = zip(self.arrays.contacts, shifts.tolist(), strict=True)
         other.lines = [_line(one, self.system, spans, shift) for one, shift in pairs]
         return other
@@ -163,7 +167,25 @@ class Structure:
             )
         return np.asarray(self.rigid @ found)
 
+    def once(self, key: Hashable, find: Callable[[], Found]) -> Found:
+        """Return what is found once about the contacts where they are, by what it is.
+
+        Parameters
+        ----------
+        key : hashable
+            What it is.
+        find : callable
+            What finds it.
+        """
+        if key not in self._known:
+            self._known[key] = find()
+        found: Found = self._known[key]
+        return found
+
     def _following(self, status: Sequence[str]) -> Array:
+        return self.once(("following", *status), partial(self._follow, status))
+
+    def _follow(self, status: Sequence[str]) -> Array:
         tangents, normals = self._rigid_rows()
         slips, openings = self.rates
         closed, stuck = (np.array([one in kinds for one in status]) for kinds in (CLOSED, (STICKING,)))
@@ -174,6 +196,9 @@ class Structure:
 
     def _rigid_rows(self) -> tuple[Array, Array]:
         """Return how rigid motions move the contacts along their tangents and normals, each (contacts, motions)."""
+        return self.once("rigid rows", self._find_rigid_rows)
+
+    def _find_rigid_rows(self) -> tuple[Array, Array]:
         rows = [np.array([getattr(line, word) for line in self.lines]) for word in ("tangent", "normal")]
         felt = [one @ self.rigid for one in rows]
         sizes = [UNMOVED * np.linalg.norm(one, axis=1, keepdims=True) for one in rows]
@@ -192,6 +217,9 @@ class Structure:
 
     def free_motions(self, rows: Array) -> Array:
         """Return the rigid motions that some rows do not feel, orthonormal, shape (modes, motions)."""
+        return self.once(("free", rows.tobytes()), partial(self._find_free_motions, rows))
+
+    def _find_free_motions(self, rows: Array) -> Array:
         if not self.rigid.shape[1] or not len(rows):
             return self.rigid
         felt = rows @ self.rigid / np.linalg.norm(rows, axis=1, keepdims=True)

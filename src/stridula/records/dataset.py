@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,6 +26,11 @@ from .variables import (
     described,
     status_attributes,
 )
+
+# Variables over time that are the same for all systems.
+OVER_TIME = {variable.name: variable for variable in (*CONTACT, *ENERGY, STATUS_SHARE, *SOLVE)}
+# All variables over time but the probes.
+RECORDED = (*OVER_TIME, STATUS.name, FRICTION_STATE.name)
 
 
 def to_dataset(
@@ -54,21 +59,9 @@ def to_dataset(
         "contact_status": ("contact_status", list(STATUS_WORDS)),
         "contact": ("contact", list(system.contact_names)),
     }
-    along = ("time", "contact")
-    data: dict[str, Any] = {
-        variable.name: (along, contact_columns[variable.name].T, attributes_of(variable)) for variable in CONTACT
-    }
-    data |= {variable.name: ("time", energies[variable.name], attributes_of(variable)) for variable in ENERGY}
-    data[STATUS.name] = (along, contact_columns[STATUS.name].T.astype(np.int8), status_attributes())
-    data[STATUS_SHARE.name] = ((*along, "contact_status"), status_share, attributes_of(STATUS_SHARE))
-    for name in ("jammed_steps", "landings"):
-        data[name] = (along, contact_columns[name].T.astype(np.int64), data[name][2])
-    data |= _friction_state(system, contact_columns[FRICTION_STATE.name])
-    if len(system.contacts) > 1:
-        for variable in SOLVE:
-            data[variable.name] = ("time", energies[variable.name].astype(np.int64), attributes_of(variable))
-    else:
-        data = {name: _of_the_one_contact(*given) for name, given in data.items()}
+    over = over_time(system, contact_columns, status_share, energies)
+    data: dict[str, Any] = {name: (*given, _attributes(name, system)) for name, given in over.items()}
+    if len(system.contacts) == 1:
         del coordinates["contact"]
     for kind, variable in PROBES.items():
         chosen = [k for k, probe in enumerate(probes) if type(probe).__name__.lower() == kind]
@@ -93,21 +86,56 @@ def to_dataset(
     return xr.Dataset(data, coordinates, attributes)
 
 
-def _of_the_one_contact(dimensions: Any, values: Array, attributes: dict[str, Any]) -> tuple[Any, Array, Any]:
+def over_time(
+    system: System,
+    contact_columns: Mapping[str, Array],
+    status_share: Array,
+    energies: Mapping[str, Array],
+    wanted: Collection[str] = RECORDED,
+) -> dict[str, tuple[tuple[str, ...], Array]]:
+    """Return what is recorded of contacts and energies, with its dimensions; arguments as those of `to_dataset`."""
+    along = ("time", "contact")
+    found: dict[str, tuple[tuple[str, ...], Array]] = {
+        variable.name: (along, contact_columns[variable.name].T) for variable in CONTACT if variable.name in wanted
+    }
+    found |= {variable.name: (("time",), energies[variable.name]) for variable in ENERGY if variable.name in wanted}
+    if STATUS.name in wanted:
+        found[STATUS.name] = (along, contact_columns[STATUS.name].T.astype(np.int8))
+    if STATUS_SHARE.name in wanted:
+        found[STATUS_SHARE.name] = ((*along, "contact_status"), status_share)
+    for name in ("jammed_steps", "landings"):
+        if name in wanted:
+            found[name] = (along, contact_columns[name].T.astype(np.int64))
+    units = _units_of_states(system)
+    if FRICTION_STATE.name in wanted and any(units):
+        # NaN for contacts whose law has no state.
+        kept = np.where(np.array(units)[:, None] != "", contact_columns[FRICTION_STATE.name], np.nan).T
+        found[FRICTION_STATE.name] = (along, kept)
+    if len(system.contacts) > 1:
+        solved = [one.name for one in SOLVE if one.name in wanted]
+        return found | {name: (("time",), energies[name].astype(np.int64)) for name in solved}
+    return {name: _of_the_one_contact(*given) for name, given in found.items()}
+
+
+def _of_the_one_contact(dimensions: tuple[str, ...], values: Array) -> tuple[tuple[str, ...], Array]:
     """Return a variable without the dimension of the contacts, of which there is one."""
     if "contact" not in dimensions:
-        return dimensions, values, attributes
-    return tuple(name for name in dimensions if name != "contact"), values[:, 0], attributes
+        return dimensions, values
+    return (dimensions[0], *dimensions[2:]), values[:, 0]
 
 
-def _friction_state(system: System, values: Array) -> dict[str, Any]:
-    """Return the internal state of the laws of friction where one has any, NaN for contacts without."""
-    units = [contact.friction.state_units for contact in system.contacts]
-    if not any(units):
-        return {}
-    kept = np.where(np.array(units)[:, None] != "", values, np.nan).T
-    attributes = {**attributes_of(FRICTION_STATE), "units": " or ".join(sorted(set(units) - {""}))}
-    return {FRICTION_STATE.name: (("time", "contact"), kept, attributes)}
+def _units_of_states(system: System) -> list[str]:
+    return [contact.friction.state_units for contact in system.contacts]
+
+
+def _attributes(name: str, system: System) -> dict[str, Any]:
+    """Return the attributes of a variable over time."""
+    if name == STATUS.name:
+        return status_attributes()
+    if name == FRICTION_STATE.name:
+        units = " or ".join(sorted({*_units_of_states(system)} - {""}))
+        return {**attributes_of(FRICTION_STATE), "units": units}
+    return attributes_of(OVER_TIME[name])
 
 
 def probe_label(probe: Probe, system: System) -> str:

@@ -70,7 +70,7 @@ def load(path: str | Path) -> xr.Dataset:
     ValueError
         If it is not a record.
     """
-    scenario_of(path)
+    origin_of(path)
     with _readable(path):
         run = xr.load_dataset(path, engine="h5netcdf", decode_times=False)
     run.attrs = {name: value.item() if isinstance(value, np.generic) else value for name, value in run.attrs.items()}
@@ -78,15 +78,37 @@ def load(path: str | Path) -> xr.Dataset:
 
 
 def scenario_of(path: str | Path) -> tuple[str, str]:
-    """Return the title and the scenario, as TOML, that a record file carries."""
-    attributes: dict[str, Any] = {}
+    """Return the title and the scenario, as TOML, that a record file carries.
+
+    Raises
+    ------
+    ValueError
+        If it is no record, or says what a function made, which no file holds.
+    """
+    origin = origin_of(path)
+    if "scenario" not in origin:
+        raise ValueError(
+            f"path must be a record of a scenario, got {named(path)}, of the function {origin['function']}"
+        )
+    return origin.get("title", ""), origin["scenario"]
+
+
+def origin_of(path: str | Path) -> dict[str, str]:
+    """Return what a record file says of where it comes from: ``title``, and ``scenario`` or ``function``.
+
+    Raises
+    ------
+    ValueError
+        If it is no record.
+    """
+    found: dict[str, Any] = {}
     if is_record(path):
         with _readable(path), h5py.File(path, "r") as file:
-            attributes = {name: file.attrs[name] for name in ("title", "scenario") if name in file.attrs}
-    if not isinstance(attributes.get("scenario"), str):
+            found = {name: file.attrs[name] for name in ("title", "scenario", "function") if name in file.attrs}
+    origin = {name: value for name, value in found.items() if isinstance(value, str)}
+    if not {"scenario", "function"} & set(origin):
         raise ArgumentError("path", "be a record that stridula wrote", path, got=named(path))
-    title = attributes.get("title")
-    return (title if isinstance(title, str) else ""), attributes["scenario"]
+    return origin
 
 
 def is_record(path: str | Path) -> bool:

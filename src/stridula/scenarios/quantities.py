@@ -79,6 +79,12 @@ def parts(value: Any) -> tuple[float, str] | None:
     return (float(match[1]), match[2]) if match else None
 
 
+def unit_of(spelling: str) -> str | None:
+    """Return the SI unit that a spelling such as ``"mm"`` is one of, None if it is of none."""
+    plain = spelling.replace("²", "2").replace("³", "3")
+    return next((unit for unit, spellings in UNITS.items() if plain in spellings), None)
+
+
 def is_quantity(value: Any, unit: str) -> bool:
     """Return whether a value is a number in some unit of the dimension of `unit`."""
     try:

@@ -16,11 +16,24 @@ import xarray as xr
 
 from ..analysis.regimes import REGIMES
 from ..arrays import Array
-from ..checks import ArgumentError, brief, choice, count, finite, instance, listed, non_negative, positive, suggestion
+from ..checks import (
+    ArgumentError,
+    brief,
+    by_key,
+    choice,
+    count,
+    finite,
+    instance,
+    listed,
+    non_negative,
+    positive,
+    suggestion,
+)
 from ..linear.equilibrium import HELD, JAMMED, LIFTED_OFF
 from ..linear.structure import SLIDING
 from .measures import MEASURES, Value, value_of
 from .points import Range, ranges_of
+from .sources import SystemOf, check_takes, takes, takes_one
 from .sweeps import sweep
 
 Point = dict[str, Any]
@@ -114,7 +127,7 @@ class CalibrationProgress:
 
 
 def calibrate(
-    source: str | Path | xr.Dataset | Evaluate,
+    source: str | Path | xr.Dataset | SystemOf | Evaluate,
     ranges: Mapping[str, Range | tuple[Any, Any]],
     targets: Mapping[str, Target | tuple[float, float] | str],
     *,
@@ -136,8 +149,9 @@ def calibrate(
     Parameters
     ----------
     source : str, Path, xarray.Dataset or callable
-        A scenario, or a function that takes a list of points, values by key, and returns for each its measures by name,
-        those of the targets at least: for targets that take several runs.
+        A scenario, or a function of the parameters by name that makes a system, as for `sweep`. Or, for targets that
+        take several runs, a function of one argument, a list of points, values by key, that returns for each its
+        measures by name, those of the targets at least.
     ranges : mapping
         Where each parameter is searched: a `Range` or its two ends.
     targets : mapping
@@ -183,7 +197,9 @@ def calibrate(
     count("generations", generations, high=MOST_GENERATIONS)
     count("seed", seed, low=0)
     non_negative("spread", spread)
-    evaluate = source if callable(source) else _sweeping(source, aimed, measures or {}, options)
+    names = [*searched, *by_key("overrides", options.get("overrides"))]
+    is_evaluation = callable(source) and not takes(source, names)
+    evaluate = _evaluation(source, names) if is_evaluation else _sweeping(source, aimed, measures or {}, options)
     random = np.random.default_rng(seed)
     search = _Search(searched, aimed, evaluate, generations, watchers)
     first = _first_population(searched, population, random, start, spread)
@@ -251,6 +267,20 @@ def _targets(targets: Any) -> dict[str, Target | str]:
 def miss_of(target: Target | str, value: Value) -> float:
     """Return the miss of a target; of a word 0 or 1."""
     return float(value != target) if isinstance(target, str) else target.miss(value)
+
+
+def _evaluation(function: Any, names: Sequence[str]) -> Evaluate:
+    """Return a function of a list of points, if it may be one.
+
+    Raises
+    ------
+    ValueError
+        If it does not take one argument.
+    """
+    if not takes_one(function):
+        check_takes(function, names)
+    evaluate: Evaluate = function
+    return evaluate
 
 
 def _sweeping(

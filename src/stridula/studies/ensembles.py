@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from numbers import Real
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ import xarray as xr
 
 from ..analysis import status_share
 from ..arrays import Array
-from ..checks import ArgumentError, brief, count, instance, positive, within
+from ..checks import ArgumentError, brief, by_key, count, instance, positive, within
 from ..drives import Drive, InitialVelocity
 from ..drives import InitialState as State
 from ..integration import simulate_many
@@ -26,10 +27,11 @@ OWN = ("perturbation", "ended", "message", "run", "bound")
 
 
 def ensemble(
-    system: System,
-    duration: float,
+    system: System | str | Path | xr.Dataset | Callable[..., Any],
+    duration: float | None,
     measures: Mapping[str, Measure],
     *,
+    overrides: Mapping[str, Any] | None = None,
     runs: int = 8,
     perturbation: float = 1e-6,
     seed: int = 0,
@@ -47,12 +49,14 @@ def ensemble(
 
     Parameters
     ----------
-    system : System
-        What to simulate.
-    duration : float
-        Time to simulate [s].
+    system : System, str, Path, xarray.Dataset or callable
+        What to simulate: a system, a scenario as for `load_scenario`, or a function that makes one, as for `sweep`.
+    duration : float or None
+        Time to simulate [s]; that of the scenario or the function if None.
     measures : mapping
         Functions of a record that return a number, by name. They run in threads.
+    overrides : mapping, optional
+        Values to set in the scenario by key, or the arguments of the function.
     runs : int, optional
         Number of runs, at least 2.
     perturbation : float, optional
@@ -64,7 +68,8 @@ def ensemble(
     workers : int, optional
         Runs at a time; as many as there are processors if left out.
     **options
-        Arguments of `simulate_many` such as `scheme`, `step`, `sample_rate`, `probes` and `device`.
+        Arguments of `simulate_many` such as `scheme`, `step`, `sample_rate`, `probes` and `device`, in place of those
+        of the scenario or the function.
 
     Returns
     -------
@@ -76,9 +81,10 @@ def ensemble(
     Raises
     ------
     ValueError
-        If an argument is out of its range, or a measure returns what is not a number.
+        If an argument is out of its range, a measure returns what is not a number, or a function takes other
+        parameters, raises anything or makes anything else.
     """
-    instance("system", system, System)
+    system, duration, options = _made(system, duration, by_key("overrides", overrides), options)
     positive("duration", duration)
     named = _checked(measures)
     count("runs", runs, low=2, high=MOST_RUNS)
@@ -158,6 +164,23 @@ def median_and_interval(values: Sequence[float] | Array, confidence: float = 0.9
     below = int(np.searchsorted(chances, (1.0 - confidence) / 2.0))
     low, high = (known[below - 1], known[-below]) if below else (nan, nan)
     return float(np.median(known)), float(low), float(high)
+
+
+def _made(
+    given: Any, duration: float | None, values: Mapping[str, Any], options: dict[str, Any]
+) -> tuple[System, Any, dict[str, Any]]:
+    """Return the system that is given or made, how long to simulate it, and how."""
+    if isinstance(given, System) or not (callable(given) or isinstance(given, (str, Path, xr.Dataset))):
+        instance("system", given, System)
+        if values:
+            raise ValueError(f"overrides must be left out of an ensemble of a system, got {brief(dict(values))}")
+        return given, duration, options
+    # Only here: an ensemble of a system needs no scenarios.
+    from .sources import ARGUMENTS, made_once
+
+    scenario = made_once(given, values, {} if duration is None else {"duration": duration})
+    own = {name: getattr(scenario, name) for name in ARGUMENTS if name != "duration"}
+    return scenario.system, scenario.duration, own | options
 
 
 def _checked(measures: Any) -> dict[str, Measure]:

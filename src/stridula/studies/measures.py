@@ -12,15 +12,17 @@ import numpy as np
 import xarray as xr
 
 from ..analysis import advance, dominant_frequency, status_share
-from ..analysis.regimes import MEANINGS, regime_of
+from ..analysis.regimes import MEANINGS, TAKEN, regime_of
 from ..analysis.signals import samples
 from ..analysis.stability import stability_of
 from ..checks import ArgumentError, brief, suggestion
+from ..records.plain import PlainRecord
 from ..records.variables import STATUS_WORDS
 from ..system import System
 
 Value = float | str
 Values = Mapping[str, Value]
+Run = xr.Dataset | PlainRecord
 # Variables that every sweep has.
 OWN = ("ended", "message", "point")
 
@@ -58,41 +60,54 @@ class Measure:
     columns : tuple of Column
         What it gives.
     of_record : callable or None
-        Function of a record that returns the values of the columns by name.
+        Function of a record, labelled or plain, that returns the values of the columns by name.
     of_system : callable or None
         Function of a system that returns the values of the columns by name; it needs no run.
     also : tuple of str
         Other measures that belong to it.
+    needs : tuple of str
+        Variables of a record that it looks at.
     """
 
     name: str
     columns: tuple[Column, ...]
-    of_record: Callable[[xr.Dataset], Values] | None = None
+    of_record: Callable[[Run], Values] | None = None
     of_system: Callable[[System], Values] | None = None
     also: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
 
 
-def _shares(run: xr.Dataset) -> Values:
-    return {f"{status}_share": status_share(run, status) for status in STATUS_WORDS}
+def _labelled(run: Run, *names: str) -> xr.Dataset:
+    """Return a record with labels on some of its variables at least."""
+    return run.labelled(*names) if isinstance(run, PlainRecord) else run
 
 
-def _dominant_frequency(run: xr.Dataset) -> Values:
-    return {"dominant_frequency": dominant_frequency(run["normal_force"])}
+def _shares(run: Run) -> Values:
+    known = _labelled(run, "status_share")
+    return {f"{status}_share": status_share(known, status) for status in STATUS_WORDS}
 
 
-def _peak_force(run: xr.Dataset) -> Values:
-    return {"peak_force": float(samples(run["normal_force"])[0].max())}
+def _normal_force(run: Run) -> xr.DataArray:
+    return _labelled(run, "normal_force")["normal_force"]
 
 
-def _mean_force(run: xr.Dataset) -> Values:
-    return {"mean_force": float(samples(run["normal_force"])[0].mean())}
+def _dominant_frequency(run: Run) -> Values:
+    return {"dominant_frequency": dominant_frequency(_normal_force(run))}
 
 
-def _travel(run: xr.Dataset) -> Values:
-    return {"travel": advance(run)}
+def _peak_force(run: Run) -> Values:
+    return {"peak_force": float(samples(_normal_force(run))[0].max())}
 
 
-def _step(run: xr.Dataset) -> Values:
+def _mean_force(run: Run) -> Values:
+    return {"mean_force": float(samples(_normal_force(run))[0].mean())}
+
+
+def _travel(run: Run) -> Values:
+    return {"travel": advance(_labelled(run, "contact_position"))}
+
+
+def _step(run: Run) -> Values:
     return {name: float(run.attrs[name]) for name in ("step", "sample_interval")}
 
 
@@ -113,25 +128,33 @@ MEASURES = {
                 Column("sliding_share", "1", "share of the time in which the contact slides"),
             ),
             _shares,
+            needs=("status_share",),
         ),
         Measure(
             "dominant_frequency",
             (Column("dominant_frequency", "Hz", "dominant frequency of the normal force"),),
             _dominant_frequency,
+            needs=("normal_force",),
         ),
         Measure(
             "peak_force",
             (Column("peak_force", "N", "largest normal force, of means over the sample interval"),),
             _peak_force,
+            needs=("normal_force",),
         ),
-        Measure("mean_force", (Column("mean_force", "N", "mean normal force"),), _mean_force),
-        Measure("travel", (Column("travel", "m", "net way of the contact point along the track"),), _travel),
+        Measure("mean_force", (Column("mean_force", "N", "mean normal force"),), _mean_force, needs=("normal_force",)),
+        Measure(
+            "travel",
+            (Column("travel", "m", "net way of the contact point along the track"),),
+            _travel,
+            needs=("contact_position",),
+        ),
         Measure(
             "step",
             (Column("step", "s", "time step of the run"), Column("sample_interval", "s", "time between samples")),
             _step,
         ),
-        Measure("regime", tuple(map(_regime_column, MEANINGS)), regime_of, also=("stability",)),
+        Measure("regime", tuple(map(_regime_column, MEANINGS)), regime_of, also=("stability",), needs=TAKEN),
         Measure(
             "stability",
             (
@@ -179,13 +202,19 @@ class Asked:
         return bool(self.functions) or any(measure.of_record for measure in self.measures)
 
     @property
+    def variables(self) -> tuple[str, ...] | None:
+        """The variables of a record that are looked at, None where functions may look at all."""
+        needed = [name for measure in self.measures for name in measure.needs]
+        return None if self.functions else tuple(dict.fromkeys(needed))
+
+    @property
     def columns(self) -> tuple[Column, ...]:
         """What they give; of functions only the names are known."""
         known = [column for measure in self.measures for column in measure.columns]
         return (*known, *(Column(name, "", name) for name in self.functions))
 
-    def of_record(self, run: xr.Dataset) -> dict[str, Value]:
-        """Return all that is measured of a record.
+    def of_record(self, run: Run) -> dict[str, Value]:
+        """Return all that is measured of a record; functions take a labelled one.
 
         Raises
         ------
@@ -199,7 +228,7 @@ class Asked:
                     found |= {name: value_of(value) for name, value in measure.of_record(run).items()}
         for name, function in self.functions.items():
             with _naming(name):
-                found[name] = value_of(function(run))
+                found[name] = value_of(function(run))  # type: ignore[arg-type]
         return found
 
     def of_system(self, system: System) -> dict[str, Value]:

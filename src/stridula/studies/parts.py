@@ -88,12 +88,13 @@ class Parts:
         """Return in words in what another sweep differs."""
         words = {
             "scenario": "another scenario",
+            "function": "another function",
             "sweep": "other points or options",
             "stridula_version": "another version",
         }
         if "sweep" not in other:
             return ", another file"
-        differing = [word for name, word in words.items() if name in other and other[name] != self.identity[name]]
+        differing = [word for name, word in words.items() if name in other and other[name] != self.identity.get(name)]
         return f", of {' and '.join(differing)}" if differing else ""
 
     def done(self, sizes: dict[int, int]) -> dict[int, list[Outcome]]:

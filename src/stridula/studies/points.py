@@ -228,19 +228,21 @@ class Layout:
     asked: dict[str, Any]
 
 
-def laid_out(points: Grid | LatinHypercube | Sequence[Mapping[str, Any]]) -> Layout:
+def laid_out(points: Grid | LatinHypercube | Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]]) -> Layout:
     """Return points one after another.
 
     Parameters
     ----------
-    points : Grid, LatinHypercube or sequence of mapping
-        The points; of a list each entry has a value for each of the same keys.
+    points : Grid, LatinHypercube, mapping or sequence of mapping
+        The points; a mapping is that of a grid, of a list each entry has a value for each of the same keys.
 
     Raises
     ------
     ValueError
         If they are none of these.
     """
+    if isinstance(points, Mapping):
+        points = Grid(points)
     if isinstance(points, Grid):
         sizes = {key: len(given) for key, given in points.values.items()}
         return Layout(tuple(sizes), tuple(product(*points.values.values())), sizes, True, {"grid": dict(points.values)})
@@ -249,7 +251,7 @@ def laid_out(points: Grid | LatinHypercube | Sequence[Mapping[str, Any]]) -> Lay
         ranges = {key: asdict(one) for key, one in points.ranges.items()}
         asked = {"latin hypercube": {"ranges": ranges, "count": points.count, "seed": points.seed}}
         return Layout(tuple(columns), tuple(zip(*columns.values(), strict=True)), {POINT: points.count}, False, asked)
-    if isinstance(points, (str, Mapping)) or not isinstance(points, Sequence):
+    if isinstance(points, str) or not isinstance(points, Sequence):
         raise ArgumentError("points", "be a Grid, a LatinHypercube or a list of values by key", points)
     return _listed(points)
 

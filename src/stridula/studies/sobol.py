@@ -16,17 +16,20 @@ from ..arrays import Array
 from ..checks import ArgumentError, count, within
 from ..records.variables import described
 from .points import Range, range_of
+from .sources import SystemOf
 from .sweeps import sweep
 from .swept import failures, usual_failure
 
 MOST_SAMPLES, MOST_RESAMPLES = 2**16, 100_000
 BOUNDS = ("low", "high")
+# What a sweep says of where it comes from.
+ORIGIN = ("title", "scenario", "function", "stridula_version")
 # Of fewer samples no interval can be told.
 FEWEST = 8
 
 
 def sensitivity(
-    scenario: str | Path | xr.Dataset,
+    scenario: str | Path | xr.Dataset | SystemOf,
     uncertain: Mapping[str, Any],
     measures: Any = ("regime",),
     *,
@@ -44,8 +47,8 @@ def sensitivity(
 
     Parameters
     ----------
-    scenario : str, Path or xarray.Dataset
-        A scenario, as for `sweep`.
+    scenario : str, Path, xarray.Dataset or callable
+        A scenario, or a function of the parameters by name that makes a system, as for `sweep`.
     uncertain : mapping
         Distribution of each parameter by key: the two ends of a uniform one, a `Range`, or a frozen distribution of
         ``scipy.stats`` in SI. They are independent of each other.
@@ -97,7 +100,7 @@ def sensitivity(
         # The two sets are independent draws, the mixed ones are not.
         data |= _probabilities(found["regime"].values[: 2 * samples], confidence)
         coordinates["regime"] = list(REGIMES)
-    origin = {name: found.attrs[name] for name in ("title", "scenario", "stridula_version") if name in found.attrs}
+    origin = {name: found.attrs[name] for name in ORIGIN if name in found.attrs}
     if messages:
         origin["failure"] = usual_failure(messages)
     return xr.Dataset(data, coordinates, origin | {"confidence": confidence, "samples": samples, "seed": seed})

@@ -17,24 +17,19 @@ from typing import Any
 import xarray as xr
 
 from ..checks import ArgumentError, by_key, count
-from ..records.provenance import toml
-from ..scenarios.errors import ScenarioError
-from ..scenarios.keys import located, with_values
-from ..scenarios.load import scenario_of_tables, with_matrices
-from ..scenarios.read import read_tables
-from ..scenarios.varied import Varied, varied_keys
+from ..scenarios.varied import Varied
 from ..version import __version__
 from .machines import on_machines
 from .measures import asked_for
 from .parts import Parts
 from .points import Grid, LatinHypercube, Layout, laid_out, plain_python
+from .processes import Helpers
+from .sources import SystemOf, varying
 from .swept import check_names, swept
 from .task import Outcome, Task, one_thread_each
 
 # Points that are computed in one go, whoever computes them: they share a time step, and runs march side by side.
 POINTS_OF_A_PART = 64
-# Samples per second recorded where neither the scenario nor the sweep says less: enough for what is measured by name.
-SAMPLE_RATE = 20e3
 
 
 @dataclass(frozen=True)
@@ -60,8 +55,8 @@ Watcher = Callable[[SweepProgress], None]
 
 
 def sweep(
-    scenario: str | Path | xr.Dataset,
-    points: Grid | LatinHypercube | Sequence[Mapping[str, Any]],
+    scenario: str | Path | xr.Dataset | SystemOf,
+    points: Grid | LatinHypercube | Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]],
     measures: Any,
     *,
     overrides: Mapping[str, Any] | None = None,
@@ -73,7 +68,7 @@ def sweep(
     client: Any = None,
     watchers: Sequence[Watcher] = (),
 ) -> xr.Dataset:
-    """Run a scenario at many points of its parameters and return the measures of each.
+    """Run a scenario, or what a function makes, at many points of its parameters and return the measures of each.
 
     Points are computed in parts of 64, in their order. Within a part runs march side by side, with the shortest of the
     time steps that they would take alone. A part does not depend on who computes it: any number of workers, other
@@ -84,17 +79,20 @@ def sweep(
 
     Parameters
     ----------
-    scenario : str, Path or xarray.Dataset
-        Name of a shipped case, a TOML file or a record.
-    points : Grid, LatinHypercube or sequence of mapping
-        Values by key, as the overrides of `load_scenario`.
+    scenario : str, Path, xarray.Dataset or callable
+        Name of a shipped case, a TOML file or a record. Or a function that takes values by name and returns a `System`,
+        a `Scenario`, or a `System` and a dictionary of arguments of `simulate`; texts such as ``"10 deg"`` come to it
+        in SI.
+    points : Grid, LatinHypercube, mapping or sequence of mapping
+        Values by key, as the overrides of `load_scenario`; of a function by its parameters. A mapping is that of a
+        `Grid`.
     measures : str, mapping or sequence of them
         What is measured: names of measures, functions by names of one's own. A function takes a record and returns a
-        number or a text; it runs in threads, and with a `client` on other machines.
+        number or a text; it runs in threads, in processes, and with a `client` on other machines.
     overrides : mapping, optional
         Values of other keys, the same at every point.
     duration : float or str, optional
-        Time to simulate [s]; the scenario's if left out.
+        Time to simulate [s]; that of the scenario or the function if left out.
     sample_rate : float or str, optional
         Samples per second recorded [Hz]; the scenario's if left out, at most 20 kHz.
     probes : bool, optional
@@ -103,7 +101,9 @@ def sweep(
         NetCDF file to write. Parts that are done are kept in a folder beside it, ``<out>.parts``; the same call resumes
         from there. Two processes may compute the same sweep at once.
     workers : int, optional
-        Parts at a time; as many as there are processors if left out.
+        Parts at a time; as many as there are processors if left out. They are computed in threads, and in processes
+        once threads wait for each other; functions that no other process can import, such as those of the script
+        itself, keep all of it in threads.
     client : distributed.Client, optional
         Machines that compute the parts, in place of this one.
     watchers : sequence of callable, optional
@@ -121,8 +121,9 @@ def sweep(
     ScenarioError
         If the scenario cannot be used, or a key is not known, means several places or takes values of another kind.
     ValueError
-        If another argument is not usable, or `out` is another file or that of another sweep, which is not touched.
-        Functions among the measures are told apart by their names only.
+        If another argument is not usable, a function takes other parameters or fails at the first and the last point,
+        or `out` is another file or that of another sweep, which is not touched. Functions are told apart by their names
+        only.
     OSError
         If the file or a part cannot be written; finished parts are kept.
     RuntimeError
@@ -177,7 +178,7 @@ class _Plan:
     @property
     def identity(self) -> dict[str, str]:
         """What tells this sweep from others."""
-        return {name: self.attributes[name] for name in ("scenario", "sweep", "stridula_version")}
+        return {name: value for name, value in self.attributes.items() if name != "title"}
 
     @cached_property
     def parts(self) -> dict[int, list[tuple[Any, ...]]]:
@@ -205,61 +206,16 @@ def _planned(
     check_names(layout, asked.columns)
     fixed = {key: plain_python(value) for key, value in overrides.items()}
     timing = {"duration": plain_python(duration), "sample_rate": plain_python(sample_rate)}
-    given = {f"simulation.{name}": value for name, value in timing.items() if value is not None}
-    tables, keys, values, has_own_rate = _scenario(scenario, fixed | given, layout)
+    given = {name: value for name, value in timing.items() if value is not None}
+    found = varying(scenario, fixed, given, layout)
     with_probes = bool(asked.functions) if probes is None else bool(probes)
-    highest_rate = float("inf") if has_own_rate else SAMPLE_RATE
-    task = Task(tables, tuple(key.path for key in keys), asked, highest_rate, with_probes)
     wanted: dict[str, Any] = {"points": layout.asked, "measures": list(asked.names), "functions": list(asked.functions)}
     wanted |= {"overrides": fixed, **timing, "probes": with_probes}
-    attributes = {
-        "title": str(tables.get("title", "")),
-        "scenario": toml(tables),
+    attributes = found.attributes | {
         "stridula_version": __version__,
         "sweep": json.dumps(wanted, ensure_ascii=False, default=str),
     }
-    return _Plan(task, layout, keys, values, attributes)
-
-
-def _scenario(
-    scenario: Any, fixed: Mapping[str, Any], layout: Layout
-) -> tuple[dict[str, Any], list[Varied], list[tuple[Any, ...]], bool]:
-    """Return the scenario that all points share, the keys that are varied, and their values at each point.
-
-    And whether the sample rate is set or varied, not left to the scenario.
-    """
-    tables, places, problems = located(read_tables(scenario), fixed)
-    if problems:
-        raise ScenarioError(problems)
-    keys = varied_keys(tables, layout.keys, layout.values)
-    for key in keys:
-        twin = next((name for name, path in places.items() if path == key.path), None)
-        if twin is not None:
-            raise ScenarioError([f"key must be set or varied, got both {twin!r} and {key.key!r}"])
-    columns = [
-        [key.read(value) for value in column]
-        for key, column in zip(keys, zip(*layout.values, strict=True), strict=True)
-    ]
-    values = list(zip(*columns, strict=True))
-    has_own_rate = ("simulation", "sample_rate") in [*places.values(), *(key.path for key in keys)]
-    return _usable(tables, keys, values), keys, values, has_own_rate
-
-
-def _usable(tables: dict[str, Any], keys: Sequence[Varied], values: Sequence[Sequence[Any]]) -> dict[str, Any]:
-    """Return the tables with matrices in place of files, once they make a scenario.
-
-    They must alone or at the first or last point: what the points lack is no fault of theirs.
-    """
-    errors = []
-    for given in (None, values[0], values[-1]):
-        tried = tables if given is None else with_values(tables, [(key.path, given[n]) for n, key in enumerate(keys)])
-        try:
-            scenario_of_tables(tried)
-        except ScenarioError as error:
-            errors.append(error)
-        else:
-            return with_matrices(tables, tried)
-    raise errors[0]
+    return _Plan(Task(found.source, asked, with_probes), layout, found.keys, found.values, attributes)
 
 
 class _Stopped(Exception):
@@ -269,7 +225,10 @@ class _Stopped(Exception):
 def _here(
     task: Task, parts: Mapping[int, Sequence[Sequence[Any]]], workers: int | None
 ) -> Generator[tuple[int, list[Outcome]]]:
-    """Go through the parts as they are done in threads of this process, with what came of their points."""
+    """Go through the parts as they are done on this machine, with what came of their points.
+
+    Threads compute them, and processes from when on that takes less time.
+    """
     if not parts:
         return
     processors = workers or os.cpu_count() or 1
@@ -280,11 +239,12 @@ def _here(
         if stop.is_set():
             raise _Stopped
 
-    pool = ThreadPoolExecutor(threads)
+    pool, helpers = ThreadPoolExecutor(threads), Helpers(task, len(parts), threads)
     try:
-        futures = {pool.submit(task.outcomes, part, processors // threads, watch): n for n, part in parts.items()}
+        futures = {pool.submit(helpers.outcomes, part, processors // threads, watch): n for n, part in parts.items()}
         for future in as_completed(futures):
             yield futures[future], future.result()
     finally:
         stop.set()
+        helpers.close()
         pool.shutdown(wait=False, cancel_futures=True)

@@ -11,10 +11,10 @@ import xarray as xr
 from threadpoolctl import threadpool_limits
 
 from ..integration import simulate_many
-from ..scenarios.keys import with_values
-from ..scenarios.load import Scenario, scenario_of_tables
-from ..scenarios.outline import Path
+from ..records.plain import PlainRecord
+from ..scenarios.load import Scenario
 from .measures import Asked, Value, message_of
+from .sources import Source
 
 NOT_BUILT, NOT_STARTED, NOT_SIMULATED, NOT_MEASURED = "not built", "not started", "not simulated", "not measured"
 # What came of a point: its values by name, how it ended, and the message of what failed, in plain numbers and texts.
@@ -27,33 +27,17 @@ class Task:
 
     Attributes
     ----------
-    tables : dict
-        The scenario, whole.
-    paths : tuple of tuple
-        Where the values of a point go.
+    source : Source
+        What makes the scenario of a point.
     asked : Asked
         What is measured.
-    highest_rate : float
-        Samples per second recorded at most [Hz].
     probes : bool
         Whether the scenario's probes are recorded.
     """
 
-    tables: dict[str, Any]
-    paths: tuple[Path, ...]
+    source: Source
     asked: Asked
-    highest_rate: float
     probes: bool
-
-    def scenario(self, values: Sequence[Any]) -> Scenario:
-        """Return the scenario of a point.
-
-        Raises
-        ------
-        ScenarioError
-            If it cannot be built.
-        """
-        return scenario_of_tables(with_values(self.tables, zip(self.paths, values, strict=True)))
 
     def outcomes(
         self, points: Sequence[Sequence[Any]], workers: int = 1, watch: Callable[[], None] = lambda: None
@@ -75,7 +59,7 @@ class Task:
             watch()
             outcomes.append({"ended": NOT_SIMULATED, "message": "", "values": {}})
             with _failing(outcomes[-1], NOT_BUILT):
-                scenarios[number] = self.scenario(values)
+                scenarios[number] = self.source.scenario(values)
         for number, scenario in scenarios.items():
             watch()
             with _failing(outcomes[number], NOT_MEASURED):
@@ -92,7 +76,7 @@ class Task:
             "duration": scenario.duration,
             "scheme": scenario.scheme,
             "step": scenario.step,
-            "sample_rate": min(scenario.sample_rate, self.highest_rate),
+            "sample_rate": scenario.sample_rate,
             "probes": scenario.probes if self.probes else (),
             "contact_solve": scenario.contact_solve,
         }
@@ -102,7 +86,7 @@ class Task:
     ) -> None:
         """Run scenarios of the same options and keep what is measured of their records."""
 
-        def measured(record: xr.Dataset) -> Outcome:
+        def measured(record: xr.Dataset | PlainRecord) -> Outcome:
             found: Outcome = {"ended": record.attrs["ended"], "message": record.attrs.get("message", ""), "values": {}}
             if not found["message"]:
                 with _failing(found, NOT_MEASURED):
@@ -115,8 +99,9 @@ class Task:
             workers=workers,
             watchers=[lambda progress: watch()],
             errors="return",
-            # What a sweep measures by name does not look at it, and it takes as long as a measure.
-            provenance=bool(self.asked.functions),
+            # Labels take longer than what a sweep measures by name, which does without.
+            labelled=bool(self.asked.functions),
+            variables=self.asked.variables,
             **self._options(scenarios[0]),
         )
         for outcome, result in zip(outcomes, results, strict=True):

@@ -16,7 +16,7 @@ import xarray as xr
 
 from ... import analysis
 from ...acoustics import Air
-from ...bodies.modes import Array
+from ...arrays import Array
 from .pressure import ladder_words, relaxation, rise_without_a_fall
 from .runs import LOADS, Runs, median_over_starts
 

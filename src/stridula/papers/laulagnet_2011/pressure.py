@@ -10,7 +10,7 @@ import xarray as xr
 
 from ... import analysis
 from ...analysis.stability import sliding_stability
-from ...bodies.modes import Array
+from ...arrays import Array
 from ...integration import simulate_many
 from ...studies.ensembles import perturbed_starts
 from .runs import Runs, median_over_starts

@@ -15,7 +15,7 @@ import xarray as xr
 from ...acoustics import radiate
 from ...acoustics.wav import read_wav, write_wav
 from ...analysis import settling_time
-from ...bodies.modes import Array
+from ...arrays import Array
 from ...integration import simulate_many
 from ...scenarios.load import Scenario, load_scenario
 from ...studies.ensembles import median_and_interval, perturbed_starts

@@ -1,0 +1,70 @@
+"""The ledger of energy of a chunk of a march: how much of it may be believed."""
+
+import numba
+import numpy as np
+
+from .friction import STRICT
+from .layout import (
+    CONTACT_WORK,
+    CONVECTION_WORK,
+    DAMPING_LOSS,
+    DRIVE_WORK,
+    ENERGIES,
+    ENERGY_CREATED,
+    FRICTION_LOSS,
+    NOT_FINITE,
+    STORED,
+)
+
+# Share of the largest energy that round-off may make of the ledger, of the stored energy below zero and of losses
+# running back.
+LEDGER_TOLERANCE = 1e-8
+# Share of the largest energy that the contacts may seem to give: their work is centred over a step, their loss is not.
+CONTACT_TOLERANCE = 1e-2
+
+
+@numba.njit(nogil=True, **STRICT)
+def keep_beside(chunk, samples, rows, first):
+    """Put the energies of one of several runs side by side, (samples, energies), into rows from a sample on."""
+    for sample in range(samples):
+        for k in range(ENERGIES):
+            rows[k, first + sample] = chunk[sample, k]
+
+
+@numba.njit(nogil=True, **STRICT)
+def believed(rows, first, samples, before, initial, largest, of_loads, dissipative, damped_alone):
+    """Return how many samples from one on can be believed, what ends them or -1, and the largest energy met.
+
+    The ledger must close, the stored energy stay above zero, the contacts take energy on the whole; friction and
+    damping take it at every step where they are said to. `before` are the energies at the sample before.
+    """
+    for sample in range(first, first + samples):
+        for k in range(ENERGIES):
+            if not np.isfinite(rows[k, sample]):
+                wrong, _ = _created(
+                    rows, first, sample - first, before, initial, largest, of_loads, dissipative, damped_alone
+                )
+                return (sample - first, NOT_FINITE, largest) if wrong < 0 else (wrong, ENERGY_CREATED, largest)
+    wrong, met = _created(rows, first, samples, before, initial, largest, of_loads, dissipative, damped_alone)
+    return (samples, -1, met) if wrong < 0 else (wrong, ENERGY_CREATED, largest)
+
+
+@numba.njit(**STRICT)
+def _created(rows, first, samples, before, initial, largest, of_loads, dissipative, damped_alone):
+    """Return the first sample at which energy came from nowhere, -1 if there is none, and the largest energy met."""
+    met, friction, damping = largest, before[FRICTION_LOSS], before[DAMPING_LOSS]
+    for sample in range(first, first + samples):
+        for k in range(DAMPING_LOSS + 1):
+            met = max(met, abs(rows[k, sample]))
+        size = max(met, of_loads)
+        slack = LEDGER_TOLERANCE * size
+        work, stored = rows[CONTACT_WORK, sample], rows[STORED, sample]
+        residual = stored - initial + rows[DAMPING_LOSS, sample] - rows[DRIVE_WORK, sample] - work
+        given = work - rows[CONVECTION_WORK, sample]
+        wrong = abs(residual) > slack or stored < -slack or given > CONTACT_TOLERANCE * size + of_loads
+        wrong |= dissipative and rows[FRICTION_LOSS, sample] - friction < -slack
+        wrong |= damped_alone and rows[DAMPING_LOSS, sample] - damping < -slack
+        if wrong:
+            return sample - first, met
+        friction, damping = rows[FRICTION_LOSS, sample], rows[DAMPING_LOSS, sample]
+    return -1, met

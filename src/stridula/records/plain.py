@@ -1,0 +1,85 @@
+"""A record as plain arrays: labels take longer than a short run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..arrays import Array
+from ..checks import brief, listed, suggestion
+
+# Names of the dimensions of variables over time, by how many they have beside the contact.
+AFTER_TIME = ((), ("contact_status",))
+
+
+@dataclass(frozen=True)
+class PlainRecord:
+    """What `simulate` records, as plain arrays: ``run["normal_force"]`` is an array over time.
+
+    Probes and the state at the end are left out.
+
+    Parameters
+    ----------
+    time : ndarray, shape (samples,)
+        Time at the end of each sample interval [s].
+    variables : mapping
+        Arrays by the names of records, over time, and over contacts where there are several.
+    contacts : sequence of str
+        Names of the contacts.
+    attrs : dict
+        Attributes of the record.
+    """
+
+    time: Array
+    variables: Mapping[str, Array]
+    contacts: Sequence[str]
+    attrs: dict[str, Any]
+
+    def __getitem__(self, name: str) -> Array:
+        """Return a variable."""
+        if name == "time":
+            return self.time
+        if name not in self.variables:
+            known = list(self)
+            raise KeyError(f"name must be one of {listed(known)}, got {brief(name)}{suggestion(name, known)}")
+        return self.variables[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Go through the names of the variables."""
+        yield from ("time", *self.variables)
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether there is a variable of a name."""
+        return name == "time" or name in self.variables
+
+    def labelled(self, *names: str) -> xr.Dataset:
+        """Return some variables with the names of their dimensions, as functions of a record take them."""
+        several = len(self.contacts) > 1
+        data = {}
+        for name in names:
+            values = self[name]
+            over = ("time", "contact") if several and values.ndim > 1 else ("time",)
+            data[name] = ((*over, *AFTER_TIME[values.ndim - len(over)]), values)
+        coordinates: dict[str, Any] = {"time": ("time", self.time)}
+        if several:
+            coordinates["contact"] = ("contact", list(self.contacts))
+        return xr.Dataset(data, coordinates, self.attrs)
+
+
+def plain_of(run: xr.Dataset) -> PlainRecord:
+    """Return the plain arrays of a record.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A record of `simulate`.
+    """
+    held = run.variables
+    over_time = {str(name): one.values for name, one in held.items() if name != "time" and one.dims[:1] == ("time",)}
+    contacts = [str(name) for name in np.atleast_1d(held["contact"].values)] if "contact" in held else ["contact 1"]
+    time = held["time"].values if "time" in held else np.empty(0)
+    return PlainRecord(time, over_time, contacts, dict(run.attrs))

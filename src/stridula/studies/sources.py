@@ -1,0 +1,391 @@
+"""What a study runs at each point: a scenario over some of its keys, or what a function makes of values."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Protocol
+
+from ..checks import brief, listed, positive, suggestion
+from ..integration import ExactModal
+from ..records.provenance import toml
+from ..scenarios.errors import ScenarioError
+from ..scenarios.keys import located, with_values
+from ..scenarios.load import Scenario, load_scenario, scenario_of_tables, with_matrices
+from ..scenarios.outline import Path
+from ..scenarios.quantities import parts, quantity, unit_of
+from ..scenarios.read import read_tables
+from ..scenarios.varied import Varied, varied_keys
+from ..system import System
+from .measures import message_of
+from .points import Layout
+
+# Samples per second recorded where neither the scenario nor the study says less: enough for what is measured by name.
+SAMPLE_RATE = 20e3
+# Samples per second recorded by `simulate` if nobody says otherwise.
+DEFAULT_RATE = 100e3
+# What a function may say of a simulation, beside its system.
+ARGUMENTS = ("duration", "scheme", "step", "sample_rate", "probes", "contact_solve")
+SystemOf = Callable[..., Any]
+
+
+class Source(Protocol):
+    """What makes a scenario of the values of a point."""
+
+    def scenario(self, values: Sequence[Any]) -> Scenario:
+        """Return the scenario of a point; ValueError if it cannot be built."""
+
+
+@dataclass(frozen=True)
+class Varying:
+    """A source, and the points it is asked for.
+
+    Attributes
+    ----------
+    source : Source
+        What makes the scenarios.
+    keys : list of Varied
+        What is varied.
+    values : list of tuple
+        Values of the keys at each point.
+    attributes : dict of str
+        What says where results come from: ``title``, and ``scenario`` or ``function``.
+    """
+
+    source: Source
+    keys: list[Varied]
+    values: list[tuple[Any, ...]]
+    attributes: dict[str, str]
+
+
+@dataclass(frozen=True)
+class OfTables:
+    """A scenario with some of its keys varied.
+
+    Attributes
+    ----------
+    tables : dict
+        The scenario, whole.
+    paths : tuple of tuple
+        Where the values of a point go.
+    highest_rate : float
+        Samples per second recorded at most [Hz].
+    """
+
+    tables: dict[str, Any]
+    paths: tuple[Path, ...]
+    highest_rate: float = SAMPLE_RATE
+
+    def scenario(self, values: Sequence[Any]) -> Scenario:
+        """Return the scenario of a point.
+
+        Raises
+        ------
+        ScenarioError
+            If it cannot be built.
+        """
+        made = scenario_of_tables(with_values(self.tables, zip(self.paths, values, strict=True)))
+        return replace(made, sample_rate=min(made.sample_rate, self.highest_rate))
+
+
+@dataclass(frozen=True)
+class OfFunction:
+    """What a function makes of values by name.
+
+    Attributes
+    ----------
+    function : callable
+        It returns a System, a Scenario, or a System and a dictionary of arguments of `simulate`.
+    units : dict of str or None
+        SI unit of each parameter whose values may be texts, by its name, in the order of the values of a point.
+    fixed : dict
+        Values of other parameters, the same at every point.
+    given : dict
+        Duration [s] and sample rate [Hz] that go before those of the function.
+    highest_rate : float
+        Samples per second recorded at most [Hz], where nobody says more.
+    """
+
+    function: SystemOf
+    units: dict[str, str | None]
+    fixed: dict[str, Any]
+    given: dict[str, float]
+    highest_rate: float = SAMPLE_RATE
+
+    def scenario(self, values: Sequence[Any]) -> Scenario:
+        """Return the scenario of a point.
+
+        Raises
+        ------
+        ValueError
+            If the function raises anything, or returns anything else.
+        """
+        units = zip(self.units.items(), values, strict=True)
+        named = {name: quantity(value, unit) if unit else value for (name, unit), value in units}
+        return _made(self.function, self.fixed | named, self.given, self.highest_rate)
+
+
+def _made(function: SystemOf, values: Mapping[str, Any], given: Mapping[str, Any], highest_rate: float) -> Scenario:
+    """Return what a function makes of values.
+
+    Parameters
+    ----------
+    function : callable
+        It returns a System, a Scenario, or a System and a dictionary of arguments of `simulate`.
+    values : mapping
+        Its arguments.
+    given : mapping
+        Arguments of `simulate` that go before those of the function.
+    highest_rate : float
+        Samples per second recorded at most [Hz], where nobody says more.
+
+    Raises
+    ------
+    ValueError
+        If the function raises anything, returns anything else, or nobody says how long to simulate.
+    """
+    name = name_of(function)
+    try:
+        made = function(**values)
+    except MemoryError:
+        raise
+    except Exception as error:
+        raise ValueError(f"{name}: {message_of(error)}") from error
+    if isinstance(made, Scenario):
+        return replace(made, **({"sample_rate": min(made.sample_rate, highest_rate)} | dict(given)))
+    words = {"sample_rate": min(DEFAULT_RATE, highest_rate), **_arguments(name, made), **given}
+    system = made if isinstance(made, System) else made[0]
+    if words.get("duration") is None:
+        raise ValueError(f"duration must be given, as an argument or by {name}, got none")
+    positive("duration", words["duration"])
+    probes = words.get("probes")
+    return Scenario(
+        title=name,
+        description="",
+        system=system,
+        duration=words["duration"],
+        scheme=words.get("scheme") or ExactModal(),
+        step=words.get("step"),
+        sample_rate=words["sample_rate"],
+        probes=None if probes is None else tuple(probes),
+        contact_solve=words.get("contact_solve"),
+    )
+
+
+def made_once(given: Any, values: Mapping[str, Any], timing: Mapping[str, Any]) -> Scenario:
+    """Return a scenario, or what a function makes, at one set of values.
+
+    Parameters
+    ----------
+    given : str, Path, xarray.Dataset or callable
+        A scenario, or a function of values.
+    values : mapping
+        Values of keys of the scenario, or of parameters of the function.
+    timing : mapping
+        ``duration``, where it is given.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario cannot be used.
+    ValueError
+        If a function takes other parameters, raises anything or makes anything else.
+    """
+    if callable(given):
+        check_takes(given, [*values])
+        return _made(given, in_si(values), timing_in_si(timing), math.inf)
+    return load_scenario(given, {**values, **{f"simulation.{name}": value for name, value in timing.items()}})
+
+
+def _arguments(name: str, made: Any) -> dict[str, Any]:
+    """Return the arguments of `simulate` beside a system."""
+    if isinstance(made, System):
+        return {}
+    is_pair = isinstance(made, tuple) and len(made) == 2
+    if not is_pair or not isinstance(made[0], System) or not isinstance(made[1], Mapping):
+        raise ValueError(
+            f"{name} must return a System, a Scenario, or a System and arguments of simulate by name, got {brief(made)}"
+        )
+    unknown = next((word for word in made[1] if word not in ARGUMENTS), None)
+    if unknown is not None:
+        known = listed(ARGUMENTS)
+        raise ValueError(
+            f"{name} must return arguments among {known}, got {brief(unknown)}{suggestion(unknown, ARGUMENTS)}"
+        )
+    return dict(made[1])
+
+
+def name_of(function: SystemOf) -> str:
+    """Return what a function is called."""
+    while isinstance(function, partial):
+        function = function.func
+    return str(getattr(function, "__name__", type(function).__name__))
+
+
+def takes(function: SystemOf, names: Sequence[str]) -> bool:
+    """Return whether a function takes arguments of these names and needs no others."""
+    return _mismatch(function, names) is None
+
+
+def takes_one(function: SystemOf) -> bool:
+    """Return whether a function may be called with one argument."""
+    try:
+        inspect.signature(function).bind(None)
+    except TypeError:
+        return False
+    except ValueError:
+        return True
+    return True
+
+
+def check_takes(function: SystemOf, names: Sequence[str]) -> None:
+    """Raise ValueError unless a function takes arguments of these names and needs no others."""
+    why = _mismatch(function, names)
+    if why is None:
+        return
+    own = [str(one) for one in inspect.signature(function).parameters.values()]
+    raise ValueError(
+        f"{name_of(function)} must take the parameters {listed(names) if names else 'none'}, "
+        f"got one of ({', '.join(own)}): {why}"
+    )
+
+
+def _mismatch(function: SystemOf, names: Sequence[str]) -> str | None:
+    """Return why a function does not take arguments of these names, None if it does or does not say what it takes."""
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):
+        return None
+    try:
+        signature.bind(**dict.fromkeys(names))
+    except TypeError as error:
+        return str(error)
+    return None
+
+
+def varying(scenario: Any, fixed: Mapping[str, Any], timing: Mapping[str, Any], layout: Layout) -> Varying:
+    """Return what a study runs, checked.
+
+    Parameters
+    ----------
+    scenario : str, Path, xarray.Dataset or callable
+        A scenario, or a function of values.
+    fixed : mapping
+        Values of other keys, the same at every point.
+    timing : mapping
+        ``duration`` and ``sample_rate``, where they are given.
+    layout : Layout
+        The points.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario cannot be used, or a key is not known, means several places or takes values of another kind.
+    ValueError
+        If a function takes other parameters, or makes nothing of the first and of the last point.
+    """
+    return (_of_function if callable(scenario) else _of_scenario)(scenario, fixed, timing, layout)
+
+
+def _of_scenario(scenario: Any, fixed: Mapping[str, Any], timing: Mapping[str, Any], layout: Layout) -> Varying:
+    """Return the scenario that all points share, the keys that are varied, and their values at each point."""
+    given = {**fixed, **{f"simulation.{name}": value for name, value in timing.items()}}
+    tables, places, problems = located(read_tables(scenario), given)
+    if problems:
+        raise ScenarioError(problems)
+    keys = varied_keys(tables, layout.keys, layout.values)
+    for key in keys:
+        twin = next((name for name, path in places.items() if path == key.path), None)
+        if twin is not None:
+            raise ScenarioError([f"key must be set or varied, got both {twin!r} and {key.key!r}"])
+    columns = [
+        [key.read(value) for value in column]
+        for key, column in zip(keys, zip(*layout.values, strict=True), strict=True)
+    ]
+    values = list(zip(*columns, strict=True))
+    has_own_rate = ("simulation", "sample_rate") in [*places.values(), *(key.path for key in keys)]
+    tables = _usable(tables, keys, values)
+    source = OfTables(tables, tuple(key.path for key in keys), math.inf if has_own_rate else SAMPLE_RATE)
+    return Varying(source, keys, values, {"title": str(tables.get("title", "")), "scenario": toml(tables)})
+
+
+def _usable(tables: dict[str, Any], keys: Sequence[Varied], values: Sequence[Sequence[Any]]) -> dict[str, Any]:
+    """Return the tables with matrices in place of files, once they make a scenario.
+
+    They must alone or at the first or last point: what the points lack is no fault of theirs.
+    """
+    errors = []
+    for given in (None, values[0], values[-1]):
+        tried = tables if given is None else with_values(tables, [(key.path, given[n]) for n, key in enumerate(keys)])
+        try:
+            scenario_of_tables(tried)
+        except ScenarioError as error:
+            errors.append(error)
+        else:
+            return with_matrices(tables, tried)
+    raise errors[0]
+
+
+def _of_function(function: SystemOf, fixed: Mapping[str, Any], timing: Mapping[str, Any], layout: Layout) -> Varying:
+    """Return a function that makes something of the first or of the last point, and the points."""
+    twin = next((name for name in layout.keys if name in fixed), None)
+    if twin is not None:
+        raise ValueError(f"key must be set or varied, got {twin!r} as both")
+    check_takes(function, [*layout.keys, *fixed])
+    columns = list(zip(*layout.values, strict=True))
+    keys = [_key(name, column) for name, column in zip(layout.keys, columns, strict=True)]
+    units = {key.key: key.unit for key in keys}
+    source = OfFunction(function, units, in_si(fixed), timing_in_si(timing))
+    errors = []
+    for given in (layout.values[0], layout.values[-1]):
+        try:
+            source.scenario(given)
+        except ValueError as error:
+            errors.append(error)
+    if len(errors) == 2:
+        raise errors[0]
+    name = f"{getattr(function, '__module__', '')}.{name_of(function)}"
+    return Varying(source, keys, list(layout.values), {"title": name_of(function), "function": name})
+
+
+def _key(name: str, values: Sequence[Any]) -> Varied:
+    """Return a parameter of a function as a key, with the unit of its texts."""
+    unit = next((unit for unit in map(_unit, values) if unit), None)
+    for value in values if unit else ():
+        try:
+            quantity(value, str(unit))
+        except ValueError as error:
+            raise ValueError(f"{name} {error}, got {brief(value)}") from None
+    return Varied(name, (name,), name, unit, {})
+
+
+def _unit(value: Any) -> str | None:
+    """Return the SI unit of a text such as ``"20 mm"``, None of anything else."""
+    known = parts(value) if isinstance(value, str) else None
+    return unit_of(known[1]) if known and known[1] else None
+
+
+def in_si(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values by name with texts such as ``"20 mm"`` as numbers in SI."""
+    return {name: quantity(value, unit) if (unit := _unit(value)) else value for name, value in values.items()}
+
+
+def timing_in_si(timing: Mapping[str, Any]) -> dict[str, float]:
+    """Return a duration [s] and a sample rate [Hz], where they are given.
+
+    Raises
+    ------
+    ValueError
+        If one is of another unit.
+    """
+    found = {}
+    for name, unit in (("duration", "s"), ("sample_rate", "Hz")):
+        if name in timing:
+            try:
+                found[name] = quantity(timing[name], unit)
+            except ValueError as error:
+                raise ValueError(f"{name} {error}, got {brief(timing[name])}") from None
+    return found
