@@ -157,7 +157,7 @@ def _wanted(variables: Sequence[str] | None, labelled: bool) -> Sequence[str]:
     if variables is None:
         return RECORDED
     if labelled or isinstance(variables, str) or not isinstance(variables, Sequence):
-        raise ValueError(f"variables must be a list of names, and labelled False, got {brief(variables)}")
+        raise ArgumentError("variables", "be a list of names, and labelled False", variables)
     for name in variables:
         choice("variables", name, RECORDED)
     return variables

@@ -87,9 +87,8 @@ def scenario_of(path: str | Path) -> tuple[str, str]:
     """
     origin = origin_of(path)
     if "scenario" not in origin:
-        raise ValueError(
-            f"path must be a record of a scenario, got {named(path)}, of the function {origin['function']}"
-        )
+        got = f"{named(path)}, of the function {origin['function']}"
+        raise ArgumentError("path", "be a record of a scenario", path, got=got)
     return origin.get("title", ""), origin["scenario"]
 
 

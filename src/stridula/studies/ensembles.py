@@ -173,7 +173,7 @@ def _made(
     if isinstance(given, System) or not (callable(given) or isinstance(given, (str, Path, xr.Dataset))):
         instance("system", given, System)
         if values:
-            raise ValueError(f"overrides must be left out of an ensemble of a system, got {brief(dict(values))}")
+            raise ArgumentError("overrides", "be left out of an ensemble of a system", dict(values))
         return given, duration, options
     # Only here: an ensemble of a system needs no scenarios.
     from .sources import ARGUMENTS, made_once

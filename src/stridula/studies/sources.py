@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Protocol
 
-from ..checks import brief, listed, positive, suggestion
+from ..checks import ArgumentError, brief, listed, positive, suggestion
 from ..integration import ExactModal
 from ..records.provenance import toml
 from ..scenarios.errors import ScenarioError
@@ -159,7 +159,7 @@ def _made(function: SystemOf, values: Mapping[str, Any], given: Mapping[str, Any
     words = {"sample_rate": min(DEFAULT_RATE, highest_rate), **_arguments(name, made), **given}
     system = made if isinstance(made, System) else made[0]
     if words.get("duration") is None:
-        raise ValueError(f"duration must be given, as an argument or by {name}, got none")
+        raise ArgumentError("duration", f"be given, as an argument or by {name}", got="none")
     positive("duration", words["duration"])
     probes = words.get("probes")
     return Scenario(
@@ -206,15 +206,12 @@ def _arguments(name: str, made: Any) -> dict[str, Any]:
         return {}
     is_pair = isinstance(made, tuple) and len(made) == 2
     if not is_pair or not isinstance(made[0], System) or not isinstance(made[1], Mapping):
-        raise ValueError(
-            f"{name} must return a System, a Scenario, or a System and arguments of simulate by name, got {brief(made)}"
-        )
+        raise ArgumentError(name, "return a System, a Scenario, or a System and arguments of simulate by name", made)
     unknown = next((word for word in made[1] if word not in ARGUMENTS), None)
     if unknown is not None:
         known = listed(ARGUMENTS)
-        raise ValueError(
-            f"{name} must return arguments among {known}, got {brief(unknown)}{suggestion(unknown, ARGUMENTS)}"
-        )
+        near = suggestion(unknown, ARGUMENTS)
+        raise ArgumentError(name, f"return arguments among {known}", unknown, got=f"{brief(unknown)}{near}")
     return dict(made[1])
 
 
@@ -247,10 +244,8 @@ def check_takes(function: SystemOf, names: Sequence[str]) -> None:
     if why is None:
         return
     own = [str(one) for one in inspect.signature(function).parameters.values()]
-    raise ValueError(
-        f"{name_of(function)} must take the parameters {listed(names) if names else 'none'}, "
-        f"got one of ({', '.join(own)}): {why}"
-    )
+    takes = f"take the parameters {listed(names) if names else 'none'}"
+    raise ArgumentError(name_of(function), takes, got=f"one of ({', '.join(own)}): {why}")
 
 
 def _mismatch(function: SystemOf, names: Sequence[str]) -> str | None:
@@ -333,7 +328,7 @@ def _of_function(function: SystemOf, fixed: Mapping[str, Any], timing: Mapping[s
     """Return a function that makes something of the first or of the last point, and the points."""
     twin = next((name for name in layout.keys if name in fixed), None)
     if twin is not None:
-        raise ValueError(f"key must be set or varied, got {twin!r} as both")
+        raise ArgumentError("key", "be set or varied", twin, got=f"{twin!r} as both")
     check_takes(function, [*layout.keys, *fixed])
     columns = list(zip(*layout.values, strict=True))
     keys = [_key(name, column) for name, column in zip(layout.keys, columns, strict=True)]
