@@ -69,15 +69,16 @@ def driven_work(i, touch, motion, n, run, runs, zero):
 
 
 @numba.njit(**OPTIONS)
-def keep_forces(i, touch, moved, before, carried, sums, closed, law, laws, number, step, run, zero):
+def keep_forces(i, touch, moved, before, carried, contacts, closed, step, run, runs, zero):
     """Carry forces and state of the law of contact `i` to the next step, sum the forces; return what friction took."""
     base, tally = i * at.CARRIED, i * at.SUMS
+    law, laws, sums = contacts.codes[i], contacts.laws, contacts.sums
     normal, tangential, status, _ = touch
     slip = moved[3]
     add(sums, tally + at.NORMALS, run, normal, zero)
     add(sums, tally + at.TANGENTIALS, run, tangential, zero)
     if not set_valued(law):
-        velocity = velocity_at(slip, before, step)
+        velocity, number = velocity_at(slip, before, step), i * runs + run
         hold(carried, base + at.FRICTION_STATE, run, next_states(law, laws, number, status, before[3], velocity, step))
     hold(carried, base + at.STATUS, run, status)
     hold(carried, base + at.CLOSED_SHARE, run, closed)
@@ -124,10 +125,7 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
             driven = driven_work(i, touch, imposed.motion, n, run, runs, zero)
             add(state.energies, at.CONTACT_WORK, run, -driven, zero)
             add(state.energies, at.DRIVE_WORK, run, driven, zero)
-        number = i * runs + run
-        lost = keep_forces(
-            i, touch, moved, before, carried, sums, closed, law, contacts.laws, number, timing.step, run, zero
-        )
+        lost = keep_forces(i, touch, moved, before, carried, contacts, closed, timing.step, run, runs, zero)
         add(state.energies, at.FRICTION_LOSS, run, lost, zero)
     keep_motion(i, moved, before, carried, run, zero)
 

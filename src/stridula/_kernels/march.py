@@ -1,6 +1,6 @@
 """The march in time: of one run, or of several side by side, with any number of contacts.
 
-The numbers of its parts are those of the steps in `docs/model.rst`.
+Numbers of parts, here and in what it calls, are those of the steps under *Contact in one step* in `docs/model.rst`.
 """
 
 import math

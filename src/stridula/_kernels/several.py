@@ -18,7 +18,7 @@ UNBELIEVABLE = 1e-3
 
 @numba.njit(**PASTED)
 def solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero):
-    """Put forces, status, gap and slip of all contacts; return the error of the forces."""
+    """Put forces, status, gap and slip of all contacts, 4 and 5; return the error of the forces."""
     now, faces, count = contacts.now, contacts.faces, sizes.contacts
     touching, closed = zero, zero
     for i in range(count):
@@ -100,7 +100,7 @@ def touch_many(parts, n, ended, run, runs, zero):
 
 @numba.njit(**PASTED)
 def keep_many(parts, n, run, runs, zero):
-    """Complete step `n` under the forces of all contacts, and do their bookkeeping."""
+    """Complete step `n` under the forces of all contacts, 6, and do their bookkeeping."""
     contacts, state, imposed = parts.contacts, parts.state, parts.imposed
     after = n + 2 if imposed.motion.shape[0] > 1 else 0
     work, lost = complete_many(parts.modes, parts.paths, contacts, parts.sizes, run, zero)

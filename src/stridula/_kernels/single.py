@@ -14,7 +14,7 @@ from .trying import try_one
 
 @numba.njit(**PASTED)
 def solve_single(free, contacts, carried, w, timing, run, zero):
-    """Return normal and tangential force, status and whether it is jammed of the only contact."""
+    """Return normal and tangential force, status and whether it is jammed of the only contact: 5."""
     _, gap, slip = free
     if not anywhere(gap < 0.0):
         return zero, zero, zero, zero

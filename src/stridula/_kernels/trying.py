@@ -75,6 +75,7 @@ def try_one(modes, paths, contacts, state, imposed, n, touch, pending, sine, run
     """
     rows, spans = modes.rows, paths.spans
     normal, tangential = touch[0], touch[1]
+    # 6 of the last step, 1 of this one.
     along, across, works, losses = pass_fixed(
         rows, spans[0, at.BEGIN], spans[0, at.END], run, pending, normal, tangential
     )
@@ -84,6 +85,7 @@ def try_one(modes, paths, contacts, state, imposed, n, touch, pending, sine, run
     w_nn, w_tt = held(contacts.fixed, 0, run, zero), held(contacts.fixed, 2, run, zero)
     slope = zero
     if paths.first_span[1] > 1:
+        # 2, then 3 and 4.
         last, sine = sine, 2 - sine
         set_waves_at(0, paths, contacts.constants, place, sine, run, zero)
         for s in range(1, paths.first_span[1]):
@@ -146,6 +148,7 @@ def complete_one(modes, paths, touch, sine, run, zero):
 def try_many(modes, paths, contacts, state, imposed, sizes, n, ended, run, runs, zero):
     """Try a step of all modes, and put what each contact is at its end without contact forces."""
     rows, spans, now = modes.rows, paths.spans, contacts.now
+    # 1.
     try_coupled(rows, modes.matrices, sizes.coupled, sizes.coupled * sizes.per_block, run, zero)
     try_all(rows, sizes.coupled, sizes.blocks, run)
     for i in range(sizes.contacts):
@@ -158,6 +161,7 @@ def try_many(modes, paths, contacts, state, imposed, sizes, n, ended, run, runs,
         gap = gap_of(i, contacts.constants, imposed.motion, n, run, runs, zero) + across
         slip = place - track - held(state.carried, i * at.CARRIED + at.MATERIAL, run, zero)
         if paths.path_of[i] >= 0:
+            # 2 and 3.
             set_waves_at(i, paths, contacts.constants, place, SINE, run, zero)
             for s in range(paths.first_span[i], paths.first_span[i + 1]):
                 kind, begin, end = spans[s, at.KIND], spans[s, at.BEGIN], spans[s, at.END]
@@ -176,7 +180,7 @@ def try_many(modes, paths, contacts, state, imposed, sizes, n, ended, run, runs,
 
 @numba.njit(**PASTED)
 def soften(modes, paths, contacts, sizes, run, zero):
-    """Put the compliance of contacts on paths where they will be."""
+    """Put the compliance of contacts on paths where they will be: 4."""
     if sizes.coupled_paths:
         places = sizes.coupled * sizes.per_block
         set_compliance_of_coupled(
