@@ -60,9 +60,9 @@ def simulate_many(
 ) -> list[Any]:
     """March many systems in time, several at once on each processor.
 
-    Runs of the same kind march side by side: with the same numbers of modes, contacts and loads, paths of the same waves,
-    laws of friction and kinds of probes, of at most some 120 modes. Coefficients, angles, loads, damping and lengths may
-    differ. All others march one by one.
+    Runs of the same kind march side by side: with the same numbers of modes, contacts and loads, paths of the same
+    waves, laws of friction and kinds of probes, of at most some 120 modes. Coefficients, angles, loads, damping and
+    lengths may differ. All others march one by one.
 
     Side by side, sums over modes have another order than alone: records are the same but for round-off, which chaotic
     runs amplify. Which runs share a vector does not matter.
