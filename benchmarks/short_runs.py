@@ -11,7 +11,7 @@ import stridula as st
 from ratios import Ratio, over, seconds, show, sized
 from stridula._kernels.vectors import LANES
 from stridula.analysis.regimes import TAKEN, regime_of
-from stridula.integration.marches import SimpleMarch
+from stridula.integration.marches import March
 from systems import SCHEME, Case, case_of, limit_of, marching, squeals
 
 # The ratio is that of 10 000 runs: what does not grow with the runs takes a millisecond.
@@ -43,7 +43,7 @@ def marches(systems: Sequence[st.System]) -> Any:
     cases: list[Case] = [case_of(system, step) for system in systems]
     groups = [cases[first : first + LANES] for first in range(0, len(cases), LANES)]
     ready = [
-        marching(SimpleMarch([one.blocks for one in some], [one.state for one in some], step, ratio), some, samples)
+        marching(March([one.blocks for one in some], [one.state for one in some], step, ratio), some, samples)
         for some in groups
     ]
 

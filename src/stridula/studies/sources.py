@@ -352,8 +352,8 @@ def _key(name: str, values: Sequence[Any]) -> Varied:
     for value in values if unit else ():
         try:
             quantity(value, str(unit))
-        except ValueError as error:
-            raise ValueError(f"{name} {error}, got {brief(value)}") from None
+        except ArgumentError as error:
+            raise error.renamed(name) from None
     return Varied(name, (name,), name, unit, {})
 
 
@@ -381,6 +381,6 @@ def timing_in_si(timing: Mapping[str, Any]) -> dict[str, float]:
         if name in timing:
             try:
                 found[name] = quantity(timing[name], unit)
-            except ValueError as error:
-                raise ValueError(f"{name} {error}, got {brief(timing[name])}") from None
+            except ArgumentError as error:
+                raise error.renamed(name) from None
     return found
