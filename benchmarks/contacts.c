@@ -169,7 +169,7 @@ void march(long steps, int modes, int count, double mu, double tolerance, int mo
             sums[0] += 1.0;
             if (change <= 1e-14 * largest)
                 break;
-            if (change < before && before < 1e300 && change / largest * change / (before - change) <= tolerance)
+            if (change < before && before < 1e300 && change / largest * fmax(change / (before - change), 0.1) <= tolerance)
                 break;
             before = change;
             if (sweep + 1 == FIRST_DIRECT_SOLVE || (sweep + 1) % SWEEPS_PER_DIRECT_SOLVE == 0)

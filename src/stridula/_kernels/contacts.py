@@ -20,6 +20,10 @@ from .solves import carried_by, forces_of_one, strayed
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 2, 8
 # Sweeps after which a contact that has broken away in this step is no longer held by its static coefficient.
 PATIENCE = 24
+# Gaps and slips left to undo, relative to what the forces undo, over the tolerance of the forces.
+GAPS = 0.01
+# Least share of the last change that is taken to be still to come.
+LEAST_TO_COME = 0.1
 # Change of a force by rounding alone, relative to the largest.
 ROUND_OFF = 1e-14
 
@@ -136,13 +140,15 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
         )
         goes_on = done < 0.5
         exact = change <= ROUND_OFF * largest
-        # The changes of a linear iteration fall by a constant factor, which tells what is still to come.
+        # The changes of a linear iteration fall by a constant factor, which tells what is still to come. The first ones
+        # from forces that were nearly right fall faster.
         falls = choose(change < before, before, math.inf) < math.inf
         size = choose(largest > 0.0, largest, 1.0)
-        estimate = choose(falls, change / size * change / choose(falls, before - change, 1.0), math.inf)
+        to_come = largest_of(change / choose(falls, before - change, 1.0), zero + LEAST_TO_COME)
+        estimate = choose(falls, change / size * to_come, math.inf)
         estimate = choose(exact, change / size, estimate)
         # Where many rows see few modes, forces creep on among sets that close the same gaps.
-        closed = misfit <= timing.tolerance * reach
+        closed = misfit <= GAPS * timing.tolerance * reach
         estimate = choose(closed, choose(reach > 0.0, misfit, zero) / choose(reach > 0.0, reach, 1.0), estimate)
         error, made = choose(goes_on, estimate, error), choose(goes_on, sweep + 1.0, made)
         done = choose(exact, 1.0, choose(error <= timing.tolerance, 1.0, done))
