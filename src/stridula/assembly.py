@@ -72,6 +72,8 @@ class Assembly:
     ----------
     angular_frequency, damping_rate : ndarray, shape (modes,)
         Undamped angular frequencies w [rad/s] and ``2 zeta w`` [1/s]; zero for coupled modes.
+    massless : ndarray of bool, shape (modes,)
+        Which are residual shapes, of unit stiffness and no mass.
     stiffness, dissipation : ndarray, shape (coupled, coupled)
         Stiffness [1/s²] and damping matrix [1/s] of the coupled modes, which come first.
     contacts : list of ContactRows
@@ -94,10 +96,13 @@ class Assembly:
         What decides how signals and motion go in time.
     spans : dict
         First mode of each body and the one after its last, by the body's name.
+    blend : ndarray, shape (joined, joined)
+        How the first coordinates make those of joined bodies, whose residual shapes connections hold; empty without.
     """
 
     angular_frequency: Array
     damping_rate: Array
+    massless: Array
     stiffness: Array
     dissipation: Array
     contacts: list[ContactRows]
@@ -110,6 +115,14 @@ class Assembly:
     probes: list[ProbeRows]
     prescribed: Prescribed
     spans: dict[str, tuple[int, int]]
+    blend: Array
+
+    @property
+    def all_stiffness(self) -> Array:
+        """Stiffness matrix of all modes [1/s²], shape (modes, modes)."""
+        matrix = np.diag(np.where(self.massless, 1.0, self.angular_frequency) ** 2)
+        matrix[: self.coupled, : self.coupled] = self.stiffness
+        return matrix
 
     @property
     def mode_count(self) -> int:
@@ -134,13 +147,13 @@ def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
 def _assembled(system: System) -> tuple[Assembly, _Layout, list[_Load]]:
     """Return a system as flat arrays without probes, and what these are made of."""
     layout = _Layout(system)
-    stiffness, dissipation = _matrices(layout)
+    stiffness, dissipation = layout.matrices
     modes = [layout.modes(body) for body in layout.order]
     angular = np.concatenate([one.angular_frequency for one in modes])
     rate = np.concatenate([one.damping_rate for one in modes])
-    size = len(stiffness)
+    massless, size = layout.massless, len(stiffness)
     if size and _uncoupled(stiffness, dissipation):
-        angular[:size] = np.sqrt(np.diag(stiffness))
+        angular[:size] = np.where(massless[:size], np.inf, np.sqrt(np.diag(stiffness)))
         rate[:size] = np.diag(dissipation)
         size = 0
     # Coupled modes march by matrices; alone they would not.
@@ -150,6 +163,7 @@ def _assembled(system: System) -> tuple[Assembly, _Layout, list[_Load]]:
     flat = Assembly(
         angular_frequency=angular,
         damping_rate=rate,
+        massless=massless,
         stiffness=stiffness[:size, :size],
         dissipation=dissipation[:size, :size],
         contacts=[_contact(contact, layout) for contact in system.contacts],
@@ -162,6 +176,7 @@ def _assembled(system: System) -> tuple[Assembly, _Layout, list[_Load]]:
         probes=[],
         prescribed=_prescribed(system, histories),
         spans={system.body_name(body): layout.spans[body] for body in system.bodies},
+        blend=layout.blend,
     )
     return flat, layout, loads
 
@@ -289,41 +304,92 @@ class _Layout:
             self.known[id(body)] = body.modes(self.system.is_held(body))
         return self.known[id(body)]
 
-    def full(self, body: Any, rows: Array) -> Array:
-        """Return rows on a body's modes as rows on all."""
+    def full(self, body: Any, numbers: Array) -> Array:
+        """Return numbers of a body's modes among those of all."""
         first, end = self.spans[body]
-        out = np.zeros((*rows.shape[:-1], self.size))
-        out[..., first:end] = rows
+        out = np.zeros((*numbers.shape[:-1], self.size))
+        out[..., first:end] = numbers
         return out
 
-    def trace(self, point: BodyPoint) -> Array:
-        """Return the rows of the world displacement at a point, shape (2, modes)."""
+    def body_trace(self, point: BodyPoint) -> Array:
+        """Return the rows of the world displacement at a point on the coordinates of the bodies, shape (2, modes)."""
         body: Any = point.body
         return self.full(body, body.trace(point.position, self.system.is_held(body)))
 
+    def blended(self, rows: Array) -> Array:
+        """Return rows on the coordinates of the bodies as rows on those that march."""
+        size = len(self.blend)
+        rows[..., :size] = rows[..., :size] @ self.blend
+        return rows
+
+    def trace(self, point: BodyPoint) -> Array:
+        """Return the rows of the world displacement at a point, shape (2, modes)."""
+        return self.blended(self.body_trace(point))
+
     def translation(self, body: Any) -> Array:
         """Return what a uniform acceleration of a body along x and y drives, shape (2, modes)."""
-        return self.full(body, self.modes(body).translation)
+        return self.blended(self.full(body, self.modes(body).translation))
+
+    @cached_property
+    def massless(self) -> Array:
+        """Which modes are residual shapes."""
+        return np.concatenate([self.modes(body).massless for body in self.order])
+
+    @property
+    def matrices(self) -> tuple[Array, Array]:
+        """Stiffness and damping matrix of the modes of joined bodies, which come first."""
+        return self._coupling[0], self._coupling[1]
+
+    @property
+    def blend(self) -> Array:
+        """How the coordinates that march make those of joined bodies."""
+        return self._coupling[2]
+
+    @cached_property
+    def _coupling(self) -> tuple[Array, Array, Array]:
+        stiffness, dissipation = _matrices(self)
+        return without_massless_coupling(stiffness, dissipation, self.massless[: len(stiffness)])
 
 
 def _matrices(layout: _Layout) -> tuple[Array, Array]:
-    """Return the stiffness and the damping matrix of the modes of joined bodies, which come first."""
+    """Return the stiffness and the damping matrix of the modes of joined bodies."""
     size = sum(layout.modes(body).count for body in layout.joined)
     check_coupled_count(size)
     stiffness, dissipation = np.zeros((size, size)), np.zeros((size, size))
     for body in layout.joined:
         modes, span = layout.modes(body), slice(*layout.spans[body])
-        stiffness[span, span] = np.diag(modes.angular_frequency**2)
+        stiffness[span, span] = np.diag(modes.stiffness)
         own = np.diag(modes.damping_rate)
         dissipation[span, span] = own if modes.damping_matrix is None else modes.damping_matrix
     for connection in layout.system.connections:
-        row = unit(connection) @ layout.trace(connection.first)[:, :size]
+        row = unit(connection) @ layout.body_trace(connection.first)[:, :size]
         if connection.second is not None:
-            row = row - unit(connection) @ layout.trace(connection.second)[:, :size]
+            row = row - unit(connection) @ layout.body_trace(connection.second)[:, :size]
         for matrix, rate in zip((stiffness, dissipation), connection.rates, strict=True):
             if rate:
                 matrix += rate * np.outer(row, row)
     return stiffness, dissipation
+
+
+def without_massless_coupling(stiffness: Array, dissipation: Array, massless: Array) -> tuple[Array, Array, Array]:
+    """Return stiffness and damping matrix in coordinates in which residual shapes stand alone, and their blend.
+
+    Connections hold residual shapes, too: what follows the modes statically becomes part of these, what is left has
+    unit stiffness. Damping acts on the modes and on what follows them.
+    """
+    if not massless.any():
+        return stiffness, dissipation, np.eye(0)
+    blend = np.eye(len(stiffness))
+    moving = ~massless
+    own, across = stiffness[np.ix_(massless, massless)], stiffness[np.ix_(massless, moving)]
+    root = np.linalg.cholesky(own)
+    blend[np.ix_(massless, moving)] = -np.linalg.solve(own, across)
+    blend[np.ix_(massless, massless)] = np.linalg.inv(root).T
+    stiffness, dissipation = blend.T @ stiffness @ blend, blend.T @ dissipation @ blend
+    stiffness[massless] = dissipation[massless] = 0.0
+    stiffness[:, massless] = dissipation[:, massless] = 0.0
+    stiffness[massless, massless] = 1.0
+    return 0.5 * (stiffness + stiffness.T), 0.5 * (dissipation + dissipation.T), blend
 
 
 def _uncoupled(stiffness: Array, dissipation: Array) -> bool:
@@ -340,7 +406,12 @@ def _is_diagonal(matrix: Array) -> bool:
 def _contact(contact: PointContact, layout: _Layout) -> ContactRows:
     fixed = contact.frame @ layout.trace(contact.tip)
     if contact.touched_point is not None:
-        return ContactRows(contact, fixed - contact.frame @ layout.trace(contact.touched_point))
+        fixed = fixed - contact.frame @ layout.trace(contact.touched_point)
+    if contact.friction.depends_on_speed:
+        # Without mass nothing holds the slip against friction that falls with its speed.
+        fixed[1, layout.massless] = 0.0
+    if contact.touched_point is not None:
+        return ContactRows(contact, fixed)
     if contact.path_body is None:
         return ContactRows(contact, fixed)
     first, end = layout.spans[contact.path_body]
@@ -448,7 +519,10 @@ def _start(system: System, layout: _Layout) -> tuple[Array, Array]:
     position, velocity = np.zeros(layout.size), np.zeros(layout.size)
     for drive in system.drives:
         if drive.uniform_velocity is not None:
-            velocity += drive.uniform_velocity @ layout.translation(drive.acted_on)
+            # Residual shapes follow forces alone.
+            modes = layout.modes(drive.acted_on)
+            moved = np.where(modes.massless, 0.0, drive.uniform_velocity @ modes.translation)
+            velocity += layout.full(drive.acted_on, moved)
         for name, given in drive.vectors.items():
             values = {"displacement": position, "velocity": velocity}[name]
             values += layout.full(drive.acted_on, drive.acted_on.modal_coordinates(given))
@@ -484,7 +558,7 @@ def _reaction_rows(probe: Reaction, layout: _Layout, loads: list[_Load], direct:
         raise ArgumentError("connections", "leave a body whose Reaction is recorded", got=f"one on {brief(beam)}")
     reaction = beam.root_reaction(system.is_held(beam))
     matrix = np.zeros((3, layout.size))
-    matrix[2] = layout.full(beam, reaction.mass[component])
+    matrix[2] = layout.blended(layout.full(beam, reaction.mass[component]))
     direct[: len(loads)] = [-reaction.held[component] * load.root[component] for load in loads]
     for number, point in enumerate(system.contacts):
         # The contact pushes the tip with the normal force along the normal, less the tangential along the tangent.

@@ -194,7 +194,9 @@ def _body_line(name: str, body: Any) -> str:
     lean = f", {body.posture}" if body.posture else ""
     mass = f"{body.total_mass:.4g} kg" if math.isfinite(body.total_mass) else "given by matrices"
     damping = f", damping {modes.damping.max():.3g}" if modes.damping.any() else ""
-    return f"{name:<8} {length}{mass}{lean}{damping}, {modes.count} modes to {modes.frequency.max():.4g} Hz"
+    frequency, residual = modes.frequency[~modes.massless], int(modes.massless.sum())
+    more = f" and {residual} residual shapes" if residual else ""
+    return f"{name:<8} {length}{mass}{lean}{damping}, {frequency.size} modes to {frequency.max():.4g} Hz{more}"
 
 
 def _contact_line(name: str, contact: PointContact) -> str:

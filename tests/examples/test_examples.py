@@ -60,8 +60,25 @@ def check_mass_on_a_belt(names: Mapping[str, Any], printed: str, folder: Path) -
     assert len(list(folder.glob("*.png"))) == len(names["laws"])
 
 
+def check_cut_off_modes(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """Static answers of the modes left out give the block its equilibrium and its squeal; a slender beam takes harm."""
+    forces, frequency, growth = names["truth"]
+    for (cutoff, static), (pressed, squeal, grows) in names["found"].items():
+        near = np.abs(pressed - forces).max() < 1e-9 * forces.max()
+        assert near == static, cutoff
+        # What is left of the modes is their inertia, (squeal / cutoff)² of their yielding.
+        assert (abs(squeal / frequency - 1.0) < 0.02 and abs(grows / growth - 1.0) < 0.05) == static, cutoff
+    lines = re.findall(r"judder, modes beyond (\S+) kHz (.+): off the track (\S+) \+- (\S+)", printed)
+    shares = {(float(cutoff), words): (float(share), float(half)) for cutoff, words, share, half in lines}
+    settled = shares[60.0, "left out"][0]
+    assert abs(shares[60.0, "yielding statically"][0] - settled) < 0.03
+    assert abs(shares[7.5, "left out"][0] - settled) < 0.5 * abs(shares[7.5, "yielding statically"][0] - settled) + 0.02
+    assert (folder / "cut-off-modes.png").read_bytes().startswith(b"\x89PNG")
+
+
 # One check for every example: it takes the example's names, what it printed and the folder it ran in.
 CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
+    "cut_off_modes.py": check_cut_off_modes,
     "mass_on_a_belt.py": check_mass_on_a_belt,
     "ten_lines.py": check_ten_lines,
 }

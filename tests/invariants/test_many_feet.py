@@ -21,3 +21,8 @@ def test_all_laws_are_drawn():
     # Two laws of rate and state are one class.
     assert len(drawn_laws) == len(LAWS) - 1
     assert {len(drawn(0, number).feet) for number in range(COUNT)} == set(range(1, MOST + 1))
+
+
+def test_a_foot_whose_friction_ceases_to_fall_within_a_step_obeys_its_law():
+    """The ratio of linear weakening is not expanded beyond its corner, where it would be 6e-7 too low."""
+    assert verdict(1, 2167) == ("solved", set())

@@ -7,6 +7,7 @@ import numba
 from . import layout as at
 from .friction import (
     STRICT,
+    corner_between,
     holding_ratio,
     least_ratio,
     ratio_and_slope,
@@ -231,7 +232,7 @@ def sliding_velocity(gap, slip, w, law, laws, i, before, sense, step):
         curvature = softness * (bend + 2.0 * slope * slope * sense * w_nt * freed)
         change -= 0.5 * curvature / steepness * change * change
         speed += change
-        if abs(change) <= CUBIC * speed:
+        if abs(change) <= CUBIC * speed and not corner_between(law, laws, i, speed - change, speed):
             return sense * speed, sense * (ratio + (slope + 0.5 * bend * change) * change)
     at_rest = sliding_ratio(law, laws, i, 0.0)
     if sense * velocity_under(sense * at_rest, gap, slip, w, before, step) <= 0.0:

@@ -62,6 +62,14 @@ def ratio_and_slope(law, laws, i, speed):
     return laws[i, 1] + weakened + laws[i, 4] * speed, laws[i, 4] - weakened * fall, bend
 
 
+@numba.njit(inline="always", **STRICT)
+def corner_between(law, laws, i, one, other):
+    """Return whether the ratio of a law has a corner between two speeds, beyond which its slope says nothing."""
+    if law != at.LINEAR_WEAKENING:
+        return False
+    return (laws[i, 0] - laws[i, 1] * one > laws[i, 2]) != (laws[i, 0] - laws[i, 1] * other > laws[i, 2])
+
+
 @numba.njit(**STRICT)
 def least_ratio(law, laws, i):
     """Return the ratio that a weakening law falls to, but for its viscous part."""

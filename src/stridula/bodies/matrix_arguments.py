@@ -22,7 +22,7 @@ def from_container(held: dict[str, Any]) -> dict[str, Any]:
     if "rayleigh" in held:
         mass, stiffness = held["rayleigh"].tolist()
         arguments["damping"] = Rayleigh(mass, stiffness)
-    for word in ("cutoff", "name"):
+    for word in ("cutoff", "residual_flexibility", "name"):
         if word in held:
             arguments[word] = held[word].item()
     return arguments

@@ -34,7 +34,7 @@ VERSION_5 = b"MATLAB 5.0"
 PENALTY = 1e30
 
 MATRICES = ("mass", "stiffness", "damping")
-OTHERS = ("translation", "rayleigh", "cutoff", "name")
+OTHERS = ("translation", "rayleigh", "cutoff", "residual_flexibility", "name")
 SYNONYMS = {"M": "mass", "K": "stiffness", "C": "damping"}
 POINT = "point_"
 

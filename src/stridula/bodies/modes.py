@@ -16,12 +16,13 @@ from ..checks import ArgumentError
 class Modes:
     """Mass-normalised modes of a body in the plane: ``q'' + d q' + w² q = Phi^T f``.
 
-    With a damping matrix D, ``D q'`` stands in place of ``d q'``.
+    With a damping matrix D, ``D q'`` stands in place of ``d q'``. Residual shapes, which may come last, have unit
+    stiffness and no mass: ``q = Psi^T f``.
 
     Attributes
     ----------
     angular_frequency : ndarray, shape (modes,)
-        Undamped angular frequencies w [rad/s], rising; exactly zero for rigid modes.
+        Undamped angular frequencies w [rad/s], rising; exactly zero for rigid modes, infinite for residual shapes.
     damping_rate : ndarray, shape (modes,)
         ``d = 2 zeta w`` [1/s] for a damping ratio zeta; from ``2 w`` on a mode is overdamped.
     translation : ndarray, shape (2, modes)
@@ -39,6 +40,16 @@ class Modes:
     def count(self) -> int:
         """Number of modes."""
         return int(self.angular_frequency.size)
+
+    @property
+    def massless(self) -> Array:
+        """Which are residual shapes, shape (modes,)."""
+        return np.isinf(self.angular_frequency)
+
+    @property
+    def stiffness(self) -> Array:
+        """Modal stiffnesses, shape (modes,): w² [1/s²], and 1 of residual shapes."""
+        return np.where(self.massless, 1.0, self.angular_frequency) ** 2
 
     @property
     def damping(self) -> Array:

@@ -63,6 +63,9 @@ class ReducedBody:
         and uniform initial velocities need it.
     cutoff : float, optional
         Keep the modes up to this frequency [Hz], rigid ones always; all modes if left out.
+    residual_flexibility : bool, optional
+        Whether the modes that a cutoff leaves out still yield statically to the forces at the points and to gravity,
+        so that the body is as soft there as all its modes make it.
     name : str, optional
         What it is called in records; tells equal bodies apart.
 
@@ -80,11 +83,13 @@ class ReducedBody:
     damping: float | Sequence[float] | Array | DampingLaw = 0.0
     translation: Array | None = None
     cutoff: float | None = None
+    residual_flexibility: bool = True
     name: str = ""
 
     @of_ordinary_size("mass, stiffness, damping and points")
     def __post_init__(self) -> None:
         instance("name", self.name, str)
+        instance("residual_flexibility", self.residual_flexibility, bool)
         if self.cutoff is not None:
             self._set("cutoff", positive("cutoff", self.cutoff))
         self._set("mass", symmetric("mass", square("mass", self.mass)))
@@ -109,6 +114,7 @@ class ReducedBody:
         damping: Any = None,
         translation: Any = None,
         cutoff: float | None = None,
+        residual_flexibility: bool | None = None,
         name: str = "",
     ) -> ReducedBody:
         """Read a body from one file with everything, or from one file for each matrix.
@@ -149,6 +155,8 @@ class ReducedBody:
             freedom that are displacements along x and y at every node, usually ``(1, 2)``.
         cutoff : float, optional
             As in `ReducedBody`.
+        residual_flexibility : bool, optional
+            As in `ReducedBody`.
         name : str, optional
             As in `ReducedBody`.
 
@@ -176,7 +184,13 @@ class ReducedBody:
             )
         for word, file in given_files.items():
             instance(word, file, (str, os.PathLike))
-        options = {"damping": damping, "translation": translation, "cutoff": cutoff, "name": name or None}
+        options = {
+            "damping": damping,
+            "translation": translation,
+            "cutoff": cutoff,
+            "residual_flexibility": residual_flexibility,
+            "name": name or None,
+        }
         given = {word: value for word, value in options.items() if value is not None}
         added = {} if points is None else points
         instance("points", added, Mapping)
@@ -201,6 +215,7 @@ class ReducedBody:
         if Path(path).suffix.lower() != ".npz":
             raise ArgumentError("path", "end in .npz", os.fspath(path))
         arrays: dict[str, Any] = {"mass": self.mass, "stiffness": self.stiffness, "name": self.name}
+        arrays["residual_flexibility"] = self.residual_flexibility
         arrays |= {POINT + name: rows for name, rows in self.points.items()}
         if isinstance(self.damping, Rayleigh):
             arrays["rayleigh"] = (self.damping.mass, self.damping.stiffness)
@@ -251,7 +266,7 @@ class ReducedBody:
 
     @property
     def shapes(self) -> Array:
-        """Mass-normalised mode shapes Phi, shape (n, modes)."""
+        """Mass-normalised mode shapes Phi, residual shapes last, shape (n, modes)."""
         return self._reduction.shapes
 
     def modes(self, held_x: bool = False) -> Modes:
@@ -272,12 +287,15 @@ class ReducedBody:
         return self.points[position] @ self.shapes
 
     def modal_coordinates(self, vector: Any) -> Array:
-        """Return ``Phi^T M x`` of the displacements or velocities x of all degrees of freedom, shape (modes,)."""
+        """Return ``Phi^T M x`` of displacements or velocities x of all degrees of freedom, shape (modes,).
+
+        Residual shapes have none: they follow the forces alone.
+        """
         values = numbers("vector", vector)
         if values.shape != (self.mass.shape[0],):
             raise ArgumentError("vector", f"have the shape ({self.mass.shape[0]},)", vector, got=values.shape)
         check_finite("vector", values)
-        return self.shapes.T @ (self.mass @ values)
+        return np.where(self.modes().massless, 0.0, self.shapes.T @ (self.mass @ values))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ReducedBody) and self._digest == other._digest

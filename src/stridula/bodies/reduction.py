@@ -15,6 +15,8 @@ from .matrix_input import ROUND_OFF, smallest_eigenvalue
 from .modes import Modes
 
 COUPLING = 1e-10
+# Relative share of the points in a residual shape below which it is round-off.
+RESIDUAL = 1e-8
 
 
 @dataclass(frozen=True)
@@ -24,9 +26,9 @@ class Reduction:
     Attributes
     ----------
     modes : Modes
-        The modes.
+        The modes, residual shapes last.
     shapes : ndarray, shape (n, modes)
-        Their mass-normalised shapes on the degrees of freedom.
+        Their shapes on the degrees of freedom.
     """
 
     modes: Modes
@@ -43,12 +45,36 @@ def reduce_body(body: Any) -> Reduction:
             "cutoff", f"leave at least one mode (first at {at_least(first)} Hz)", body.cutoff, got=f"{body.cutoff!r} Hz"
         )
     rates, matrix = _damping(body.damping, angular, shapes, kept)
-    angular, shapes = angular[kept], shapes[:, kept]
+    residual = np.zeros((len(shapes), 0))
+    if body.residual_flexibility and not kept.all():
+        residual = _residual_shapes(body, angular[~kept], shapes[:, ~kept])
+    count = residual.shape[1]
+    angular, rates = np.append(angular[kept], np.full(count, np.inf)), np.append(rates, np.zeros(count))
+    shapes = np.hstack([shapes[:, kept], residual])
     shapes.flags.writeable = False
+    matrix = None if matrix is None else np.pad(matrix, (0, count))
     translation = np.zeros((2, angular.size))
     if body.translation is not None:
         translation = body.translation @ body.mass @ shapes
     return Reduction(Modes(angular, rates, translation, matrix), shapes)
+
+
+def _residual_shapes(body: Any, angular: Array, shapes: Array) -> Array:
+    """Return the static answers of the modes left out to forces at the points and to gravity, shape (n, shapes).
+
+    They are orthonormal in the stiffness, so that ``Psi Psi^T`` is the flexibility of the modes left out wherever
+    these forces act (MacNeal 1971).
+    """
+    forces = list(body.points.values())
+    if body.translation is not None:
+        forces.append(body.translation @ body.mass)
+    answers = (np.concatenate(forces) @ shapes / angular).T
+    sizes = np.linalg.norm(answers, axis=0)
+    answers = answers[:, sizes > 0.0] / sizes[sizes > 0.0]
+    if not answers.size:
+        return np.zeros((len(shapes), 0))
+    basis, share, _ = scipy.linalg.svd(answers, full_matrices=False)
+    return np.asarray(shapes / angular @ basis[:, share > RESIDUAL * share[0]])
 
 
 def _all_modes(body: Any) -> tuple[Array, Array]:

@@ -15,6 +15,7 @@ from ..bodies.paths import Path
 from ..checks import ArgumentError
 from ..contact import FrictionLaw
 from .schemes import Scheme
+from .stepping import Stepping
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,8 @@ def recurrence(arrays: Assembly, scheme: Scheme, step: float) -> Recurrence:
     ValueError
         If the step is too long for coupled modes to answer an impulse in its own sense.
     """
-    k = scheme.coefficients(arrays.angular_frequency, arrays.damping_rate, step)
+    stepping = Stepping(arrays, scheme)
+    k = stepping.coefficients(step)
     block = np.zeros((at.COEFFICIENT_ROWS, arrays.mode_count))
     block[at.B], block[at.R], block[at.LOAD] = k.b, k.r, k.load
     block[at.HALF_OVER_LOAD] = 0.5 / block[at.LOAD]
@@ -95,7 +97,7 @@ def recurrence(arrays: Assembly, scheme: Scheme, step: float) -> Recurrence:
     size = arrays.coupled
     matrices, loads = np.zeros((at.MATRICES, size, size)), arrays.loads * k.load
     if size:
-        c = scheme.coupled_coefficients(arrays.stiffness, arrays.dissipation, step)
+        c = stepping.coupled_coefficients(step)
         inverse = np.linalg.inv(c.load)
         kept = inverse @ c.b
         kinetic, lost, turned = _symmetric(inverse + kept), _symmetric(inverse - kept), inverse + kept

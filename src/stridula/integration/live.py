@@ -312,10 +312,9 @@ class LiveMarch:
 
 def _opening(arrays: Assembly, position: Array, gap: float) -> Array:
     """Return the displacement that opens the contact to a gap as a force on it would, rigid motions first."""
-    one, size = arrays.contacts[0], arrays.coupled
+    one = arrays.contacts[0]
     row = rows_at(one, one.contact.at)[0]
-    squared = np.diag(arrays.angular_frequency**2)
-    squared[:size, :size] = arrays.stiffness
+    squared = arrays.all_stiffness
     vibrating = np.diag(squared)[np.diag(squared) > 0.0]
     squared += SOFT**2 * (vibrating.min() if vibrating.size else 1.0) * np.eye(len(row))
     yielded = np.linalg.solve(squared, row)

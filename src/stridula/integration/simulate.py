@@ -19,6 +19,7 @@ from .contact_solve import GaussSeidel
 from .marches import March
 from .run import Run
 from .schemes import CentralDifference, ExactModal, Scheme
+from .stepping import Stepping
 from .stops import Diverged, Interrupted
 from .timing import Timing
 from .together import march_together
@@ -180,10 +181,7 @@ def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float
     """Return the step and the sampling that the arguments of `simulate` ask for."""
     positive("duration", duration)
     wanted = 1.0 / positive("sample_rate", sample_rate)
-    limit = min(
-        scheme.limit(arrays.angular_frequency, arrays.damping_rate),
-        scheme.coupled_limit(arrays.stiffness, arrays.dissipation),
-    )
+    limit = Stepping(arrays, scheme).limit
     if step is None:
         ratio = max(1, int(np.ceil(wanted / (scheme.default_fraction * limit) - 1e-9)))
         step = wanted / ratio

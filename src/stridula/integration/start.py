@@ -18,6 +18,7 @@ from .blocks import Blocks
 from .contact_solve import GaussSeidel
 from .forces import forces_of
 from .schemes import Scheme
+from .stepping import Stepping
 
 # Share of the terms of a gap that rounding may make, where each has come out of a sum or a solve of its own.
 ROUND_OFF = 512.0 * np.finfo(float).eps
@@ -60,7 +61,7 @@ class _Start:
 
     def __init__(self, arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks) -> None:
         times = np.array([-step, 0.0, step])
-        self.arrays, self.scheme, self.step = arrays, scheme, step
+        self.arrays, self.stepping, self.step = arrays, Stepping(arrays, scheme), step
         self.modes, self.contacts = blocks.modes, blocks.contacts
         self.before, self.after = np.diff(arrays.motion(times, step), axis=0)
         self.factors = np.array([signal(times[1:2], step)[0] for signal in arrays.signals[: len(arrays.loads)]])
@@ -76,15 +77,7 @@ class _Start:
         return self._increment(self.arrays.position, self.arrays.velocity, force)
 
     def _increment(self, position: Array, velocity: Array, force: Array) -> Array:
-        arrays, size = self.arrays, self.arrays.coupled
-        first = self.scheme.first_increment(
-            arrays.angular_frequency, arrays.damping_rate, self.step, position, velocity, force
-        )
-        if size:
-            first[:size] = self.scheme.coupled_first_increment(
-                arrays.stiffness, arrays.dissipation, self.step, position[:size], velocity[:size], force[:size]
-            )
-        return first
+        return self.stepping.first_increment(self.step, position, velocity, force)
 
     @cached_property
     def speeds(self) -> Array:
@@ -185,8 +178,9 @@ def rows_at(one: ContactRows, place: float) -> Array:
 
 def _terms(arrays: Assembly, force: Array) -> Array:
     """Return the size of what modal positions are made of: themselves, and what the loads alone would deflect."""
-    size, free = arrays.coupled, arrays.angular_frequency == 0.0
-    deflected = np.where(free, 0.0, force / np.where(free, 1.0, arrays.angular_frequency) ** 2)
+    size, stiffness = arrays.coupled, np.where(arrays.massless, 1.0, arrays.angular_frequency) ** 2
+    free = stiffness == 0.0
+    deflected = np.where(free, 0.0, force / np.where(free, 1.0, stiffness))
     if not arrays.position.any():
         return np.zeros_like(force)
     deflected[:size] = np.linalg.pinv(arrays.stiffness, rcond=STIFFLESS, hermitian=True) @ force[:size]

@@ -169,7 +169,7 @@ def _acceleration(structure: Structure) -> float:
 
 def _largest_acceleration(structure: Structure) -> float:
     rows = np.array([line.tangent for line in structure.lines])
-    return float(np.linalg.norm(rows, axis=1).max() * np.linalg.norm(structure.load))
+    return float(np.linalg.norm(rows * structure.mass, axis=1).max() * np.linalg.norm(structure.load * structure.mass))
 
 
 def _force(structure: Structure) -> float:
@@ -349,10 +349,11 @@ def _rank_is_short(rows: Array) -> bool:
 def slides_on(structure: Structure, status: Sequence[str], share: Array) -> bool:
     """Return whether contact forces answer to every motion: no impulse on a sliding contact would jam it (Painlevé).
 
-    With the compliance W of the contacts at once, ``W_NN - share W_NT`` must have positive principal minors.
+    With the compliance W of the contacts at once, ``W_NN - share W_NT`` must have positive principal minors. Where
+    residual shapes yield at once, modes move by nothing against them.
     """
     held, pushes, closed, _ = held_rows(structure, status, share)
-    whole, size = held @ pushes.T, len(closed)
+    whole, size = held * structure.promptness @ pushes.T, len(closed)
     compliance = whole[:size, :size]
     if len(held) > size:
         compliance = compliance - whole[:size, size:] @ np.linalg.solve(whole[size:, size:], whole[size:, :size])

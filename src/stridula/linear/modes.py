@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
+from .massless import massless_exponents
 from .structure import Structure
 from .vibration import Exponents, Vibration, all_exponents, nearest_exponents
 
@@ -40,28 +41,37 @@ def exponents_alone(structure: Structure, motion: Vibration) -> Array:
     """Return the exponents [1/s] of the same modes without their shapes, in any order."""
     if structure.mode_count > LARGEST_DENSE:
         return _nearest(structure, motion, COUNT, 0.0).values
-    return all_exponents(motion, shapes=False).values
+    return _all(motion, shapes=False).values
 
 
 def round_off(structure: Structure) -> float:
     """Return the growth that rounding may make [1/s]."""
-    return ROUND_OFF * float(np.sqrt(np.diag(structure.stiffness).max(initial=0.0)))
+    return ROUND_OFF * float(np.sqrt(_moving_stiffness(structure).max(initial=0.0)))
+
+
+def _moving_stiffness(structure: Structure) -> Array:
+    """Return the stiffness of each mode that has a mass [1/s²]."""
+    return np.diag(structure.stiffness)[structure.mass > 0.0]
 
 
 def _chosen(structure: Structure, motion: Vibration, modes: int | None, near: float) -> Exponents:
     wanted = COUNT if modes is None and structure.mode_count > LARGEST_DENSE else modes
     if wanted is not None and 4 * wanted < structure.mode_count and structure.stiffness.any():
         return _nearest(structure, motion, wanted, near)
-    found = all_exponents(motion)
+    found = _all(motion)
     if wanted is None:
         return found
     order = np.argsort(np.abs(found.values - 2.0j * np.pi * near), kind="stable")[:wanted]
     return Exponents(found.values[order], found.shapes[:, order])
 
 
+def _all(motion: Vibration, shapes: bool = True) -> Exponents:
+    return all_exponents(motion, shapes) if motion.mass.all() else massless_exponents(motion)
+
+
 def _nearest(structure: Structure, motion: Vibration, wanted: int, near: float) -> Exponents:
     """Return the exponents nearest to a frequency [Hz], found about a place off the imaginary axis, where none is."""
-    elastic = np.sqrt(np.diag(structure.stiffness))
+    elastic = np.sqrt(_moving_stiffness(structure))
     lowest = float(elastic[elastic > 0.0].min(initial=np.inf))
     centre = 2.0 * np.pi * near
     # Both of each pair may be found, and in another order than about the frequency itself.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from copy import copy
 from dataclasses import dataclass
 from functools import partial
@@ -12,7 +12,7 @@ import numpy as np
 import scipy.linalg
 
 from ..arrays import Array
-from ..assembly import ContactRows, assemble
+from ..assembly import Assembly, ContactRows, assemble
 from ..checks import STATUS_WORDS, ArgumentError
 from ..contact import PointContact, RigidTrack
 from ..histories import History
@@ -23,6 +23,8 @@ SEPARATED, STICKING, SLIDING = STATUS_WORDS
 CLOSED = (STICKING, SLIDING)
 # Relative size below which a motion does not move a row.
 UNMOVED = 1e-9
+# Time in which residual shapes yield, modes hardly do, times the highest angular frequency.
+SHORT = 1e-3
 # Relative square of an angular frequency below which rigid motions of the bodies strain no connection.
 UNSTRAINED = 1e-13
 
@@ -68,7 +70,9 @@ class Structure:
     lines : list of ContactLine
         One for each contact.
     stiffness, damping : ndarray, shape (modes, modes)
-        Stiffness [1/s²] and damping matrix [1/s]; the mass matrix is one.
+        Stiffness [1/s²] and damping matrix [1/s].
+    mass : ndarray, shape (modes,)
+        Modal masses: 1, but 0 of residual shapes.
     rigid : ndarray, shape (modes, motions)
         Motions that strain nothing, orthonormal.
     load : ndarray, shape (modes,)
@@ -91,10 +95,10 @@ class Structure:
         # Later it is all the same, and no rate meets the kink of a history that settles.
         now = np.array([2.0 * settled + 1.0 if time is None else settled])
         arrays, size = self.arrays, self.arrays.coupled
-        self.lines = [_line(one, system, arrays.spans) for one in arrays.contacts]
-        self.stiffness = np.diag(arrays.angular_frequency**2)
-        self.damping = np.diag(arrays.damping_rate)
-        self.stiffness[:size, :size], self.damping[:size, :size] = arrays.stiffness, arrays.dissipation
+        self.lines = [_line(one, system, arrays) for one in arrays.contacts]
+        self.stiffness, self.damping = arrays.all_stiffness, np.diag(arrays.damping_rate)
+        self.damping[:size, :size] = arrays.dissipation
+        self.mass = np.where(arrays.massless, 0.0, 1.0)
         self.rigid = _rigid_motions(self)
         factors = np.array([signal(now, 1e-6)[0] for signal in arrays.signals[: len(arrays.loads)]])
         self.load = factors @ arrays.loads
@@ -109,12 +113,20 @@ class Structure:
         """Number of modes."""
         return self.arrays.mode_count
 
+    @property
+    def promptness(self) -> Array:
+        """Displacement of each mode for a unit force that acts for a short time, in a common unit, shape (modes,)."""
+        if self.mass.all():
+            return self.mass
+        highest = float(np.diag(self.stiffness)[self.mass > 0.0].max(initial=1.0))
+        return np.where(self.mass > 0.0, SHORT**2 / highest, 1.0)
+
     def shifted(self, shifts: Array) -> Structure:
         """Return the system with its contact points shifted along their tracks by distances [m], shape (contacts,)."""
-        other, spans = copy(self), self.arrays.spans
+        other = copy(self)
         other._known = {}
         pairs = zip(self.arrays.contacts, shifts.tolist(), strict=True)
-        other.lines = [_line(one, self.system, spans, shift) for one, shift in pairs]
+        other.lines = [_line(one, self.system, self.arrays, shift) for one, shift in pairs]
         return other
 
     def prescribed(self, status: Sequence[str]) -> Array:
@@ -260,12 +272,14 @@ def _varying(track: RigidTrack, name: str) -> list[History]:
     return [history for velocity, acceleration, history in moved if velocity or acceleration]
 
 
-def _line(one: ContactRows, system: System, spans: Mapping[str, tuple[int, int]], shift: float = 0.0) -> ContactLine:
+def _line(one: ContactRows, system: System, arrays: Assembly, shift: float = 0.0) -> ContactLine:
     nothing = np.zeros(one.fixed.shape[1])
     touched, track, points = one.contact.touched_point, one.contact.path_body, np.zeros((2, 2, nothing.size))
 
     def place(side: int, body: Any, position: Any) -> None:
-        points[side][:, slice(*spans[system.body_name(body)])] = body.trace(position, system.is_held(body))
+        points[side][:, slice(*arrays.spans[system.body_name(body)])] = body.trace(position, system.is_held(body))
+        size = len(arrays.blend)
+        points[side][:, :size] = points[side][:, :size] @ arrays.blend
 
     place(0, one.contact.tip.body, one.contact.tip.position)
     if touched is not None:

@@ -29,10 +29,12 @@ class Vibration:
 
     ::
 
-        q'' + damping q' + stiffness q + by_state z = pushes^T m,    held q = 0,    z' = from_velocity q' + state z
+        mass q'' + damping q' + stiffness q + by_state z = pushes^T m,    held q = 0,    z' = from_velocity q' + state z
 
     Attributes
     ----------
+    mass : ndarray, shape (modes,)
+        Modal masses: 1, but 0 of residual shapes.
     stiffness, damping : ndarray, shape (modes, modes)
         With what friction and the shift of contact points add.
     held, pushes : ndarray, shape (constraints, modes)
@@ -46,6 +48,7 @@ class Vibration:
         where it is.
     """
 
+    mass: Array
     stiffness: Array
     damping: Array
     held: Array
@@ -82,7 +85,7 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
             answers.append((near, equilibrium.sense[k], normal, line.tangent, slip))
     by_state, from_velocity, state = _states(answers, structure)
     free = structure.free_motions(held)
-    return Vibration(stiffness, damping, held, pushes, by_state, from_velocity, state, free)
+    return Vibration(structure.mass, stiffness, damping, held, pushes, by_state, from_velocity, state, free)
 
 
 def _states(
@@ -163,14 +166,14 @@ def nearest_exponents(motion: Vibration, count: int, shift: complex) -> Exponent
     stiffness = motion.stiffness - (motion.stiffness @ motion.free) @ motion.free.T
     inner = 1.0 / (motion.state - shift)
     moving = motion.damping - motion.by_state @ (inner[:, None] * motion.from_velocity)
-    solve = _bordered(stiffness + shift * moving + shift**2 * np.eye(modes), motion)
+    solve = _bordered(stiffness + shift * moving + shift**2 * np.diag(motion.mass), motion)
 
     def still(place: Array) -> Array:
         return np.asarray(place - motion.free @ (motion.free.T @ place))
 
     def inverse(vector: Array) -> Array:
         place, speed, own = np.split(vector, [modes, 2 * modes])
-        right = -speed - shift * place - moving @ place - motion.by_state @ (inner * own)
+        right = -motion.mass * (speed + shift * place) - moving @ place - motion.by_state @ (inner * own)
         moved = solve(right)
         velocity = place + shift * moved
         return np.concatenate([still(moved), velocity, inner * (own - motion.from_velocity @ velocity)])

@@ -187,6 +187,8 @@ class Builder:
             if is_there(file) and not Path(file).is_file():
                 self.problems.append(f"{self.words((*path, key))} must be a file, got {brief(file)}")
                 return None
+        if table.get("residual_flexibility") is None:
+            table.pop("residual_flexibility", None)
         with self._within(*path):
             if "file" in table or {"mass", "stiffness"} & set(files):
                 container = table.pop("file", None)

@@ -87,6 +87,8 @@ class Reduced(Table):
     """rows that say how a translation along x and y moves it; gravity and initial velocities need it"""
     cutoff: is_.Frequency | None = None
     """keep the modes up to this frequency, all if left out [Hz]"""
+    residual_flexibility: bool | None = None
+    """whether modes beyond the cutoff yield statically at the points, true if left out"""
     name: str = ""
     """what it is called in records, the table's own name if left out"""
 
