@@ -21,6 +21,7 @@ _HOME = {
         "Rayleigh",
         "Rectangle",
         "ReducedBody",
+        "RigidBody",
         "RisingDamping",
         "SampledDamping",
         "Section",

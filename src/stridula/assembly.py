@@ -46,7 +46,7 @@ class ProbeRows:
 
 @dataclass(frozen=True)
 class ContactRows:
-    """One contact as rows on the modes.
+    """One contact as rows on the modes; in space two pairs of rows in a row.
 
     Attributes
     ----------
@@ -56,12 +56,25 @@ class ContactRows:
         Displacement of the tip, less that of a frozen track, along normal and tangent.
     bending, axial : tuple of int
         First mode and the one after the last of each kind of a track that the tip moves along.
+    is_second : bool
+        Whether the tangent is the second of a contact in space; the normal is zero then.
     """
 
     contact: PointContact
     fixed: Array
     bending: tuple[int, int] = (0, 0)
     axial: tuple[int, int] = (0, 0)
+    is_second: bool = False
+
+    @property
+    def at(self) -> float:
+        """Abscissa along the tangent at the start [m]."""
+        return 0.0 if self.is_second else self.contact.at
+
+    @property
+    def gap(self) -> float:
+        """Gap at the start [m]."""
+        return 0.0 if self.is_second else self.contact.gap
 
 
 @dataclass(frozen=True)
@@ -77,10 +90,10 @@ class Assembly:
     stiffness, dissipation : ndarray, shape (coupled, coupled)
         Stiffness [1/s²] and damping matrix [1/s] of the coupled modes, which come first.
     contacts : list of ContactRows
-        One for each contact.
+        One for each contact, and another one after it for its second tangent in space: pairs of rows.
     motion : callable
         Motions imposed on the contacts [m] over time and step: of the tip and of the track along the tangent, of the
-        gap; shape (times, contacts, 3).
+        gap; shape (times, pairs, 3).
     loads : ndarray, shape (loads, modes)
         Modal forces of the drives for a unit signal.
     signals : list of callable
@@ -88,7 +101,7 @@ class Assembly:
         acceleration.
     position, velocity : ndarray, shape (modes,)
         Modal positions and velocities at the start.
-    friction_state : ndarray, shape (contacts,)
+    friction_state : ndarray, shape (pairs,)
         Internal states of the laws of friction at the start.
     probes : list of ProbeRows
         One for each probe.
@@ -123,6 +136,11 @@ class Assembly:
         matrix = np.diag(np.where(self.massless, 1.0, self.angular_frequency) ** 2)
         matrix[: self.coupled, : self.coupled] = self.stiffness
         return matrix
+
+    @property
+    def firsts(self) -> Array:
+        """Which pairs of rows are the first of their contact, shape (pairs,)."""
+        return np.array([not one.is_second for one in self.contacts])
 
     @property
     def mode_count(self) -> int:
@@ -166,13 +184,15 @@ def _assembled(system: System) -> tuple[Assembly, _Layout, list[_Load]]:
         massless=massless,
         stiffness=stiffness[:size, :size],
         dissipation=dissipation[:size, :size],
-        contacts=[_contact(contact, layout) for contact in system.contacts],
+        contacts=[pair for contact in system.contacts for pair in _contact(contact, layout)],
         motion=_motion(system, signals[-3]),
         loads=np.array([load.modal for load in loads]).reshape(len(loads), layout.size),
         signals=signals,
         position=position,
         velocity=velocity,
-        friction_state=np.array([contact.friction.state_at_start for contact in system.contacts]),
+        friction_state=np.array(
+            [state for one in system.contacts for state in [one.friction.state_at_start] * _pairs(one)]
+        ),
         probes=[],
         prescribed=_prescribed(system, histories),
         spans={system.body_name(body): layout.spans[body] for body in system.bodies},
@@ -312,9 +332,12 @@ class _Layout:
         return out
 
     def body_trace(self, point: BodyPoint) -> Array:
-        """Return the rows of the world displacement at a point on the coordinates of the bodies, shape (2, modes)."""
+        """Return the rows of the world displacement at a point on the coordinates of the bodies, shape (3, modes).
+
+        A body in the plane is rigid along z.
+        """
         body: Any = point.body
-        return self.full(body, body.trace(point.position, self.system.is_held(body)))
+        return _in_space(self.full(body, body.trace(point.position, self.system.is_held(body))))
 
     def blended(self, rows: Array) -> Array:
         """Return rows on the coordinates of the bodies as rows on those that march."""
@@ -323,12 +346,12 @@ class _Layout:
         return rows
 
     def trace(self, point: BodyPoint) -> Array:
-        """Return the rows of the world displacement at a point, shape (2, modes)."""
+        """Return the rows of the world displacement at a point, shape (3, modes)."""
         return self.blended(self.body_trace(point))
 
     def translation(self, body: Any) -> Array:
-        """Return what a uniform acceleration of a body along x and y drives, shape (2, modes)."""
-        return self.blended(self.full(body, self.modes(body).translation))
+        """Return what a uniform acceleration of a body along x, y and z drives, shape (3, modes)."""
+        return self.blended(_in_space(self.full(body, self.modes(body).translation)))
 
     @cached_property
     def massless(self) -> Array:
@@ -403,41 +426,56 @@ def _is_diagonal(matrix: Array) -> bool:
     return bool(np.all(np.abs(matrix - np.diag(diagonal)) <= UNCOUPLED * scale))
 
 
-def _contact(contact: PointContact, layout: _Layout) -> ContactRows:
-    fixed = contact.frame @ layout.trace(contact.tip)
+def _in_space(rows: Array) -> Array:
+    """Return rows along x, y and z of a body, which is rigid along z in the plane."""
+    return rows if len(rows) == 3 else np.concatenate([rows, np.zeros((1, rows.shape[1]))])
+
+
+def _pairs(contact: PointContact) -> int:
+    """Return how many pairs of rows a contact has."""
+    return len(contact.frame) - 1
+
+
+def _contact(contact: PointContact, layout: _Layout) -> list[ContactRows]:
+    frame = contact.frame
+    fixed = frame @ layout.trace(contact.tip)[: len(frame)]
     if contact.touched_point is not None:
-        fixed = fixed - contact.frame @ layout.trace(contact.touched_point)
+        fixed = fixed - frame @ layout.trace(contact.touched_point)[: len(frame)]
     if contact.friction.depends_on_speed:
         # Without mass nothing holds the slip against friction that falls with its speed.
-        fixed[1, layout.massless] = 0.0
-    if contact.touched_point is not None:
-        return ContactRows(contact, fixed)
+        fixed[1:, layout.massless] = 0.0
+    if contact.is_spatial:
+        second = np.stack([np.zeros_like(fixed[0]), fixed[2]])
+        return [ContactRows(contact, fixed[:2]), ContactRows(contact, second, is_second=True)]
     if contact.path_body is None:
-        return ContactRows(contact, fixed)
+        return [ContactRows(contact, fixed)]
     first, end = layout.spans[contact.path_body]
     axial = first + len(contact.path_body.path().normal.multiples)
-    return ContactRows(contact, fixed, (first, axial), (axial, end))
+    return [ContactRows(contact, fixed, (first, axial), (axial, end))]
 
 
 def _motion(system: System, imposed: Signal) -> Signal:
     """Return the motions imposed on every contact: by a body under an imposed velocity, by a moving rigid track."""
 
     alongs = [contact.frame[:, 0].tolist() for contact in system.contacts]
+    pairs = [_pairs(contact) for contact in system.contacts]
+    firsts = (np.cumsum(pairs) - pairs).tolist()
 
     def motion(time: Array, step: float) -> Array:
-        values = np.zeros((time.size, len(system.contacts), 3))
-        for number, (contact, (normal_x, tangent_x)) in enumerate(zip(system.contacts, alongs, strict=True)):
-            if system.is_held(contact.tip.body):
+        values = np.zeros((time.size, sum(pairs), 3))
+        for number, contact, (normal_x, *tangents_x) in zip(firsts, system.contacts, alongs, strict=True):
+            held = [(0, 1.0)] if system.is_held(contact.tip.body) else []
+            held += [(1, -1.0)] if _touches_held(contact, system) else []
+            for side, sign in held:
                 moved = imposed(time, step)
-                values[:, number, 0] += tangent_x * moved
-                values[:, number, 2] += normal_x * moved
-            if _touches_held(contact, system):
-                moved = imposed(time, step)
-                values[:, number, 1] += tangent_x * moved
-                values[:, number, 2] -= normal_x * moved
+                for pair, tangent_x in enumerate(tangents_x):
+                    values[:, number + pair, side] += tangent_x * moved
+                values[:, number, 2] += sign * normal_x * moved
             if contact.rigid_track is not None:
                 values[:, number, 1] += contact.rigid_track.travel(time)
                 values[:, number, 2] -= contact.rigid_track.normal_travel(time)
+                if contact.is_spatial:
+                    values[:, number + 1, 1] += contact.rigid_track.lateral_travel(time)
         return values
 
     return motion
@@ -471,9 +509,9 @@ def _loads(system: System, layout: _Layout) -> tuple[list[_Load], list[Signal], 
         if drive.push is not None:
             history, point, components = drive.push
             add(history, *_force(point, components, layout))
-        if drive.fall:
-            modal = sum(layout.translation(body)[1] for body in layout.order)
-            add(Constant(), -drive.fall * modal, -drive.fall * inertia[:, 1])
+        if drive.fall is not None:
+            modal = np.sum([drive.fall @ layout.translation(body) for body in layout.order], axis=0)
+            add(Constant(), modal, inertia @ drive.fall[:2])
     felt = {history: load for history, load in by_history.items() if load.modal.any() or load.root.any()}
     loads = list(felt.values())
     signals = [_factor(history) for history in felt]
@@ -510,7 +548,7 @@ def _force(point: BodyPoint, components: Array, layout: _Layout) -> tuple[Array,
     slider = layout.system.slider
     root = np.zeros(3)
     if point.body == slider and isinstance(slider, HasRoot):
-        root = slider.root_lever(point.position) @ components
+        root = slider.root_lever(point.position) @ components[:2]
     return components @ layout.trace(point), root
 
 
@@ -521,7 +559,8 @@ def _start(system: System, layout: _Layout) -> tuple[Array, Array]:
         if drive.uniform_velocity is not None:
             # Residual shapes follow forces alone.
             modes = layout.modes(drive.acted_on)
-            moved = np.where(modes.massless, 0.0, drive.uniform_velocity @ modes.translation)
+            speeds = drive.uniform_velocity[: len(modes.translation)]
+            moved = np.where(modes.massless, 0.0, speeds @ modes.translation)
             velocity += layout.full(drive.acted_on, moved)
         for name, given in drive.vectors.items():
             values = {"displacement": position, "velocity": velocity}[name]
@@ -531,15 +570,15 @@ def _start(system: System, layout: _Layout) -> tuple[Array, Array]:
 
 def _probe(probe: Probe, layout: _Layout, loads: list[_Load]) -> ProbeRows:
     system = layout.system
-    direct, contact = np.zeros(len(loads) + 3), np.zeros((len(system.contacts), 2))
+    direct, contact = np.zeros(len(loads) + 3), np.zeros((sum(map(_pairs, system.contacts)), 2))
     if isinstance(probe, Reaction):
         return _reaction_rows(probe, layout, loads, direct, contact)
     if probe.point.body not in system.bodies:
         raise ArgumentError("probe", "be on a body of this system", probe, got=f"one on {brief(probe.point.body)}")
     kind = (Displacement, Velocity, Acceleration).index(type(probe))
-    along, across = probe.point.body.axes
-    direction = {"x": np.array([1.0, 0.0]), "y": np.array([0.0, 1.0]), "axial": along, "transverse": across}
-    axis = direction[probe.direction]
+    along, across = probe.point.body.axes[:2]
+    world = dict(zip("xyz", np.eye(3), strict=True))
+    axis = np.pad({"axial": along, "transverse": across, **world}[probe.direction], (0, 3))[:3]
     matrix = np.zeros((3, layout.size))
     matrix[kind] = axis @ layout.trace(probe.point)
     if system.is_held(probe.point.body):
@@ -556,6 +595,8 @@ def _reaction_rows(probe: Reaction, layout: _Layout, loads: list[_Load], direct:
         raise ArgumentError("tip_support", "be free where a Reaction is recorded", beam.tip_support)
     if any(point.body == beam for connection in system.connections for point in ends(connection)):
         raise ArgumentError("connections", "leave a body whose Reaction is recorded", got=f"one on {brief(beam)}")
+    if system.is_spatial:
+        raise ArgumentError("probe", "be another than a Reaction in a system with bodies in space", probe)
     reaction = beam.root_reaction(system.is_held(beam))
     matrix = np.zeros((3, layout.size))
     matrix[2] = layout.blended(layout.full(beam, reaction.mass[component]))

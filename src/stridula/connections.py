@@ -25,8 +25,8 @@ class Spring:
         The other end, of the same or another body; the ground if left out.
     stiffness : float
         Stiffness [N/m]; force per unit of relative displacement.
-    direction : {"x", "y"}, optional
-        World direction along which it acts: x or y.
+    direction : {"x", "y", "z"}, optional
+        World direction along which it acts: x, y or, in space, z.
     """
 
     first: BodyPoint
@@ -60,8 +60,8 @@ class Dashpot:
         The other end, of the same or another body; the ground if left out.
     coefficient : float
         Force per unit of relative velocity [N s/m].
-    direction : {"x", "y"}, optional
-        World direction along which it acts: x or y.
+    direction : {"x", "y", "z"}, optional
+        World direction along which it acts: x, y or, in space, z.
     """
 
     first: BodyPoint
@@ -88,8 +88,8 @@ CONNECTIONS = (Spring, Dashpot)
 
 
 def unit(connection: Connection) -> Array:
-    """Return the world direction of a connection, shape (2,)."""
-    return np.array([1.0, 0.0]) if connection.direction == "x" else np.array([0.0, 1.0])
+    """Return the world direction of a connection, shape (3,)."""
+    return np.eye(3)["xyz".index(connection.direction)]
 
 
 def ends(connection: Connection) -> tuple[BodyPoint, ...]:

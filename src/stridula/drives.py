@@ -9,12 +9,13 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from .arrays import Array
-from .bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate, PointMass, ReducedBody
+from .bodies import Body, BodyPoint, FiniteElementBeam, PointMass, ReducedBody, RigidBody
 from .checks import STATUS_WORDS, ArgumentError, instance, positive
 from .declared import (
     Angle,
     Choice,
     Distance,
+    Each,
     Newtons,
     Number,
     NumberOrWord,
@@ -52,17 +53,17 @@ class Drive:
 
     @property
     def push(self) -> tuple[History, BodyPoint, Array] | None:
-        """Force on a point: its history, the point, and its components along world x and y [N]."""
+        """Force on a point: its history, the point, and its components along world x, y and z [N]."""
         return None
 
     @property
-    def fall(self) -> float:
-        """Acceleration of every body along -y [m/s²]."""
-        return 0.0
+    def fall(self) -> Array | None:
+        """Acceleration of every body along world x, y and z [m/s²]."""
+        return None
 
     @property
     def uniform_velocity(self) -> Array | None:
-        """Velocity of its body at the start, along world x and y [m/s]."""
+        """Velocity of its body at the start, along world x, y and z [m/s]."""
         return None
 
     @property
@@ -94,6 +95,8 @@ class Force(Drive):
         Component along world y [N], from the track towards the slider.
     history : Constant, Ramp, Harmonic or Sampled, optional
         Factor over time.
+    z : float, optional
+        Component along world z [N], on a body in space.
     """
 
     kind: ClassVar[str] = "force"
@@ -104,11 +107,13 @@ class Force(Drive):
     x: Newtons = 0.0
     y: Newtons = 0.0
     history: History = field(default_factory=Constant)
+    z: Newtons = 0.0
 
     def __post_init__(self) -> None:
         instance("point", self.point, BodyPoint)
         super().__post_init__()
         instance("history", self.history, HISTORIES)
+        _check_along_z("z", self.z, self.point.body)
 
     @property
     def acted_on(self) -> Any:
@@ -117,13 +122,13 @@ class Force(Drive):
 
     @property
     def push(self) -> tuple[History, BodyPoint, Array]:
-        """Its history, its point, and its components along world x and y [N]."""
-        along, across = self.point.body.axes
-        components = self.axial * along + self.transverse * across + np.array([self.x, self.y])
+        """Its history, its point, and its components along world x, y and z [N]."""
+        along, across = (np.resize(axis, 3) * np.array([1.0, 1.0, len(axis) == 3]) for axis in self.point.body.axes[:2])
+        components = self.axial * along + self.transverse * across + np.array([self.x, self.y, self.z])
         return self.history, self.point, components
 
     def __str__(self) -> str:
-        names = ("axial", "transverse", "x", "y")
+        names = ("axial", "transverse", "x", "y", "z")
         parts = [f"{name} {getattr(self, name):.4g} N" for name in names if getattr(self, name)]
         return f"force {', '.join(parts) or '0 N'} at {_where(self.point)}, {self.history.kind}"
 
@@ -171,7 +176,7 @@ class ImposedVelocity(Drive):
     @property
     def push(self) -> tuple[History, BodyPoint, Array]:
         """The load on the root, which is constant."""
-        return Constant(), self.point, np.array([0.0, -self.normal_load])
+        return Constant(), self.point, np.array([0.0, -self.normal_load, 0.0])
 
     @property
     def velocities(self) -> tuple[float, ...]:
@@ -185,24 +190,35 @@ class ImposedVelocity(Drive):
 
 @dataclass(frozen=True)
 class Gravity(Drive):
-    """Weight of every body, along -y (from the slider towards the track).
+    """Weight of every body, along -y (from the slider towards the track) or along another direction.
 
     Parameters
     ----------
     acceleration : float, optional
         Acceleration of free fall [m/s²].
+    direction : sequence of float, optional
+        World components along x, y and z of what points downwards, of any length; -y if left out.
     """
 
     kind: ClassVar[str] = "gravity"
     acceleration: Annotated[float, Number("m/s2", above=0.0)] = 9.80665
+    direction: Annotated[Sequence[float], Each(Number())] | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.direction is not None and (len(self.direction) != 3 or not any(self.direction)):
+            raise ArgumentError("direction", "be three numbers, not all zero", self.direction)
 
     @property
-    def fall(self) -> float:
-        """Acceleration of every body along -y [m/s²]."""
-        return self.acceleration
+    def fall(self) -> Array:
+        """Acceleration of every body along world x, y and z [m/s²]."""
+        if self.direction is None:
+            return np.array([0.0, -self.acceleration, 0.0])
+        return np.asarray(self.acceleration / np.linalg.norm(self.direction) * np.array(self.direction))
 
     def __str__(self) -> str:
-        return f"gravity {self.acceleration:.4g} m/s² along -y"
+        along = "-y" if self.direction is None else f"({', '.join(f'{one:.3g}' for one in self.direction)})"
+        return f"gravity {self.acceleration:.4g} m/s² along {along}"
 
 
 @dataclass(frozen=True)
@@ -211,27 +227,32 @@ class InitialVelocity(Drive):
 
     Parameters
     ----------
-    body : FiniteElementBeam, ModalBeam, ModalPlate, PointMass or ReducedBody
+    body : FiniteElementBeam, ModalBeam, ModalPlate, PointMass, ReducedBody or RigidBody
         The body; a ReducedBody needs its `translation`.
     x : float, optional
         Velocity along world x [m/s].
     y : float, optional
         Velocity along world y [m/s].
+    z : float, optional
+        Velocity along world z [m/s], of a body in space.
     """
 
     kind: ClassVar[str] = "initial velocity"
     place: ClassVar[str] = "body"
-    body: FiniteElementBeam | ModalBeam | ModalPlate | PointMass | ReducedBody
+    body: Body
     x: Velocity = 0.0
     y: Velocity = 0.0
+    z: Velocity = 0.0
 
     def __post_init__(self) -> None:
-        instance("body", self.body, (FiniteElementBeam, ModalBeam, ModalPlate, PointMass, ReducedBody))
+        if not hasattr(self.body, "has_translation") or isinstance(self.body, type):
+            raise ArgumentError("body", "be a body of stridula", self.body)
         if not self.body.has_translation:
             raise ArgumentError(
                 "body", "have its translation given for a uniform velocity", self.body, got="a ReducedBody without"
             )
         super().__post_init__()
+        _check_along_z("z", self.z, self.body)
 
     @property
     def acted_on(self) -> Any:
@@ -240,16 +261,17 @@ class InitialVelocity(Drive):
 
     @property
     def uniform_velocity(self) -> Array:
-        """Velocity along world x and y [m/s]."""
-        return np.array([self.x, self.y])
+        """Velocity along world x, y and z [m/s]."""
+        return np.array([self.x, self.y, self.z])
 
     @property
     def velocities(self) -> tuple[float, ...]:
-        """Its two components [m/s]."""
-        return self.x, self.y
+        """Its components [m/s]."""
+        return self.x, self.y, self.z
 
     def __str__(self) -> str:
-        return f"initial velocity ({self.x:.3g}, {self.y:.3g}) m/s"
+        components = (self.x, self.y, self.z) if self.body.is_spatial else (self.x, self.y)
+        return f"initial velocity ({', '.join(f'{one:.3g}' for one in components)}) m/s"
 
 
 @dataclass(frozen=True)
@@ -258,21 +280,22 @@ class InitialState(Drive):
 
     Parameters
     ----------
-    body : PointMass or ReducedBody
+    body : PointMass, ReducedBody or RigidBody
         The body.
     displacement, velocity : sequence of float, optional
-        One entry per degree of freedom [m, m/s], along x and y of a PointMass; zero if left out. What modes above the
-        body's cutoff would carry is left out.
+        One entry per degree of freedom [m, m/s], along x and y of a PointMass, along, then about x, y and z of a
+        RigidBody; zero if left out. What modes above the body's cutoff would carry is left out.
     """
 
     kind: ClassVar[str] = "initial state"
     place: ClassVar[str] = "body"
-    body: PointMass | ReducedBody
+    body: PointMass | ReducedBody | RigidBody
     displacement: Sequence[float] | None = None
     velocity: Sequence[float] | None = None
 
     def __post_init__(self) -> None:
-        instance("body", self.body, (PointMass, ReducedBody))
+        if not hasattr(self.body, "modal_coordinates"):
+            instance("body", self.body, (PointMass, ReducedBody, RigidBody))
         for name in ("displacement", "velocity"):
             given = getattr(self, name)
             if given is not None:
@@ -366,6 +389,11 @@ DRIVES: tuple[type[Drive], ...] = (
     InitialState,
     InitialEquilibrium,
 )
+
+
+def _check_along_z(name: str, value: float, body: Any) -> None:
+    if value and not body.is_spatial:
+        raise ArgumentError(name, "be 0 on a body in the plane", value)
 
 
 def _where(point: BodyPoint) -> str:

@@ -70,6 +70,16 @@ class System:
         found += [point.body for connection in self.connections for point in ends(connection)]
         return tuple(dict.fromkeys(body for body in found if body is not None))
 
+    @property
+    def is_spatial(self) -> bool:
+        """Whether a body in space is among the bodies."""
+        return any(body.is_spatial for body in self.bodies)
+
+    @property
+    def has_two_tangents(self) -> bool:
+        """Whether a contact is one of a body in space."""
+        return any(contact.is_spatial for contact in self.contacts)
+
     @cached_property
     def kept(self) -> dict[str, Any]:
         """What has been made of the system, by whom: it never changes, and is asked for in several places."""
@@ -139,7 +149,7 @@ class System:
         if moved is not None and self.is_held(body) and moved[0]:
             words = "be 0 under an imposed velocity, which already moves the slider"
             raise ArgumentError(f"{name}.x", words, float(moved[0]))
-        if drive.fall:
+        if drive.fall is not None:
             for other in self.bodies:
                 if not other.has_translation:
                     raise ArgumentError(

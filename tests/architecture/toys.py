@@ -22,6 +22,7 @@ class Cable:
     name: str = ""
     kind: ClassVar[str] = "cable"
     has_positions: ClassVar[bool] = True
+    is_spatial: ClassVar[bool] = False
     has_translation: ClassVar[bool] = False
     point_names: ClassVar[tuple[str, ...]] = ("centre",)
     posture: ClassVar[str] = ""

@@ -485,11 +485,17 @@ LABELLED = {
         {"points": {"a": (None, (101, 3))}},
         r"points\['a'\] must name .* \(node 101 has 1, 2, 6\), got \(101, 3",
     ),
-    "numbers": ({"points": {"a": (0, 1)}}, r"points\['a'\] must be a pair of labels \(node, .*\), got \(0, 1\)"),
+    "numbers": (
+        {"points": {"a": (0, 1)}},
+        r"points\['a'\] must be a pair of labels \(node, .*\), or three in space, got \(0, 1\)",
+    ),
     "one label": ({"points": {"a": (101, 1)}}, r"points\['a'\] must be a pair of labels .*, got \(101, 1\)"),
     "text": ({"points": {"a": "tip"}}, r"points\['a'\] must be a pair of labels .*, got 'tip'"),
     "translation": ({"translation": (0, 1)}, r"translation must name degrees .* of the nodes \(1, 2, 6\), got 0"),
-    "translation shape": ({"translation": np.ones((2, 3))}, r"translation must have the shape \(2, 18\), got \(2, 3\)"),
+    "translation shape": (
+        {"translation": np.ones((2, 3))},
+        r"translation must have the shape \(2, 18\) or \(3, 18\), got \(2, 3\)",
+    ),
 }
 
 

@@ -334,9 +334,18 @@ BAD = {
     "point range": ({"points": {"a": (0, 2)}}, r"^points\['a'\] must name degrees of freedom from 0 to 1, got 2"),
     "point below": ({"points": {"a": (-1, 0)}}, r"^points\['a'\] must name degrees of freedom from 0 to 1, got -1"),
     "point truth": ({"points": {"a": (True, 0)}}, r"^points\['a'\] must name degrees of freedom from 0 to 1, got True"),
-    "point triple": ({"points": {"a": (0, 1, 1)}}, r"^points\['a'\] must have the shape \(2, 2\), got \(3,\)"),
-    "point floats": ({"points": {"a": (0.0, 1.0)}}, r"^points\['a'\] must have the shape \(2, 2\), got \(2,\)"),
-    "point shape": ({"points": {"a": np.ones((3, 2))}}, r"^points\['a'\] must have the shape \(2, 2\), got \(3, 2\)"),
+    "point four": (
+        {"points": {"a": (0, 1, 1, 0)}},
+        r"^points\['a'\] must have the shape \(2, 2\) or \(3, 2\), got \(4,\)",
+    ),
+    "point floats": (
+        {"points": {"a": (0.0, 1.0)}},
+        r"^points\['a'\] must have the shape \(2, 2\) or \(3, 2\), got \(2,\)",
+    ),
+    "point shape": (
+        {"points": {"a": np.ones((4, 2))}},
+        r"^points\['a'\] must have the shape \(2, 2\) or \(3, 2\), got \(4, 2\)",
+    ),
     "point nan": ({"points": {"a": [[1, 0], [0, NAN]]}}, r"^points\['a'\] must be finite, got nan at row 1, column 1"),
     "point text": ({"points": {"a": "tip"}}, r"^points\['a'\] must be an array of numbers, got a str"),
     "translation": ({"translation": np.ones(2)}, r"^translation must have the shape \(2, 2\), got \(2,\)"),

@@ -70,22 +70,26 @@ def driven_work(i, touch, motion, n, run, runs, zero):
 
 @numba.njit(**OPTIONS)
 def keep_forces(i, touch, moved, before, carried, contacts, closed, step, run, runs, zero):
-    """Carry forces and state of the law of contact `i` to the next step, sum the forces; return what friction took."""
-    base, tally = i * at.CARRIED, i * at.SUMS
-    law, laws, sums = contacts.codes[i], contacts.laws, contacts.sums
+    """Carry normal force and state of the law of contact `i` to the next step; return what friction took."""
+    base, law, laws = i * at.CARRIED, contacts.codes[i], contacts.laws
     normal, tangential, status, _ = touch
     slip = moved[3]
-    add(sums, tally + at.NORMALS, run, normal, zero)
-    add(sums, tally + at.TANGENTIALS, run, tangential, zero)
+    add(contacts.sums, i * at.SUMS + at.NORMALS, run, normal, zero)
     if not set_valued(law):
         velocity, number = velocity_at(slip, before, step), i * runs + run
         hold(carried, base + at.FRICTION_STATE, run, next_states(law, laws, number, status, before[3], velocity, step))
     hold(carried, base + at.STATUS, run, status)
     hold(carried, base + at.CLOSED_SHARE, run, closed)
     hold(carried, base + at.LAST_NORMAL, run, normal)
-    hold(carried, base + at.LAST_TANGENTIAL, run, tangential)
     # In a step in which the slip turns round, its mean force and the slip have opposite signs.
     return magnitude(tangential * slip) if set_valued(law) else tangential * slip
+
+
+@numba.njit(**OPTIONS)
+def keep_tangential(i, tangential, carried, sums, run, zero):
+    """Carry and sum the force along the tangent of contact `i`."""
+    add(sums, i * at.SUMS + at.TANGENTIALS, run, tangential, zero)
+    hold(carried, i * at.CARRIED + at.LAST_TANGENTIAL, run, tangential)
 
 
 @numba.njit(**OPTIONS)
@@ -126,6 +130,7 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
             add(state.energies, at.CONTACT_WORK, run, -driven, zero)
             add(state.energies, at.DRIVE_WORK, run, driven, zero)
         lost = keep_forces(i, touch, moved, before, carried, contacts, closed, timing.step, run, runs, zero)
+        keep_tangential(i, touch[1], carried, sums, run, zero)
         add(state.energies, at.FRICTION_LOSS, run, lost, zero)
     keep_motion(i, moved, before, carried, run, zero)
 

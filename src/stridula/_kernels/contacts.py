@@ -8,13 +8,14 @@ import math
 import numba
 
 from . import layout as at
-from .block_rows import DISPLACEMENT
+from .block_rows import COMPLIANCE, DISPLACEMENT
 from .contact import SLIDING, STICKING
 from .direct import solve_states
 from .faces import displace, displace_freely, own_compliance
 from .lanes import anywhere, choose, entry, everywhere, held, hold, magnitude
 from .modes import ENTRY, OPTIONS, PASTED
 from .solves import carried_by, forces_of_one, strayed
+from .space import forces_in_space, is_second, put_second
 
 # Sweeps after which, and then between which, the forces of the states that were found are solved for directly.
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 2, 8
@@ -69,6 +70,8 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
     change, largest, misfit, reach, settled = zero, zero, zero, zero, zero + 1.0
     for i in range(sizes.contacts):
         here = i * at.IN_STEP
+        if sizes.space and is_second(contacts.codes, i):
+            continue
         gap = entry(faces, 2 * i, DISPLACEMENT, run, zero)
         may_touch = held(now, here + at.MAY_TOUCH, run, zero)
         may_touch = choose(gap < 0.0, 1.0, may_touch)
@@ -80,24 +83,31 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
             held(now, here + at.NORMAL_NOW, run, zero),
             held(now, here + at.TANGENTIAL_NOW, run, zero),
         )
-        was = held(now, here + at.STATUS_NOW, run, zero)
+        was, let_go = held(now, here + at.STATUS_NOW, run, zero), held(now, here + at.LET_GO, run, zero)
         w = own_compliance(faces, i, run, zero)
-        gap -= w[0] * was_normal - w[1] * was_tangential
-        slip -= w[2] * was_normal - w[3] * was_tangential
-        normal, tangential, status, jammed = forces_of_one(
-            gap,
-            slip,
-            strayed(carried, i, run, zero),
-            w,
-            contacts.codes[i],
-            contacts.laws,
-            i * runs + run,
-            held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero),
-            carried_by(carried, i, run, zero),
-            held(now, here + at.LET_GO, run, zero),
-            step,
-            zero,
-        )
+        in_space = sizes.space and is_second(contacts.codes, i + 1)
+        second = zero
+        if in_space:
+            normal, tangential, second, status, jammed = forces_in_space(
+                contacts, carried, i, run, runs, let_go, step, zero
+            )
+        else:
+            gap -= w[0] * was_normal - w[1] * was_tangential
+            slip -= w[2] * was_normal - w[3] * was_tangential
+            normal, tangential, status, jammed = forces_of_one(
+                gap,
+                slip,
+                strayed(carried, i, run, zero),
+                w,
+                contacts.codes[i],
+                contacts.laws,
+                i * runs + run,
+                held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero),
+                carried_by(carried, i, run, zero),
+                let_go,
+                step,
+                zero,
+            )
         goes_on = done < 0.5
         normal, tangential = choose(goes_on, normal, was_normal), choose(goes_on, tangential, was_tangential)
         status = choose(goes_on, status, was)
@@ -110,6 +120,11 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
         settled = choose(magnitude(status - was) > 0.5, zero, settled)
         more, pulled = normal - was_normal, tangential - was_tangential
         displace(faces, sizes.faces, i, run, more, pulled)
+        if in_space:
+            swerved = put_second(contacts, sizes, i, run, goes_on, normal, second, status, zero)
+            change = largest_of(change, magnitude(swerved))
+            across = entry(faces, 2 * i + 3, COMPLIANCE + 2 * i + 3, run, zero)
+            misfit = largest_of(misfit, magnitude(across * swerved))
         change = largest_of(change, largest_of(magnitude(more), magnitude(pulled)))
         largest = largest_of(largest, largest_of(normal, magnitude(tangential)))
         opened, slipped = magnitude(w[0] * more - w[1] * pulled), magnitude(w[2] * more - w[3] * pulled)

@@ -13,6 +13,7 @@ from .friction import set_valued
 from .lanes import anywhere, choose, entry, fused, held, hold, load, magnitude, set_entry, store
 from .modes import OPTIONS
 from .solves import strayed
+from .space import is_second
 
 
 @numba.njit(**OPTIONS)
@@ -24,7 +25,7 @@ def solve_states(contacts, carried, sizes, run, tried, zero):
     now, faces, scratch = contacts.now, contacts.faces, contacts.scratch
     size = 2 * sizes.contacts
     for i in range(sizes.contacts):
-        set_equations(contacts, carried, i, size, run, zero)
+        set_equations(contacts, carried, sizes, i, size, run, zero)
     regular = eliminate(scratch, size, sizes.faces, sizes.per_block, run, tried, zero)
     for i in range(sizes.contacts):
         regular = choose(entry(scratch, 2 * i, size, run, zero) >= 0.0, regular, zero)
@@ -39,7 +40,7 @@ def solve_states(contacts, carried, sizes, run, tried, zero):
 
 
 @numba.njit(**OPTIONS)
-def set_equations(contacts, carried, i, size, run, zero):
+def set_equations(contacts, carried, sizes, i, size, run, zero):
     """Put the two equations of contact `i`: gap and slip undone, or forces at a known ratio, or none."""
     now, faces, scratch = contacts.now, contacts.faces, contacts.scratch
     n, t = 2 * i, 2 * i + 1
@@ -50,15 +51,20 @@ def set_equations(contacts, carried, i, size, run, zero):
     ratio = choose(normal > 0.0, tangential, zero) / choose(normal > 0.0, normal, 1.0)
     holds = choose(sticks, 1.0, zero) if set_valued(contacts.codes[i]) else zero
     own_n, own_t = entry(faces, n, COMPLIANCE + n, run, zero), entry(faces, t, COMPLIANCE + t, run, zero)
+    mirrors = sizes.space and is_second(contacts.codes, i)
+    own_n = zero + 1.0 if mirrors else own_n
     for j in range(size):
         upright, level = entry(faces, n, COMPLIANCE + j, run, zero), entry(faces, t, COMPLIANCE + j, run, zero)
         diagonal_n, diagonal_t = (own_n if j == n else zero), (own_t if j == t else zero)
+        if mirrors:
+            # The second pair of rows has the normal force of the first.
+            upright = zero - 1.0 if j == n - 2 else diagonal_n
         if j == n:
             diagonal_t = choose(closed, ratio * own_t, zero)
         set_entry(scratch, j, n, run, choose(closed, upright, diagonal_n))
         set_entry(scratch, j, t, run, choose(holds > 0.5, level, diagonal_t))
     gap, slip = held(now, here + at.FREE_GAP, run, zero), held(now, here + at.FREE_SLIP, run, zero)
-    set_entry(scratch, n, size, run, choose(closed, -gap, zero))
+    set_entry(scratch, n, size, run, zero if mirrors else choose(closed, -gap, zero))
     set_entry(scratch, t, size, run, choose(holds > 0.5, -slip - strayed(carried, i, run, zero), zero))
 
 

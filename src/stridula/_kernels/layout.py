@@ -32,6 +32,8 @@ CONTACT_CONSTANTS = 9
 
 # Laws of friction, and the parameters of each, the state of a new contact last.
 COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, LUGRE, AGING, SLIP = range(7)
+# In the place of the law: the pair of rows is the second of the contact before it.
+SECOND_TANGENT = -1
 LAW_PARAMETERS = 8
 
 # Scalars that each contact carries from step to step: material abscissa of the tip, anchor of the stick, last status,

@@ -20,6 +20,8 @@ class Sizes(NamedTuple):
         Unit loads.
     paths, coupled_paths : bool
         Whether a contact is on a path, and on one whose modes are coupled.
+    space : bool
+        Whether a contact has two tangents.
     """
 
     blocks: int
@@ -30,6 +32,7 @@ class Sizes(NamedTuple):
     loads: int
     paths: bool
     coupled_paths: bool
+    space: bool
 
 
 class Timing(NamedTuple):

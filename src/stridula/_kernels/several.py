@@ -4,12 +4,35 @@ import numba
 
 from . import layout as at
 from .block_rows import DISPLACEMENT
-from .bookkeeping import add, credit, keep_books, keep_place
+from .bookkeeping import (
+    add,
+    credit,
+    driven_work,
+    keep_books,
+    keep_forces,
+    keep_motion,
+    keep_place,
+    keep_tangential,
+    share_states,
+)
 from .contacts import solve_all, start_from_last
 from .faces import own_compliance
+from .friction import set_valued
 from .lanes import anywhere, choose, entry, held, hold
 from .leaving import any_beyond_ends
 from .modes import OPTIONS, PASTED
+from .solves import strayed
+from .space import (
+    along,
+    carried_in_space,
+    direction,
+    free_in_space,
+    is_second,
+    keep_second_anchor,
+    on,
+    pair_of,
+    whole_compliance,
+)
 from .trying import complete_many, place_after, soften, try_many
 
 # Error of the contact forces, relative to the largest, beyond which none can be believed.
@@ -42,6 +65,8 @@ def solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero)
         # From here on without the forces of this contact alone.
         hold(now, here + at.FREE_GAP, run, gap - w[0] * normal + w[1] * tangential)
         hold(now, here + at.FREE_SLIP, run, slip - w[2] * normal + w[3] * tangential)
+    if sizes.space:
+        free_in_space(contacts, sizes, run, zero)
     return error
 
 
@@ -58,6 +83,48 @@ def keep_unsolved(contacts, state, sizes, unsolved, run, zero):
             value = held(contacts.now, here + found, run, zero)
             kept = choose(unsolved > 0.5, value, held(state.carried, base + row, run, zero))
             hold(state.carried, base + row, run, kept)
+
+
+@numba.njit(**PASTED)
+def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero):
+    """Do the bookkeeping of contact `i` in space: along the direction of its friction, then for each tangent."""
+    now, carried, here, base = contacts.now, state.carried, i * at.IN_STEP, i * at.CARRIED
+    normal, status = held(now, here + at.NORMAL_NOW, run, zero), held(now, here + at.STATUS_NOW, run, zero)
+    forces = pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, run, zero)
+    slips = pair_of(now, here + at.NEW_SLIP, at.IN_STEP, run, zero)
+    free = pair_of(now, here + at.FREE_SLIP, at.IN_STEP, run, zero)
+    was, last, earlier, kept, last_normal, last_forces = carried_in_space(carried, i, run, zero)
+    c, s = direction(forces, last_forces)
+    before = (was, on(last, c, s), on(earlier, c, s), kept, last_normal, on(last_forces, c, s))
+    law = contacts.codes[i]
+    if not set_valued(law) or anywhere(status + was > 0.5):
+        moved = (
+            held(now, here + at.FREE_GAP, run, zero),
+            on(free, c, s),
+            held(now, here + at.NEW_GAP, run, zero),
+            on(slips, c, s),
+        )
+        touch = (normal, on(forces, c, s), status, held(now, here + at.JAMMED_NOW, run, zero))
+        w = along(whole_compliance(contacts.faces, i, run, zero), c, s)
+        away = on((strayed(carried, i, run, zero), strayed(carried, i + 1, run, zero)), c, s)
+        at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero)
+        keep_second_anchor(i, status, was, carried, run, zero)
+        closed = share_states(i, touch, moved, before, carried, contacts.sums, w, away, law, at_rest, run, zero)
+        if imposed.motion.shape[0] > 1:
+            pushes = (normal, forces[0]), (zero, forces[1])
+            driven = driven_work(i, pushes[0], imposed.motion, n, run, runs, zero)
+            driven += driven_work(i + 1, pushes[1], imposed.motion, n, run, runs, zero)
+            add(state.energies, at.CONTACT_WORK, run, -driven, zero)
+            add(state.energies, at.DRIVE_WORK, run, driven, zero)
+        lost = keep_forces(i, touch, moved, before, carried, contacts, closed, timing.step, run, runs, zero)
+        add(state.energies, at.FRICTION_LOSS, run, lost, zero)
+        for k in range(2):
+            keep_tangential(i + k, forces[k], carried, contacts.sums, run, zero)
+        hold(carried, base + at.CARRIED + at.STATUS, run, status)
+        hold(carried, base + at.CARRIED + at.LAST_NORMAL, run, normal)
+    gap = held(now, here + at.NEW_GAP, run, zero)
+    for k in range(2):
+        keep_motion(i + k, (gap, gap, gap, slips[k]), (was, last[k]), carried, run, zero)
 
 
 @numba.njit(**PASTED)
@@ -106,7 +173,10 @@ def keep_many(parts, n, run, runs, zero):
     work, lost = complete_many(parts.modes, parts.paths, contacts, parts.sizes, run, zero)
     credit(state.energies, work, lost, zero, run, zero)
     for i in range(parts.sizes.contacts):
-        keep_books_of(i, contacts, state, imposed, parts.timing, n, run, runs, zero)
+        if parts.sizes.space and is_second(contacts.codes, i + 1):
+            keep_books_in_space(i, contacts, state, imposed, parts.timing, n, run, runs, zero)
+        elif not (parts.sizes.space and is_second(contacts.codes, i)):
+            keep_books_of(i, contacts, state, imposed, parts.timing, n, run, runs, zero)
         place, slope = place_after(i, parts.modes, parts.paths, contacts, state, imposed, after, run, runs, zero)
         way = keep_place(i, state.carried, place, run, zero)
         add(state.energies, at.CONVECTION_WORK, run, slope * way, zero)

@@ -14,7 +14,7 @@ from ..linear.given import Status, Velocity, given_status, given_velocity
 from ..linear.modes import exponents_alone, modes_of, round_off
 from ..linear.structure import SLIDING, Structure
 from ..linear.vibration import Exponents, vibration
-from ..records.variables import EQUILIBRIUM, described
+from ..records.variables import EQUILIBRIUM, TANGENTS, described
 from ..system import System
 
 
@@ -139,7 +139,9 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
     system = structure.system
     values, shapes = found.values, found.shapes
     size = np.abs(values)
-    kinetic = np.abs(shapes) ** 2
+    kinetic = structure.mass[:, None] * np.abs(shapes) ** 2
+    if not structure.mass.all():
+        kinetic /= np.where(shapes.any(axis=0), kinetic.sum(axis=0), 1.0)
     spans = structure.arrays.spans
     share = np.array([kinetic[first:end].sum(axis=0) for first, end in spans.values()]).T
     body = np.empty(structure.mode_count, dtype=object)
@@ -164,7 +166,7 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
         "body": list(spans),
         "coordinate_body": ("coordinate", body.astype(str)),
         "part": ["real", "imaginary"],
-        "direction": ["x", "y"],
+        "direction": ["x", "y", "z"] if system.is_spatial else ["x", "y"],
     }
     several = len(system.contacts) > 1
     if several:
@@ -175,7 +177,20 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
         data[EQUILIBRIUM[word].name] = (over, moved[:, side] if several else moved[0, side], _attributes(word))
     for name, units, meaning, numbers in _contacts(equilibrium):
         data[name] = ("contact" if several else (), numbers if several else numbers[0], described(units, meaning))
+    if system.has_two_tangents:
+        coordinates["tangent"] = list(TANGENTS)
+        lateral = {"tangential_force": equilibrium.lateral_force}
+        for name in ("tangential_force", "slip_velocity", "slip_acceleration"):
+            _, values, attributes = data[name]
+            both = _along_tangents(np.atleast_1d(values), lateral.get(name, 0.0), structure.ways)
+            data[name] = (("contact", "tangent"), both, attributes) if several else ("tangent", both[0], attributes)
     return xr.Dataset(data, coordinates, {"equilibrium": equilibrium.kind, "round_off": round_off(structure)})
+
+
+def _along_tangents(along: Array, across: Array | float, ways: Array) -> Array:
+    """Return components along both tangents of what contacts have along and across their slip, (contacts, 2)."""
+    c, s = ways.T
+    return np.stack([c * along - s * across, s * along + c * across], axis=1)
 
 
 def _attributes(word: str) -> dict[str, str]:

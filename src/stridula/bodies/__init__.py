@@ -8,6 +8,7 @@ from .modes import Body, BodyPoint, HasRoot, Modes
 from .paths import Path, Track, Waves
 from .point_mass import PointMass
 from .reduced_body import ReducedBody
+from .rigid_body import RigidBody
 from .sections import Circle, Material, Rectangle, Section
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "Rayleigh",
     "Rectangle",
     "ReducedBody",
+    "RigidBody",
     "RisingDamping",
     "SampledDamping",
     "Section",

@@ -80,6 +80,7 @@ class FiniteElementBeam:
 
     kind: ClassVar[str] = "finite-element beam"
     point_names: ClassVar[tuple[str, ...]] = ("tip", "root")
+    is_spatial: ClassVar[bool] = False
     has_positions: ClassVar[bool] = True
     has_translation: ClassVar[bool] = True
     material: Material

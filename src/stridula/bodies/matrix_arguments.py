@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..checks import ArgumentError
 from .damping import Rayleigh
 from .matrix_files import AlignedMatrices, check_size
-from .matrix_input import check_mass, is_pair, point_rows, rows_of, square, symmetric
+from .matrix_input import check_mass, is_labelled, is_pair, point_rows, rows_of, square, symmetric
 
 
 def from_container(held: dict[str, Any]) -> dict[str, Any]:
@@ -50,8 +50,8 @@ def _by_number(word: str, value: Any, labels: Array | None) -> Any:
     """Return a point given by labels as numbers of degrees of freedom, any other as it is."""
     if labels is None or isinstance(value, np.ndarray):
         return value
-    if not is_pair(value, (tuple, list)) or not all(entry is None or is_pair(entry, Integral) for entry in value):
-        raise ArgumentError(word, "be a pair of labels (node, degree of freedom)", value)
+    if not is_labelled(value, (tuple, list)) or not all(entry is None or is_pair(entry, Integral) for entry in value):
+        raise ArgumentError(word, "be a pair of labels (node, degree of freedom), or three in space", value)
     return tuple(None if label is None else _number(word, label, labels) for label in value)
 
 
@@ -66,8 +66,8 @@ def _number(word: str, label: tuple[int, int], labels: Array) -> int:
 
 
 def _translation(value: Any, labels: Array | None, size: int) -> Array:
-    """Return rows of shape (2, size), with labels also from the numbers of the degrees of freedom along x and y."""
-    if labels is None or not is_pair(value, Integral):
+    """Return rows, with labels also from the numbers of the degrees of freedom along x, y and, in space, z."""
+    if labels is None or not is_labelled(value, Integral):
         return rows_of("translation", value, size)
     motion = np.stack([(labels[:, 0] > 0) & (labels[:, 1] == dof) for dof in value]).astype(float)
     for dof, row in zip(value, motion, strict=True):

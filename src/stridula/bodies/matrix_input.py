@@ -114,11 +114,16 @@ def symmetric(name: str, matrix: Array) -> Array:
     return 0.5 * (matrix + matrix.T)
 
 
-def rows_of(name: str, value: Any, size: int) -> Array:
-    """Return rows on the degrees of freedom as an array of shape (2, size)."""
+def rows_of(name: str, value: Any, size: int, directions: int | None = None) -> Array:
+    """Return rows on the degrees of freedom, one along x and y, or along x, y and z.
+
+    `directions` is how many there must be, 2 or 3 if left out.
+    """
     rows = value if hasattr(value, "shape") else numbers(name, value)
-    if tuple(rows.shape) != (2, size):
-        raise ArgumentError(name, f"have the shape (2, {size})", value, got=tuple(rows.shape))
+    allowed = [(count, size) for count in (2, 3) if directions in (None, count)]
+    if tuple(rows.shape) not in allowed:
+        shapes = " or ".join(map(str, allowed))
+        raise ArgumentError(name, f"have the shape {shapes}", value, got=tuple(rows.shape))
     array = numbers(name, rows)
     check_finite(name, array)
     return array
@@ -135,14 +140,18 @@ def points_of(points: Any, size: int) -> dict[str, Array]:
             raise ArgumentError("points", "have names that are text", name)
         rows[name] = point_rows(f"points[{name!r}]", value, size)
         rows[name].flags.writeable = False
+        first = next(iter(rows.values()))
+        if len(rows[name]) != len(first):
+            words = f"move along as many directions as the first point, {len(first)}"
+            raise ArgumentError(f"points[{name!r}]", words, value, got=len(rows[name]))
     return rows
 
 
 def point_rows(word: str, value: Any, size: int) -> Array:
-    """Return the rows of a point given by rows or by two numbers of degrees of freedom."""
-    if not is_pair(value, Integral):
+    """Return the rows of a point given by rows or by the numbers of two or three degrees of freedom."""
+    if not is_labelled(value, Integral):
         return rows_of(word, value, size)
-    rows = np.zeros((2, size))
+    rows = np.zeros((len(value), size))
     for row, number in zip(rows, value, strict=True):
         if number is not None:
             if isinstance(number, bool) or not 0 <= number < size:
@@ -151,10 +160,15 @@ def point_rows(word: str, value: Any, size: int) -> Array:
     return rows
 
 
+def is_labelled(value: Any, kind: type | tuple[type, ...]) -> bool:
+    """Return whether `value` is two or three things of a kind, any of which may be None."""
+    few = isinstance(value, (tuple, list)) or (isinstance(value, np.ndarray) and value.shape in ((2,), (3,)))
+    return few and len(value) in (2, 3) and all(entry is None or isinstance(entry, kind) for entry in value)
+
+
 def is_pair(value: Any, kind: type | tuple[type, ...]) -> bool:
     """Return whether `value` is a pair of things of a kind, either of which may be None."""
-    pair = isinstance(value, (tuple, list)) or (isinstance(value, np.ndarray) and value.shape == (2,))
-    return pair and len(value) == 2 and all(entry is None or isinstance(entry, kind) for entry in value)
+    return is_labelled(value, kind) and len(value) == 2
 
 
 def damping_of(value: Any, size: int) -> float | Array | DampingLaw:

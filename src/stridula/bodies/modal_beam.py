@@ -55,6 +55,7 @@ class ModalBeam:
 
     kind: ClassVar[str] = "modal beam"
     point_names: ClassVar[tuple[str, ...]] = ("centre",)
+    is_spatial: ClassVar[bool] = False
     has_positions: ClassVar[bool] = True
     has_translation: ClassVar[bool] = True
     material: Material

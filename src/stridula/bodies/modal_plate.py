@@ -105,6 +105,7 @@ class ModalPlate:
 
     kind: ClassVar[str] = "modal plate"
     point_names: ClassVar[tuple[str, ...]] = ("centre",)
+    is_spatial: ClassVar[bool] = False
     has_positions: ClassVar[bool] = True
     has_translation: ClassVar[bool] = True
     material: Material

@@ -14,7 +14,7 @@ from ..checks import ArgumentError
 
 @dataclass(frozen=True)
 class Modes:
-    """Mass-normalised modes of a body in the plane: ``q'' + d q' + w² q = Phi^T f``.
+    """Mass-normalised modes of a body: ``q''' + d q' + w² q = Phi^T f``.
 
     With a damping matrix D, ``D q'`` stands in place of ``d q'``. Residual shapes, which may come last, have unit
     stiffness and no mass: ``q = Psi^T f``.
@@ -25,8 +25,8 @@ class Modes:
         Undamped angular frequencies w [rad/s], rising; exactly zero for rigid modes, infinite for residual shapes.
     damping_rate : ndarray, shape (modes,)
         ``d = 2 zeta w`` [1/s] for a damping ratio zeta; from ``2 w`` on a mode is overdamped.
-    translation : ndarray, shape (2, modes)
-        ``Phi^T M 1``: how a uniform acceleration along world x and y drives each mode [kg^(1/2)].
+    translation : ndarray, shape (2, modes) or (3, modes)
+        ``Phi^T M 1``: how a uniform acceleration along world x, y and, in space, z drives each mode [kg^(1/2)].
     damping_matrix : ndarray, shape (modes, modes), optional
         Modal damping matrix ``Phi^T C Phi`` [1/s] where it is not diagonal; `damping_rate` is its diagonal then.
     """
@@ -101,6 +101,10 @@ class Body(Protocol):
     has_positions: ClassVar[bool]
 
     @property
+    def is_spatial(self) -> bool:
+        """Whether it moves along world z, too; else it is rigid there."""
+
+    @property
     def point_names(self) -> tuple[str, ...]:
         """Names of its points."""
 
@@ -132,7 +136,10 @@ class Body(Protocol):
         """Return the modes; with `held_x` those left when its driven end does not move along x."""
 
     def trace(self, position: Any, held_x: bool = False) -> Array:
-        """Return the rows that give the world displacement (x, y) at `position` from the modes, shape (2, modes)."""
+        """Return the rows that give the world displacement at `position` from the modes.
+
+        Their shape is (2, modes) along x and y, or (3, modes) of a body in space.
+        """
 
     def check_position(self, position: Any) -> None:
         """Raise ValueError if it has no point at `position`."""

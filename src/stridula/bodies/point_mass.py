@@ -36,6 +36,7 @@ class PointMass:
 
     kind: ClassVar[str] = "point mass"
     point_names: ClassVar[tuple[str, ...]] = ("centre",)
+    is_spatial: ClassVar[bool] = False
     has_positions: ClassVar[bool] = False
     has_translation: ClassVar[bool] = True
     mass: Annotated[float, Number("kg", above=0.0)]

@@ -50,17 +50,17 @@ class ReducedBody:
         displacements in metres. Asymmetry up to 1e-8 of the largest entry, as text files have it, is averaged away. At
         most 4000 degrees of freedom.
     points : mapping
-        What each point's displacement along world (x, y) is made of, by its name: rows on the degrees of freedom,
-        shape (2, n), or the numbers of two of them from 0, such as ``(0, 1)``; None for a direction in which the point
-        does not move.
+        What each point's displacement along world (x, y), or in space (x, y, z), is made of, by its name: rows on the
+        degrees of freedom, shape (2, n) or (3, n), or the numbers of two or three of them from 0, such as ``(0, 1)``;
+        None for a direction in which the point does not move. With z the body is one in space.
     damping : float, sequence of float, Rayleigh, RisingDamping, SampledDamping or array_like, optional
         One damping ratio [1] for every elastic mode, one for each mode kept in the order of rising frequency (of no
         effect on rigid modes), a law of their frequency, or a symmetric positive semidefinite matrix C [N s/m], shape
         (n, n). If a cutoff leaves modes out, ``Phi^T C Phi`` of the modes kept is taken: what C couples to the others
         is lost.
-    translation : array_like, shape (2, n), optional
-        Displacement of every degree of freedom when the body moves by 1 m along x (first row) and along y. Gravity
-        and uniform initial velocities need it.
+    translation : array_like, shape (2, n) or (3, n), optional
+        Displacement of every degree of freedom when the body moves by 1 m along x (first row), along y and, in space,
+        along z. Gravity and uniform initial velocities need it.
     cutoff : float, optional
         Keep the modes up to this frequency [Hz], rigid ones always; all modes if left out.
     residual_flexibility : bool, optional
@@ -98,7 +98,7 @@ class ReducedBody:
         self._set("points", MappingProxyType(points_of(self.points, size)))
         self._set("damping", damping_of(self.damping, size))
         if self.translation is not None:
-            self._set("translation", rows_of("translation", self.translation, size))
+            self._set("translation", rows_of("translation", self.translation, size, self._directions))
         check_mass(self.mass)
         # Found now, since only the modes tell whether stiffness, damping and cutoff are fit.
         self.modes()
@@ -233,9 +233,18 @@ class ReducedBody:
         choice("position", position, tuple(self.points))
 
     @property
+    def is_spatial(self) -> bool:
+        """Whether it moves along world z, too."""
+        return self._directions == 3
+
+    @property
+    def _directions(self) -> int:
+        return len(next(iter(self.points.values())))
+
+    @property
     def axes(self) -> Array:
-        """World components of its two axes, which are x and y, shape (2, 2)."""
-        return np.eye(2)
+        """World components of its axes, which are those of the world, shape (2, 2) or (3, 3)."""
+        return np.eye(self._directions)
 
     @property
     def has_translation(self) -> bool:
@@ -281,7 +290,7 @@ class ReducedBody:
 
     @of_ordinary_size("points")
     def trace(self, position: str, held_x: bool = False) -> Array:
-        """Return the rows that give the displacement (x, y) of a point from the modes, shape (2, modes)."""
+        """Return the rows that give the displacement of a point from the modes, shape (2, modes) or (3, modes)."""
         self.check_position(position)
         self.modes(held_x)
         return self.points[position] @ self.shapes

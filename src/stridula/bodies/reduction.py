@@ -17,6 +17,8 @@ from .modes import Modes
 COUPLING = 1e-10
 # Relative share of the points in a residual shape below which it is round-off.
 RESIDUAL = 1e-8
+# Relative size of a sum below which it is round-off.
+ROUNDING = 1e-10
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,7 @@ def reduce_body(body: Any) -> Reduction:
     shapes = np.hstack([shapes[:, kept], residual])
     shapes.flags.writeable = False
     matrix = None if matrix is None else np.pad(matrix, (0, count))
-    translation = np.zeros((2, angular.size))
+    translation = np.zeros((len(next(iter(body.points.values()))), angular.size))
     if body.translation is not None:
         translation = body.translation @ body.mass @ shapes
     return Reduction(Modes(angular, rates, translation, matrix), shapes)
@@ -68,11 +70,14 @@ def _residual_shapes(body: Any, angular: Array, shapes: Array) -> Array:
     forces = list(body.points.values())
     if body.translation is not None:
         forces.append(body.translation @ body.mass)
-    answers = (np.concatenate(forces) @ shapes / angular).T
+    pushes = np.concatenate(forces)
+    answers = (pushes @ shapes / angular).T
     sizes = np.linalg.norm(answers, axis=0)
-    answers = answers[:, sizes > 0.0] / sizes[sizes > 0.0]
-    if not answers.size:
+    # Gravity moves a free body as a whole: what the modes left out have of it is a sum of nothing.
+    felt = sizes > ROUNDING * np.linalg.norm(np.abs(pushes) @ np.abs(shapes) / angular, axis=1)
+    if not felt.any():
         return np.zeros((len(shapes), 0))
+    answers = answers[:, felt] / sizes[felt]
     basis, share, _ = scipy.linalg.svd(answers, full_matrices=False)
     return np.asarray(shapes / angular @ basis[:, share > RESIDUAL * share[0]])
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 
 from ..arrays import Array
 from ..bodies import BodyPoint, ModalBeam, ModalPlate, Track
 from ..checks import ArgumentError, brief, instance, within
-from ..declared import Angle, Distance, Position, check_declared
+from ..declared import Angle, Distance, Each, Number, Position, check_declared
 from .coulomb import Coulomb
 from .friction_law import FrictionLaw
 from .laws import LAWS
@@ -18,6 +20,8 @@ from .rigid_track import RigidTrack
 
 # Sine or cosine that rounding leaves of a right angle.
 ALONG_AN_AXIS = 1e-15
+# Component along x from which a normal in space counts as along it.
+ALONG_X = 0.9
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,16 @@ class PointContact:
         the tangent turned by 90 degrees counter-clockwise. Zero on a beam or a plate.
     name : str, optional
         What it is called in records.
+    normal : sequence of float, optional
+        World components of the track's normal in space, from the track to the tip, of any length; in the plane of x
+        and y as `inclination` says if left out.
+    tangent : sequence of float, optional
+        World components of what lies along the first tangent in space; world x, or z where the normal is along x, if
+        left out. What it has along the normal is taken off. The second tangent is the first times the normal.
+
+    Notes
+    -----
+    A contact of a body in space has two tangents: friction is a force in their plane against the slip.
     """
 
     tip: BodyPoint
@@ -54,6 +68,8 @@ class PointContact:
     gap: Distance = 0.0
     inclination: Angle = 0.0
     name: str = ""
+    normal: Annotated[Sequence[float], Each(Number())] | None = None
+    tangent: Annotated[Sequence[float], Each(Number())] | None = None
 
     def __post_init__(self) -> None:
         instance("tip", self.tip, BodyPoint)
@@ -74,6 +90,35 @@ class PointContact:
         if abs(self.inclination) > 2.0 * math.pi:
             raise ArgumentError("inclination", "be from -2 pi to 2 pi rad", self.inclination)
         instance("name", self.name, str)
+        self._check_directions()
+
+    def _check_directions(self) -> None:
+        for name in ("normal", "tangent"):
+            given = getattr(self, name)
+            if given is None:
+                continue
+            if len(given) != 3 or not any(given):
+                raise ArgumentError(name, "be three numbers, not all zero", given)
+            if not self.is_spatial:
+                raise ArgumentError(name, "be left out between bodies in the plane: inclination turns it", given)
+        if self.normal is not None and self.inclination:
+            raise ArgumentError("inclination", "be 0 where a normal is given", self.inclination)
+        if self.tangent is not None and np.linalg.norm(np.cross(*self.frame[:2])) < 0.5:
+            raise ArgumentError("tangent", "not lie along the normal", self.tangent)
+        if self.is_spatial:
+            if self.path_body is not None:
+                raise ArgumentError("track", "be a RigidTrack or a BodyPoint for a body in space", self.track)
+            if self.friction.law == "lugre":
+                raise ArgumentError("friction", "be a law other than LuGre for a body in space", self.friction)
+        elif self.rigid_track is not None and self.rigid_track.lateral_velocity:
+            words = "be 0 under a body in the plane"
+            raise ArgumentError("track.lateral_velocity", words, self.rigid_track.lateral_velocity)
+
+    @property
+    def is_spatial(self) -> bool:
+        """Whether a body in space touches, so that there are two tangents."""
+        touched = self.touched_point
+        return self.tip.body.is_spatial or (touched is not None and touched.body.is_spatial)
 
     @property
     def rigid_track(self) -> RigidTrack | None:
@@ -97,7 +142,28 @@ class PointContact:
 
     @property
     def frame(self) -> Array:
-        """Unit vectors of the track's normal and tangent in the world frame, shape (2, 2)."""
+        """World components of the track's normal and tangent, shape (2, 2); in space of both tangents, (3, 3)."""
+        if self.is_spatial:
+            return self._frame_in_space
+        return self._plane_frame
+
+    @property
+    def _frame_in_space(self) -> Array:
+        normal = np.append(self._plane_frame[0], 0.0) if self.normal is None else np.array(self.normal, dtype=float)
+        normal = normal / np.linalg.norm(normal)
+        along = np.append(self._plane_frame[1], 0.0) if self.normal is None else np.array([1.0, 0.0, 0.0])
+        if self.normal is not None and abs(normal[0]) > ALONG_X:
+            along = np.array([0.0, 0.0, 1.0])
+        if self.tangent is not None:
+            along = np.array(self.tangent, dtype=float)
+        tangent = along - (along @ normal) * normal
+        size = np.linalg.norm(tangent)
+        tangent = tangent / size if size > ALONG_AN_AXIS * np.linalg.norm(along) else normal
+        axes = np.stack([normal, tangent, np.cross(tangent, normal)])
+        return np.where(np.abs(axes) < ALONG_AN_AXIS, 0.0, axes)
+
+    @property
+    def _plane_frame(self) -> Array:
         sine, cosine = math.sin(self.inclination), math.cos(self.inclination)
         axes = np.array([[-sine, cosine], [cosine, sine]])
         # Exact zeros where the track lies along an axis.

@@ -32,6 +32,8 @@ class RigidTrack:
         Factors over time on the velocities, or on the accelerations where those are given.
     name : str, optional
         What it is called in records.
+    lateral_velocity : float, optional
+        Velocity along its second tangent [m/s], in space, with the history of `velocity`.
     acceleration : float, optional
         Acceleration along its tangent [m/s²].
     normal_acceleration : float, optional
@@ -44,6 +46,7 @@ class RigidTrack:
     history: Constant | Ramp | Harmonic | Sampled = field(default_factory=Constant)
     normal_history: Constant | Ramp | Harmonic | Sampled = field(default_factory=Constant)
     name: str = ""
+    lateral_velocity: Velocity = 0.0
     acceleration: Acceleration = 0.0
     normal_acceleration: Acceleration = 0.0
 
@@ -56,11 +59,20 @@ class RigidTrack:
     @property
     def is_still(self) -> bool:
         """Whether it does not move."""
-        return not (self.velocity or self.normal_velocity or self.acceleration or self.normal_acceleration)
+        moving = self.velocity or self.normal_velocity or self.lateral_velocity
+        return not (moving or self.acceleration or self.normal_acceleration)
 
     def travel(self, time: Array) -> Array:
         """Return how far it has moved along its tangent [m]."""
         return _travel(self.velocity, self.acceleration, self.history, time)
+
+    def lateral_travel(self, time: Array) -> Array:
+        """Return how far it has moved along its second tangent [m]."""
+        return _travel(self.lateral_velocity, 0.0, self.history, time)
+
+    def lateral_speed(self, time: Array) -> Array:
+        """Return its velocity along its second tangent [m/s]."""
+        return _speed(self.lateral_velocity, 0.0, self.history, time)
 
     def normal_travel(self, time: Array) -> Array:
         """Return how far it has moved along its normal, towards the tip [m]."""

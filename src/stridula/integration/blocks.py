@@ -169,14 +169,16 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
     rows = np.array([contact.fixed for contact in arrays.contacts])
     paths = tuple(_path_modes(one) for one in arrays.contacts)
     for i, (one, along) in enumerate(zip(arrays.contacts, paths, strict=True)):
-        constants[i, [at.START, at.GAP]] = one.contact.at, one.contact.gap
+        constants[i, [at.START, at.GAP]] = one.at, one.gap
         if along is not None:
             path = along.path
             angles = np.stack([path.rate, path.phase], axis=1).ravel()
             constants[i, at.LOW : at.AT_REST] = (*path.ends, *angles)
         codes[i], laws[i] = _law(one.contact.friction)
         constants[i, at.AT_REST] = laws[i, 0]
-        if not one.fixed[0].any() and along is None:
+        if one.is_second:
+            codes[i] = at.SECOND_TANGENT
+        elif not one.fixed[0].any() and along is None:
             raise ArgumentError(
                 f"contact {one.contact.name or i + 1}",
                 "be between bodies of which one moves along its normal",

@@ -41,7 +41,8 @@ def forces_of(
     """
     count = len(gaps)
     per_block = 1 if PLAIN else LANES
-    sizes = Sizes(0, 0, per_block, count, -(-2 * count // per_block), 0, False, False)
+    space = bool((laws[0] == at.SECOND_TANGENT).any())
+    sizes = Sizes(0, 0, per_block, count, -(-2 * count // per_block), 0, False, False, space)
     now = np.zeros((count, at.IN_STEP))
     now[:, at.FREE_GAP], now[:, at.FREE_SLIP] = gaps, slips
     constants = np.zeros((count, at.CONTACT_CONSTANTS))

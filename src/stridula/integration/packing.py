@@ -88,6 +88,7 @@ def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
         len(modes.loads),
         any(along is not None for along in contacts.paths),
         any(along is not None and along.normal.start < modes.coupled for along in contacts.paths),
+        bool((contacts.codes == at.SECOND_TANGENT).any()),
     )
     path_of = [-1 if along is None else places.path_spans[_key(along)][0][0] for along in contacts.paths]
     return Layout(

@@ -17,7 +17,7 @@ from ..records.dataset import RECORDED, over_time, to_dataset
 from ..records.plain import PlainRecord
 from ..records.provenance import scenario_toml
 from ..records.state import LAYOUT, State
-from ..records.variables import STATUS_SHARE
+from ..records.variables import ALONG_TANGENTS, STATUS_SHARE
 from ..system import System
 from ..version import __version__
 from .belief import Belief
@@ -75,7 +75,7 @@ class Run:
         self.system, self.arrays, self.scheme = system, arrays, scheme
         self.timing, self.probes, self.solve, self.title = timing, probes, solve, title
         self.blocks = blocks_of(arrays, scheme, timing.step)
-        self.described, self.offset = arrays.motion, np.zeros((len(system.contacts), at.MOTIONS))
+        self.described, self.offset = arrays.motion, np.zeros((len(arrays.contacts), at.MOTIONS))
         if start is None:
             placed = in_equilibrium(system, arrays)
             self.state = state_at_start(placed, scheme, timing.step, self.blocks, solve)
@@ -91,7 +91,7 @@ class Run:
         self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy, met)
         self.impositions = Impositions(self.arrays, self.blocks, timing.step)
         self.energy_record = np.empty((at.ENERGIES, timing.samples))
-        self.contact_record = np.empty((at.COLUMNS, len(system.contacts), timing.samples))
+        self.contact_record = np.empty((at.COLUMNS, len(arrays.contacts), timing.samples))
         self.probe_record = np.empty((timing.samples, len(probes)))
         self.wanted: Collection[str] = RECORDED
         self.columns: tuple[int, ...] = ALL_COLUMNS
@@ -155,7 +155,7 @@ class Run:
 
     def why_diverged(self) -> str:
         """Return where the contacts were when the run diverged, and whether they can be told apart, in words."""
-        words = contact_words(self.system.contact_names, self.state.carried)
+        words = contact_words(self.system.contact_names, self.state.carried[self.arrays.firsts])
         if self.ended != at.CONTACT_UNSOLVED:
             return words
         return f"{words}; {rank_words(self.arrays, self.blocks, self.state)}"
@@ -199,8 +199,12 @@ class Run:
     def _over_time(self) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Return the columns of the contacts, their shares of time and the energies, up to the end."""
         done = self.done
-        record, energies = self.contact_record[:, :, :done], self.energy_record[:, :done]
+        pairs, energies = self.contact_record[:, :, :done], self.energy_record[:, :done]
+        firsts = self.arrays.firsts
+        record = pairs if firsts.all() else pairs[:, firsts]
         columns = {name: record[column] for name, column in CONTACT_COLUMN.items()}
+        if not firsts.all():
+            columns |= {name: _along_both(pairs[CONTACT_COLUMN[name]], firsts) for name in ALONG_TANGENTS}
         sums = {name: energies[column] for name, column in ENERGY_COLUMN.items()}
         if "impact_loss" in self.wanted:
             sums["impact_loss"] = sums["convection_work"] - sums["friction_loss"] - sums["contact_work"]
@@ -249,3 +253,11 @@ class Run:
         if self.solve != GaussSeidel():
             simulation["contact_solve"] = asdict(self.solve)
         return scenario_toml(self.system, self.probes, simulation)
+
+
+def _along_both(pairs: Array, firsts: Array) -> Array:
+    """Return what contacts have along both tangents, (contacts, samples, 2), from pairs of rows; 0 of a missing one."""
+    found = np.zeros((int(firsts.sum()), pairs.shape[1], 2))
+    found[..., 0] = pairs[firsts]
+    found[np.cumsum(firsts)[~firsts] - 1, :, 1] = pairs[~firsts]
+    return found

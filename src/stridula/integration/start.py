@@ -50,7 +50,7 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
         carried[closed[:, None], [at.LAST_NORMAL, at.LAST_TANGENTIAL]] = forces
         pressed = closed[forces[:, 0] > 0.0]
         carried[pressed, at.CLOSED_SHARE] = 1.0
-        carried[pressed, at.STATUS] = np.where(start.speeds[pressed] == 0.0, STICKING, SLIDING)
+        carried[pressed, at.STATUS] = np.where(start.slip_speeds[pressed] == 0.0, STICKING, SLIDING)
     modal, energies = np.stack([arrays.position, first]), np.zeros(at.ENERGIES)
     energies[at.STORED] = modes.stored_energy(modal)
     return State(modal, np.zeros_like(modal), carried, energies)
@@ -67,10 +67,12 @@ class _Start:
         self.factors = np.array([signal(times[1:2], step)[0] for signal in arrays.signals[: len(arrays.loads)]])
         self.fixed = np.array([one.fixed for one in arrays.contacts])
         moved = arrays.motion(times[1:2], step)[0, :, at.TIP_MOTION] + self.fixed[:, 1] @ arrays.position
-        places = [one.contact.at + shift for one, shift in zip(arrays.contacts, moved.tolist(), strict=True)]
+        places = [one.at + shift for one, shift in zip(arrays.contacts, moved.tolist(), strict=True)]
         self.rows = np.array([rows_at(*pair) for pair in zip(arrays.contacts, places, strict=True)])
         terms = _terms(arrays, self.factors @ arrays.loads)
         self.gaps = np.array([_gap(*pair, arrays, terms) for pair in zip(arrays.contacts, self.rows, strict=True)])
+        self.first = np.flatnonzero(arrays.firsts)[np.cumsum(arrays.firsts) - 1]
+        self.gaps = self.gaps[self.first]
 
     def increment(self, force: Array) -> Array:
         """Return the increment before the start of motion under constant modal forces."""
@@ -88,15 +90,28 @@ class _Start:
         speeds = terms.sum(axis=1) + imposed.sum(axis=1)
         return np.where(np.abs(speeds) > ROUND_OFF * scale, speeds, 0.0)
 
+    @cached_property
+    def slip_speeds(self) -> Array:
+        """Speed at which each contact slides at the start [m/s], that of both tangents in space."""
+        speeds = np.abs(self.speeds)
+        second = np.flatnonzero(~self.arrays.firsts)
+        speeds[second - 1] = np.hypot(speeds[second - 1], speeds[second])
+        return speeds[self.first]
+
     def _known_ratios(self, carried: Array) -> Array:
         """Return the ratio of tangential to normal force of contacts whose motion settles it, NaN of others."""
         ratios, laws = np.full(len(self.speeds), np.nan), self.contacts.laws
         for i, speed in enumerate(self.speeds):
-            law = int(self.contacts.codes[i])
+            number, whole = int(self.first[i]), float(self.slip_speeds[i])
+            law = int(self.contacts.codes[number])
+            share = speed / whole if whole else 0.0
             if not set_valued(law):
-                ratios[i] = state_ratio(law, laws, i, carried[i, at.FRICTION_STATE], speed, self.step)
-            elif speed:
-                ratios[i] = np.sign(speed) * sliding_ratio(law, laws, i, abs(speed))
+                # Forward in the sense of the slip: bristles may be bent either way.
+                sense = -1.0 if share == -1.0 else 1.0
+                found = state_ratio(law, laws, number, carried[number, at.FRICTION_STATE], sense * whole, self.step)
+                ratios[i] = found * (sense * share if whole else float(number == i))
+            elif whole:
+                ratios[i] = share * sliding_ratio(law, laws, number, whole)
         return ratios
 
     def carried(self, first: Array) -> Array:
@@ -104,9 +119,11 @@ class _Start:
         carried = np.zeros((len(self.arrays.contacts), at.CARRIED))
         tip, track = self.before[:, 0], self.before[:, 1]
         for i, one in enumerate(self.arrays.contacts):
-            carried[i, at.MATERIAL] = one.contact.at + self.rows[i, 1] @ self.arrays.position
-            carried[i, at.ABSCISSA] = one.contact.at + self.fixed[i, 1] @ self.arrays.position
-            carried[i, at.STATUS] = STICKING if self.gaps[i] == 0.0 and self.speeds[i] == 0.0 else SEPARATED
+            carried[i, at.MATERIAL] = one.at + self.rows[i, 1] @ self.arrays.position
+            carried[i, at.ABSCISSA] = one.at + self.fixed[i, 1] @ self.arrays.position
+            carried[i, at.STATUS] = STICKING if self.gaps[i] == 0.0 and self.slip_speeds[i] == 0.0 else SEPARATED
+            if one.is_second:
+                continue
             carried[i, at.FRICTION_STATE] = self._state_before(i, one.contact.friction, float(self.speeds[i]))
         carried[:, at.ANCHOR], carried[:, at.LAST_GAP] = carried[:, at.MATERIAL], self.gaps
         carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - self.fixed[:, 1] @ first - tip
@@ -137,7 +154,11 @@ class _Start:
         ratios = self._known_ratios(carried)[closed]
         for i in np.flatnonzero(np.isfinite(ratios)):
             # Where the ratio is known, the contact is one without friction whose push is inclined.
+            if codes[i] == at.SECOND_TANGENT:
+                continue
             inclined = compliance[:, 2 * i] - ratios[i] * compliance[:, 2 * i + 1]
+            if i + 1 < len(codes) and codes[i + 1] == at.SECOND_TANGENT:
+                inclined = inclined - ratios[i + 1] * compliance[:, 2 * i + 3]
             if inclined[2 * i] > 0.0:
                 compliance[:, 2 * i], codes[i], laws[i, 0] = inclined, at.COULOMB, 0.0
             else:
@@ -149,7 +170,7 @@ class _Start:
     def _at_first_step(self, increments: Array) -> tuple[Array, Array]:
         """Return gaps and slips after the first step, without contact force, where the tips are then."""
         places = [
-            one.contact.at + one.fixed[1] @ (self.arrays.position + increments) + moved
+            one.at + one.fixed[1] @ (self.arrays.position + increments) + moved
             for one, moved in zip(self.arrays.contacts, self.after[:, 0], strict=True)
         ]
         there = np.array([rows_at(one, place) for one, place in zip(self.arrays.contacts, places, strict=True)])
@@ -192,10 +213,10 @@ def _gap(one: ContactRows, rows: Array, arrays: Assembly, terms: Array) -> float
 
     A displacement comes with the rounding of the largest term of its body, whichever way the contact looks at it.
     """
-    gap = float(one.contact.gap + rows[0] @ arrays.position)
+    gap = float(one.gap + rows[0] @ arrays.position)
     spans = [slice(*span) for span in arrays.spans.values()] if terms.any() else []
     felt = sum(float(np.linalg.norm(rows[0, span]) * np.linalg.norm(terms[span])) for span in spans)
-    scale = one.contact.gap + felt
+    scale = one.gap + felt
     if gap < -ROUND_OFF * scale:
         raise ArgumentError("gap", "leave the bodies apart at the start", got=f"an overlap of {-gap:.3g} m")
     return gap if gap > ROUND_OFF * scale else 0.0

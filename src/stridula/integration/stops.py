@@ -78,6 +78,8 @@ def rank_words(arrays: Assembly, blocks: Blocks, state: State) -> str:
     places = state.carried[:, at.ABSCISSA]
     closed = np.flatnonzero(state.carried[:, at.STATUS] > 0)
     rows = [rows_at(arrays.contacts[i], float(places[i])) for i in closed]
+    # The pair of a second tangent has no normal.
+    rows = [pair[1:] if arrays.contacts[i].is_second else pair for i, pair in zip(closed, rows, strict=True)]
     if not rows or not np.isfinite(places[closed]).all():
         return "no contact is closed"
     flat = np.concatenate(rows)

@@ -37,7 +37,9 @@ class Equilibrium:
     ratio : ndarray, shape (contacts,)
         Tangential over normal force of each in sliding, without its sense [1].
     normal_force, tangential_force : ndarray, shape (contacts,)
-        Contact forces [N], the tangential ones on the track along its tangent.
+        Contact forces [N], the tangential ones on the track along the slip.
+    lateral_force : ndarray, shape (contacts,)
+        Forces that hold sticking contacts across their tangent in space [N].
     slip_velocity : ndarray, shape (contacts,)
         Velocities [m/s] at which contacts slide, as drives and tracks prescribe or as given; 0 where not known.
     slip_acceleration : ndarray, shape (contacts,)
@@ -52,6 +54,7 @@ class Equilibrium:
     ratio: Array
     normal_force: Array
     tangential_force: Array
+    lateral_force: Array
     slip_velocity: Array
     slip_acceleration: Array
     displacement: Array
@@ -101,6 +104,7 @@ class _Balance:
     ratio: Array
     normal_force: Array
     tangential_force: Array
+    lateral_force: Array
     slip_velocity: Array
     slip_acceleration: Array
     displacement: Array
@@ -116,6 +120,7 @@ def _equilibrium(kind: str, status: Sequence[str], found: tuple[_Balance, _Balan
         it.ratio,
         it.normal_force,
         it.tangential_force,
+        it.lateral_force,
         it.slip_velocity,
         it.slip_acceleration,
         it.displacement,
@@ -196,9 +201,11 @@ def _balance(
     normal, tangential = np.zeros((2, len(status)))
     normal[closed] = forces[: len(closed)]
     tangential[closed] = (sense * ratio * normal)[closed]
-    tangential[stuck] = forces[len(closed) :]
+    tangential[stuck] = forces[len(closed) : len(closed) + len(stuck)]
+    lateral = np.zeros(len(status))
+    lateral[equations.lateral] = forces[len(closed) + len(stuck) :]
     slips = np.array([line.tangent @ equations.free @ acceleration for line in structure.lines])
-    return _Balance(status, sense, ratio, normal, tangential, slip, slips, displacement, equations.determinant)
+    return _Balance(status, sense, ratio, normal, tangential, lateral, slip, slips, displacement, equations.determinant)
 
 
 class _Equations:
@@ -206,7 +213,9 @@ class _Equations:
 
     def __init__(self, structure: Structure, status: Sequence[str], share: Array) -> None:
         held, pushes, self.closed, self.stuck = held_rows(structure, status, share)
-        structure.once(("checked", *status), lambda: _check_held(structure, held, [*self.closed, *self.stuck]))
+        self.lateral = held_across(structure, self.stuck)
+        who = [*self.closed, *self.stuck, *self.lateral]
+        structure.once(("checked", *status), lambda: _check_held(structure, held, who))
         self.free, modes = structure.free_motions(held), structure.mode_count
         _check_unbraked(structure, self.free)
         self.parts = modes, modes + self.free.shape[1]
@@ -220,7 +229,8 @@ class _Equations:
 
     def solved(self, load: Array, closed: Array, stuck: Array) -> list[Array]:
         """Return displacement, accelerations of free motions and forces under a load; what contacts hold is given."""
-        right = np.concatenate([load, np.zeros(self.parts[1] - self.parts[0]), closed, stuck])
+        free, lateral = np.zeros(self.parts[1] - self.parts[0]), np.zeros(len(self.lateral))
+        right = np.concatenate([load, free, closed, stuck, lateral])
         if self.determinant:
             found = np.linalg.solve(self.matrix, right / self.scale) / self.scale
         else:
@@ -264,18 +274,25 @@ def held_rows(structure: Structure, status: Sequence[str], share: Array) -> tupl
     Returns
     -------
     held, pushes : ndarray, shape (held, modes)
-        Rows that closed contacts hold along their normals, then those that sticking ones hold along their tangents;
-        modal forces of a unit of the force that holds each.
+        Rows that closed contacts hold along their normals, then those that sticking ones hold along their tangents,
+        then across them in space; modal forces of a unit of the force that holds each.
     closed, stuck : list of int
         Numbers of the contacts that both kinds of rows belong to.
     """
     closed = [k for k, one in enumerate(status) if one != SEPARATED]
     stuck = [k for k in closed if status[k] == STICKING]
     lines, size = structure.lines, (-1, structure.mode_count)
-    held = np.array([*(lines[k].normal for k in closed), *(lines[k].tangent for k in stuck)]).reshape(size)
+    lateral = [lines[k].across for k in held_across(structure, stuck)]
+    tangents = [*(lines[k].tangent for k in stuck), *lateral]
+    held = np.array([*(lines[k].normal for k in closed), *tangents]).reshape(size)
     slides = [share[k] if status[k] == SLIDING else 0.0 for k in closed]
     normals = [lines[k].normal - part * lines[k].tangent for k, part in zip(closed, slides, strict=True)]
-    return held, np.array([*normals, *(-lines[k].tangent for k in stuck)]).reshape(size), closed, stuck
+    return held, np.array([*normals, *(-row for row in tangents)]).reshape(size), closed, stuck
+
+
+def held_across(structure: Structure, stuck: Sequence[int]) -> list[int]:
+    """Return the sticking contacts that are held across their tangent, too: those in space that can move so."""
+    return [k for k in stuck if np.abs(structure.lines[k].across).any()]
 
 
 def _check_held(structure: Structure, held: Array, contacts: Sequence[int]) -> None:

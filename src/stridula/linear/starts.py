@@ -110,13 +110,11 @@ def _check(structure: Structure, at: Equilibrium, status: Sequence[str] | None) 
             )
         if at.status[k] == STICKING:
             most = float(contact.friction.coefficient_at(0.0)) * float(at.normal_force[k])
-            if abs(at.tangential_force[k]) > most + largest:
+            pulled = float(np.hypot(at.tangential_force[k], at.lateral_force[k]))
+            if pulled > most + largest:
                 raise ArgumentError(
                     "status",
-                    (
-                        f"let {names[k]} slide, which would stick with {abs(float(at.tangential_force[k])):.3g} N of "
-                        f"at most {most:.3g} N"
-                    ),
+                    (f"let {names[k]} slide, which would stick with {pulled:.3g} N of at most {most:.3g} N"),
                     at.status[k],
                 )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypeVar
 
@@ -35,18 +35,20 @@ class ContactLine:
 
     Attributes
     ----------
-    normal, tangent : ndarray
-        Displacement of the tip less that of the track, along normal and tangent; also how contact forces act.
+    normal, tangent, across : ndarray
+        Displacement of the tip less that of the track, along the normal, along the slip and across it, which is zero in
+        the plane; also how contact forces act.
     along : ndarray
         Shift of the contact point along a beam or a plate; zero on other tracks, which look the same everywhere.
     normal_slope, tangent_slope : ndarray
         Displacement of the track along normal and tangent, derived along the track [1/m].
-    points : ndarray, shape (2, 2, modes)
-        Displacement of the tip, then of the point of the track that it touches, each along world x and y.
+    points : ndarray, shape (2, 2, modes) or (2, 3, modes)
+        Displacement of the tip, then of the point of the track that it touches, each along world x, y and, in space, z.
     """
 
     normal: Array
     tangent: Array
+    across: Array
     along: Array
     normal_slope: Array
     tangent_slope: Array
@@ -80,7 +82,9 @@ class Structure:
     gaps : ndarray, shape (contacts,)
         Gaps of the undeformed system [m].
     rates : ndarray, shape (2, contacts)
-        Velocities of the tip against the track that drives and tracks prescribe, along tangent and normal [m/s].
+        Velocities of the tip against the track that drives and tracks prescribe, along slip and normal [m/s].
+    ways : ndarray, shape (contacts, 2)
+        Directions of the slip among both tangents: that of what is prescribed in space, else the first tangent.
 
     Raises
     ------
@@ -95,16 +99,17 @@ class Structure:
         # Later it is all the same, and no rate meets the kink of a history that settles.
         now = np.array([2.0 * settled + 1.0 if time is None else settled])
         arrays, size = self.arrays, self.arrays.coupled
-        self.lines = [_line(one, system, arrays) for one in arrays.contacts]
+        rates = [_prescribed_rates(contact, system, now) for contact in system.contacts]
+        self.ways, self.rates = _along_the_slip(np.array(rates))
+        self.lines = self._lines(np.zeros(len(system.contacts)))
         self.stiffness, self.damping = arrays.all_stiffness, np.diag(arrays.damping_rate)
         self.damping[:size, :size] = arrays.dissipation
         self.mass = np.where(arrays.massless, 0.0, 1.0)
         self.rigid = _rigid_motions(self)
         factors = np.array([signal(now, 1e-6)[0] for signal in arrays.signals[: len(arrays.loads)]])
         self.load = factors @ arrays.loads
-        moved = arrays.motion(np.array([settled]), 1e-6)[0, :, 2]
+        moved = arrays.motion(np.array([settled]), 1e-6)[0, arrays.firsts, 2]
         self.gaps = moved + [contact.gap for contact in system.contacts]
-        self.rates = np.array([_prescribed_rates(contact, system, now) for contact in system.contacts]).T
         if time is None:
             self._check_steady()
 
@@ -125,9 +130,17 @@ class Structure:
         """Return the system with its contact points shifted along their tracks by distances [m], shape (contacts,)."""
         other = copy(self)
         other._known = {}
-        pairs = zip(self.arrays.contacts, shifts.tolist(), strict=True)
-        other.lines = [_line(one, self.system, self.arrays, shift) for one, shift in pairs]
+        other.lines = self._lines(shifts)
         return other
+
+    def _lines(self, shifts: Array) -> list[ContactLine]:
+        """Return the contacts as rows, their points shifted along their tracks by distances [m]."""
+        pairs = iter(self.arrays.contacts)
+        lines = []
+        for contact, way, shift in zip(self.system.contacts, self.ways, shifts.tolist(), strict=True):
+            line = _line(next(pairs), self.system, self.arrays, shift)
+            lines.append(_turned(line, way, next(pairs).fixed[1]) if contact.is_spatial else line)
+        return lines
 
     def prescribed(self, status: Sequence[str]) -> Array:
         """Return the slip velocities [m/s] that drives and tracks prescribe; rigid motions follow what contacts hold.
@@ -137,7 +150,7 @@ class Structure:
         status : sequence of str
             Status of each contact.
         """
-        tangents, _ = self._rigid_rows()
+        tangents, *_ = self._rigid_rows()
         slips = self.rates[0] + tangents @ self._following(status)
         stuck = np.array([one == STICKING for one in status])
         return np.where(stuck | (np.abs(slips) <= UNMOVED * np.abs(self.rates).max()), 0.0, slips)
@@ -154,11 +167,11 @@ class Structure:
         ValueError
             If no rigid motion lets a contact slide so, or follows the track of one that sticks or that rises.
         """
-        tangents, normals = self._rigid_rows()
+        tangents, normals, acrosses = self._rigid_rows()
         slips, openings = self.rates
         closed = np.array([one in CLOSED for one in status])
-        rows = np.vstack([normals[closed], tangents[closed]])
-        wanted = np.concatenate([-openings[closed], (slip_velocity - slips)[closed]])
+        rows = np.vstack([normals[closed], tangents[closed], acrosses[closed]])
+        wanted = np.concatenate([-openings[closed], (slip_velocity - slips)[closed], 0.0 * slips[closed]])
         found = np.linalg.pinv(rows, rcond=UNMOVED) @ wanted
         missed = np.abs(rows @ found - wanted)
         if missed.size and missed.max() > UNMOVED * np.abs(wanted).max():
@@ -198,30 +211,32 @@ class Structure:
         return self.once(("following", *status), partial(self._follow, status))
 
     def _follow(self, status: Sequence[str]) -> Array:
-        tangents, normals = self._rigid_rows()
+        tangents, normals, acrosses = self._rigid_rows()
         slips, openings = self.rates
         closed, stuck = (np.array([one in kinds for one in status]) for kinds in (CLOSED, (STICKING,)))
-        wanted = np.concatenate([openings[closed], slips[stuck]])
+        wanted = np.concatenate([openings[closed], slips[stuck], 0.0 * slips[stuck]])
         if not wanted.any():
             return np.zeros(self.rigid.shape[1])
-        return -np.linalg.pinv(np.vstack([normals[closed], tangents[stuck]]), rcond=UNMOVED) @ wanted
+        rows = np.vstack([normals[closed], tangents[stuck], acrosses[stuck]])
+        return -np.linalg.pinv(rows, rcond=UNMOVED) @ wanted
 
-    def _rigid_rows(self) -> tuple[Array, Array]:
-        """Return how rigid motions move the contacts along their tangents and normals, each (contacts, motions)."""
+    def _rigid_rows(self) -> tuple[Array, Array, Array]:
+        """Return how rigid motions move contacts along slips, along normals and across slips, (contacts, motions)."""
         return self.once("rigid rows", self._find_rigid_rows)
 
-    def _find_rigid_rows(self) -> tuple[Array, Array]:
-        rows = [np.array([getattr(line, word) for line in self.lines]) for word in ("tangent", "normal")]
-        felt = [one @ self.rigid for one in rows]
-        sizes = [UNMOVED * np.linalg.norm(one, axis=1, keepdims=True) for one in rows]
-        tangents, normals = (np.where(np.abs(one) < size, 0.0, one) for one, size in zip(felt, sizes, strict=True))
-        return tangents, normals
+    def _find_rigid_rows(self) -> tuple[Array, Array, Array]:
+        def felt(word: str) -> Array:
+            rows = np.array([getattr(line, word) for line in self.lines])
+            moved = rows @ self.rigid
+            return np.where(np.abs(moved) < UNMOVED * np.linalg.norm(rows, axis=1, keepdims=True), 0.0, moved)
+
+        return felt("tangent"), felt("normal"), felt("across")
 
     def _check_steady(self) -> None:
         _, openings = self.rates
         if not openings.any():
             return
-        _, normals = self._rigid_rows()
+        _, normals, _ = self._rigid_rows()
         left = np.abs(openings - normals @ (np.linalg.pinv(normals, rcond=UNMOVED) @ openings))
         if left.max() > UNMOVED * np.abs(openings).max():
             name = self.system.contact_names[int(left.argmax())]
@@ -274,10 +289,12 @@ def _varying(track: RigidTrack, name: str) -> list[History]:
 
 def _line(one: ContactRows, system: System, arrays: Assembly, shift: float = 0.0) -> ContactLine:
     nothing = np.zeros(one.fixed.shape[1])
-    touched, track, points = one.contact.touched_point, one.contact.path_body, np.zeros((2, 2, nothing.size))
+    touched, track = one.contact.touched_point, one.contact.path_body
+    points = np.zeros((2, 3 if system.is_spatial else 2, nothing.size))
 
     def place(side: int, body: Any, position: Any) -> None:
-        points[side][:, slice(*arrays.spans[system.body_name(body)])] = body.trace(position, system.is_held(body))
+        rows = body.trace(position, system.is_held(body))
+        points[side][: len(rows), slice(*arrays.spans[system.body_name(body)])] = rows
         size = len(arrays.blend)
         points[side][:, :size] = points[side][:, :size] @ arrays.blend
 
@@ -285,14 +302,36 @@ def _line(one: ContactRows, system: System, arrays: Assembly, shift: float = 0.0
     if touched is not None:
         place(1, touched.body, touched.position)
     if track is None:
-        return ContactLine(one.fixed[0], one.fixed[1], nothing, nothing, nothing, points)
+        return ContactLine(one.fixed[0], one.fixed[1], nothing, nothing, nothing, nothing, points)
     at = one.contact.at + shift
     place(1, track, at)
     slope = np.zeros((2, nothing.size))
     slope[:, one.bending[0] : one.axial[1]] = track.path().traces(at)[1]
     # A trace is along x, then along y: tangent and normal.
     trace = points[1]
-    return ContactLine(one.fixed[0] - trace[1], one.fixed[1] - trace[0], one.fixed[1], slope[1], slope[0], points)
+    normal, tangent = one.fixed[0] - trace[1], one.fixed[1] - trace[0]
+    return ContactLine(normal, tangent, nothing, one.fixed[1], slope[1], slope[0], points)
+
+
+def _turned(line: ContactLine, way: Array, second: Array) -> ContactLine:
+    """Return a contact in space with its tangent along the slip, from the rows of both tangents."""
+    c, s = way.tolist()
+    across = c * second - s * line.tangent
+    size = np.linalg.norm(line.normal) + np.linalg.norm(line.tangent)
+    if np.linalg.norm(across) < UNMOVED * size:
+        across = np.zeros_like(across)
+    return replace(line, tangent=c * line.tangent + s * second, across=across)
+
+
+def _along_the_slip(rates: Array) -> tuple[Array, Array]:
+    """Return directions of slip among both tangents, (contacts, 2), and velocities along slip and normal."""
+    slips, openings = rates[:, :2], rates[:, 2]
+    ways = np.zeros_like(slips)
+    ways[:, 0] = 1.0
+    size = np.hypot(*slips.T)
+    in_space = slips[:, 1] != 0.0
+    ways[in_space] = slips[in_space] / size[in_space, None]
+    return ways, np.array([np.where(in_space, size, slips[:, 0]), openings])
 
 
 def _rigid_motions(structure: Structure) -> Array:
@@ -308,15 +347,16 @@ def _rigid_motions(structure: Structure) -> Array:
     return np.asarray(motions @ shapes[:, squared <= UNSTRAINED * squared[-1]])
 
 
-def _prescribed_rates(contact: PointContact, system: System, now: Array) -> tuple[float, float]:
-    """Return the velocities of the tip against the track that drives and tracks prescribe, along tangent and normal."""
-    imposed, (normal, tangent) = system.imposed_velocity, contact.frame
+def _prescribed_rates(contact: PointContact, system: System, now: Array) -> tuple[float, float, float]:
+    """Return the velocities of the tip against the track that are prescribed, along both tangents and the normal."""
+    imposed, (normal, *tangents) = system.imposed_velocity, contact.frame
     root = imposed.velocity * float(imposed.history.factor(now)[0]) if imposed else 0.0
     held = float(system.is_held(contact.tip.body))
     if contact.touched_point is not None:
         held -= float(system.is_held(contact.touched_point.body))
-    slip, opening = held * tangent[0] * root, held * normal[0] * root
+    slips, opening = [held * tangent[0] * root for tangent in tangents], held * normal[0] * root
     if contact.rigid_track is not None:
-        slip -= float(contact.rigid_track.speed(now)[0])
+        speeds = [contact.rigid_track.speed(now)[0], contact.rigid_track.lateral_speed(now)[0]]
+        slips = [slip - float(speed) for slip, speed in zip(slips, speeds, strict=False)]
         opening -= float(contact.rigid_track.normal_speed(now)[0])
-    return float(slip), float(opening)
+    return float(slips[0]), float(slips[-1]) if len(slips) == 2 else 0.0, float(opening)

@@ -15,7 +15,7 @@ import scipy.sparse.linalg
 from ..arrays import Array
 from ..contact.linearised import Linearised
 from .equilibrium import Equilibrium, held_rows
-from .structure import Structure
+from .structure import SLIDING, Structure
 
 # Relative imaginary part that rounding gives to a real exponent.
 ROUND_OFF = 1e-9
@@ -79,6 +79,10 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
         if k in stuck:
             held[len(closed) + stuck.index(k)] = slip
         law = structure.system.contacts[k].friction
+        if equilibrium.slip_velocity[k] and equilibrium.status[k] == SLIDING:
+            # Across the slip friction turns with it.
+            turning = equilibrium.ratio[k] * normal / abs(float(equilibrium.slip_velocity[k]))
+            damping += turning * np.outer(line.across, line.across)
         if equilibrium.slip_velocity[k] and law.depends_on_speed:
             near = law.linearised_at(abs(float(equilibrium.slip_velocity[k])))
             damping += normal * near.slope * np.outer(line.tangent, slip)

@@ -22,6 +22,7 @@ from .variables import (
     STATUS,
     STATUS_SHARE,
     STATUS_WORDS,
+    TANGENTS,
     attributes_of,
     described,
     status_attributes,
@@ -63,6 +64,8 @@ def to_dataset(
     data: dict[str, Any] = {name: (*given, _attributes(name, system)) for name, given in over.items()}
     if len(system.contacts) == 1:
         del coordinates["contact"]
+    if system.has_two_tangents:
+        coordinates["tangent"] = ("tangent", list(TANGENTS))
     for kind, variable in PROBES.items():
         chosen = [k for k, probe in enumerate(probes) if type(probe).__name__.lower() == kind]
         if chosen:
@@ -95,9 +98,12 @@ def over_time(
 ) -> dict[str, tuple[tuple[str, ...], Array]]:
     """Return what is recorded of contacts and energies, with its dimensions; arguments as those of `to_dataset`."""
     along = ("time", "contact")
-    found: dict[str, tuple[tuple[str, ...], Array]] = {
-        variable.name: (along, contact_columns[variable.name].T) for variable in CONTACT if variable.name in wanted
-    }
+    found: dict[str, tuple[tuple[str, ...], Array]] = {}
+    for variable in CONTACT:
+        if variable.name in wanted:
+            values = contact_columns[variable.name]
+            # In space a component along each tangent.
+            found[variable.name] = ((*along, "tangent")[: values.ndim], np.swapaxes(values, 0, 1))
     found |= {variable.name: (("time",), energies[variable.name]) for variable in ENERGY if variable.name in wanted}
     if STATUS.name in wanted:
         found[STATUS.name] = (along, contact_columns[STATUS.name].T.astype(np.int8))

@@ -11,6 +11,7 @@ import xarray as xr
 
 from ..arrays import Array
 from ..checks import brief, listed, suggestion
+from .variables import ALONG_TANGENTS
 
 # Names of the dimensions of variables over time, by how many they have beside the contact.
 AFTER_TIME = ((), ("contact_status",))
@@ -63,7 +64,8 @@ class PlainRecord:
         for name in names:
             values = self[name]
             over = ("time", "contact") if several and values.ndim > 1 else ("time",)
-            data[name] = ((*over, *AFTER_TIME[values.ndim - len(over)]), values)
+            after = ("tangent",) if name in ALONG_TANGENTS else AFTER_TIME[values.ndim - len(over)]
+            data[name] = ((*over, *after)[: values.ndim], values)
         coordinates: dict[str, Any] = {"time": ("time", self.time)}
         if several:
             coordinates["contact"] = ("contact", list(self.contacts))

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..bodies import BodyPoint, FiniteElementBeam
-from ..checks import choice, instance
+from ..checks import ArgumentError, choice, instance
 
-DIRECTIONS = ("x", "y", "axial", "transverse")
+DIRECTIONS = ("x", "y", "z", "axial", "transverse")
 
 
 @dataclass(frozen=True)
@@ -18,6 +18,8 @@ class _Motion:
     def __post_init__(self) -> None:
         instance("point", self.point, BodyPoint)
         choice("direction", self.direction, DIRECTIONS)
+        if self.direction == "z" and not self.point.body.is_spatial:
+            raise ArgumentError("direction", "be another than z on a body in the plane", self.direction)
 
 
 class Displacement(_Motion):
@@ -27,7 +29,7 @@ class Displacement(_Motion):
     ----------
     point : BodyPoint
         Where.
-    direction : {"y", "x", "axial", "transverse"}, optional
+    direction : {"y", "x", "z", "axial", "transverse"}, optional
         World direction, or along or across the body's own axis.
     """
 
@@ -39,7 +41,7 @@ class Velocity(_Motion):
     ----------
     point : BodyPoint
         Where.
-    direction : {"y", "x", "axial", "transverse"}, optional
+    direction : {"y", "x", "z", "axial", "transverse"}, optional
         World direction, or along or across the body's own axis.
     """
 
@@ -51,7 +53,7 @@ class Acceleration(_Motion):
     ----------
     point : BodyPoint
         Where.
-    direction : {"y", "x", "axial", "transverse"}, optional
+    direction : {"y", "x", "z", "axial", "transverse"}, optional
         World direction, or along or across the body's own axis.
     """
 

@@ -98,7 +98,7 @@ def _general(system: System) -> dict[str, Any]:
 
 def _contact(contact: PointContact) -> dict[str, Any]:
     given = {"at": _value(contact.at), "gap": _value(contact.gap)}
-    for name in ("inclination", "name"):
+    for name in ("inclination", "name", "normal", "tangent"):
         if getattr(contact, name):
             given[name] = _value(getattr(contact, name))
     return {**given, "friction": {"law": contact.friction.law, **_plain(contact.friction)}}
@@ -146,7 +146,8 @@ def _body(body: Any) -> dict[str, Any]:
     if hasattr(body, "material"):
         given["material"] = _plain(body.material)
     if hasattr(body, "points"):
-        given["points"] = {name: _rows(rows) for name, rows in body.points.items()}
+        places = body.kind == "rigid body"
+        given["points"] = {name: _value(rows) if places else _rows(rows) for name, rows in body.points.items()}
     if not hasattr(body, "section"):
         return given
     return {**given, "section": {"shape": body.section.shape, **_plain(body.section)}}
@@ -174,8 +175,8 @@ def _default_name(body: Any, system: System) -> str:
 
 def _rows(rows: Array) -> Any:
     """Return the rows of a point: the degrees of freedom that it moves with where that says it all."""
-    chosen = {axis: np.flatnonzero(row) for axis, row in zip("xy", rows, strict=True)}
-    if all(
+    chosen = {axis: np.flatnonzero(row) for axis, row in zip("xyz"[: len(rows)], rows, strict=True)}
+    if (len(rows) == 2 or chosen["z"].size) and all(
         found.size == 0 or (found.size == 1 and rows[k, found[0]] == 1.0) for k, found in enumerate(chosen.values())
     ):
         return {axis: int(found[0]) for axis, found in chosen.items() if found.size}

@@ -48,6 +48,9 @@ CONTACT = (
     Variable("jammed_steps", "1", "steps in which sliding would have jammed", "sum"),
     Variable("landings", "1", "landings: steps at which an open contact closes", "sum"),
 )
+# What has a component along each tangent in space.
+ALONG_TANGENTS = ("tangential_force", "contact_position", "slip_velocity")
+TANGENTS = ("first", "second")
 # Units are those of the law: m for LuGre's bristles, s for the state of rate and state.
 FRICTION_STATE = Variable("friction_state", "1", "internal state of the law of friction")
 SOLVE = (

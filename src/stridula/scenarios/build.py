@@ -20,6 +20,7 @@ from ..bodies import (
     ModalPlate,
     PointMass,
     ReducedBody,
+    RigidBody,
 )
 from ..bodies.damping import DAMPING_LAWS
 from ..bodies.ordinary import NotOrdinary
@@ -167,6 +168,10 @@ class Builder:
         if kind == "point mass":
             with self._within(*path):
                 return PointMass(**table)
+            return None
+        if kind == "rigid body":
+            with self._within(*path):
+                return RigidBody(**{name: value for name, value in table.items() if value is not None})
             return None
         if kind == "reduced":
             return self._reduced(path, table)

@@ -407,22 +407,36 @@ class Points(_Kind):
     def json_schema(self) -> dict[str, Any]:
         rows = Numbers((2,)).json_schema()
         label = {"anyOf": [{"type": "integer"}, {"type": "array", "items": {"type": "integer"}}]}
-        axes = {"type": "object", "properties": {"x": label, "y": label}, "additionalProperties": False}
+        along = dict.fromkeys("xyz", label)
+        axes = {"type": "object", "properties": along, "additionalProperties": False}
         pair = {"type": "array", "items": label}
         return {"type": "object", "additionalProperties": {"anyOf": [axes, pair, *rows["anyOf"]]}}
 
     def _point(self, name: str, point: Any) -> Any:
-        if isinstance(point, dict) and set(point) <= {"x", "y"}:
-            point = [point.get("x"), point.get("y")]
-        if isinstance(point, list) and len(point) == 2 and all(map(_is_label_or_none, point)):
+        if isinstance(point, dict) and set(point) <= {"x", "y", "z"}:
+            point = [point.get(axis) for axis in ("xyz" if "z" in point else "xy")]
+        if isinstance(point, list) and len(point) in (2, 3) and all(map(_is_label_or_none, point)):
             return tuple(tuple(label) if isinstance(label, list) else label for label in point)
         try:
             return Numbers((2,)).read(point)
         except ArgumentError:
             raise _refused(
-                f"give the point {name} as rows on the degrees of freedom, shape (2, n), or by the degrees of "
-                "freedom that it moves with: {x = 0, y = 1}"
+                f"give the point {name} as rows on the degrees of freedom, shape (2, n) or (3, n), or by the degrees "
+                "of freedom that it moves with: {x = 0, y = 1}"
             ) from None
+
+
+@dataclass(frozen=True)
+class Places(_Kind):
+    """Places of points by name: three numbers each, along x, y and z [m]."""
+
+    def read(self, value: Any) -> dict[str, Any]:
+        if not isinstance(value, dict):
+            raise _refused("be a table of points by name")
+        return {name: tuple(Numbers((1,)).read(place).tolist()) for name, place in value.items()}
+
+    def json_schema(self) -> dict[str, Any]:
+        return {"type": "object", "additionalProperties": {"type": "array", "items": {"type": "number"}}}
 
 
 @dataclass(frozen=True)
@@ -469,6 +483,7 @@ def _is_label_or_none(value: Any) -> bool:
 
 
 Damping = Annotated[Any, RatioOrLaw(each=False)]
+Mass = Annotated[float, Quantity("kg", above=0.0)]
 Length = Annotated[float, Quantity("m", above=0.0)]
 Distance = Annotated[float, Quantity("m", least=0.0)]
 Angle = Annotated[float, Quantity("rad")]
@@ -488,6 +503,8 @@ ModalDamping = Annotated[Any, RatioOrLaw(each=True)]
 ReducedDamping = Annotated[Any, Numbers((0, 1, 2), file=True, damping=True)]
 Vector = Annotated[Any, Numbers((1,))]
 PointTable = Annotated[Any, Points()]
+PlaceTable = Annotated[Any, Places()]
+Inertia = Annotated[Any, Numbers((0, 1, 2))]
 Translation = Annotated[Any, Motion()]
 
 # The unit of a number is told in the JSON schema by the spellings that its text may have.

@@ -22,8 +22,8 @@ class Motion(Table):
     """body: slider, track or its name; the track if left out, the slider on a rigid track"""
     point: is_.Point | None = None
     """where: tip, root, centre, the name of a point or a position [m]; centre or tip if left out"""
-    direction: Literal["x", "y", "axial", "transverse"] = "y"
-    """x, y, axial or transverse"""
+    direction: Literal["x", "y", "z", "axial", "transverse"] = "y"
+    """x, y, z in space, axial or transverse"""
 
 
 class Reaction(Table):

@@ -12,7 +12,7 @@ from . import fields as is_
 from .derived import Keys, one_of, table_of
 from .fields import Table
 
-KINDS = "finite-element beam, modal beam, modal plate, point mass or reduced"
+KINDS = "finite-element beam, modal beam, modal plate, point mass, reduced or rigid body"
 OWN_NAME = "what it is called in records, the table's own name if left out"
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Line(Table):
 
 class Plate(Table):
     kind: Literal["modal plate"]
-    """finite-element beam, modal beam, modal plate, point mass or reduced"""
+    """finite-element beam, modal beam, modal plate, point mass, reduced or rigid body"""
     material: Material
     """what the plate is made of"""
     thickness: is_.Length
@@ -72,7 +72,7 @@ class Plate(Table):
 
 class Reduced(Table):
     kind: Literal["reduced"]
-    """finite-element beam, modal beam, modal plate, point mass or reduced"""
+    """finite-element beam, modal beam, modal plate, point mass, reduced or rigid body"""
     file: str | None = None
     """.npz or .mat file with matrices and points, beside the scenario"""
     mass: is_.Matrix | None = None
@@ -84,11 +84,24 @@ class Reduced(Table):
     damping: is_.ReducedDamping | None = None
     """damping: a ratio, one for each mode, a law of frequency, a matrix, or its file"""
     translation: is_.Translation | None = None
-    """rows that say how a translation along x and y moves it; gravity and initial velocities need it"""
+    """rows that say how a translation along x, y and z moves it; gravity and initial velocities need it"""
     cutoff: is_.Frequency | None = None
     """keep the modes up to this frequency, all if left out [Hz]"""
     residual_flexibility: bool | None = None
     """whether modes beyond the cutoff yield statically at the points, true if left out"""
+    name: str = ""
+    """what it is called in records, the table's own name if left out"""
+
+
+class Rigid(Table):
+    kind: Literal["rigid body"]
+    """finite-element beam, modal beam, modal plate, point mass, reduced or rigid body"""
+    mass: is_.Mass
+    """mass [kg]"""
+    inertia: is_.Inertia | None = None
+    """moments of inertia about x, y and z: one, three or a matrix; without any it does not turn [kg m2]"""
+    points: is_.PlaceTable | None = None
+    """places of points from the centre along x, y and z by name [m]"""
     name: str = ""
     """what it is called in records, the table's own name if left out"""
 
@@ -103,4 +116,4 @@ else:
     )
     _exact = table_of(bodies.ModalBeam, "kind", "modal beam", KINDS, title="ModalBody", **_words)
     _mass = table_of(bodies.PointMass, "kind", "point mass", KINDS, after=_named)
-    Body = one_of("kind", [_beam, _exact, Plate, _mass, Reduced])
+    Body = one_of("kind", [_beam, _exact, Plate, _mass, Reduced, Rigid])

@@ -1,0 +1,320 @@
+"""Contacts in space, which have two tangents.
+
+The march has a pair of rows for each: the normal with the first tangent, then nothing with the second tangent. Friction
+acts along one direction u of the tangent plane. Along it the contact is one of the plane, and u is where no velocity is
+left across it.
+"""
+
+import math
+
+import numba
+from numba.extending import overload
+
+from . import layout as at
+from .block_rows import COMPLIANCE, DISPLACEMENT
+from .contact import STICKING
+from .faces import displace
+from .friction import STRICT
+from .lanes import choose, entry, held, hold, lane, magnitude, spread, with_lane
+from .modes import OPTIONS, PASTED
+from .solves import carried_by, solve_one_run, strayed
+from .vectors import LANES, VECTOR
+
+# Trials of a direction of friction, and velocity across it, relative to its terms, that is round-off.
+TRIALS, ACROSS = 80, 1e-12
+# Longest step of a search without a bracket [rad].
+LONGEST = 1.0
+# Relative determinant of the compliance of the tangents below which the slip alone tells a direction.
+SINGULAR = 1e-12
+
+
+@numba.njit(**OPTIONS)
+def is_second(codes, i):
+    """Return whether pair `i` is the second of a contact in space."""
+    return i < codes.size and codes[i] == at.SECOND_TANGENT
+
+
+@numba.njit(**OPTIONS)
+def whole_compliance(faces, i, run, zero):
+    """Return the compliance of a contact in space, rows of normal and tangents, for forces ``(N, -T1, -T2)``."""
+    n, t, b = 2 * i, 2 * i + 1, 2 * i + 3
+    return (
+        entry(faces, n, COMPLIANCE + n, run, zero),
+        entry(faces, n, COMPLIANCE + t, run, zero),
+        entry(faces, n, COMPLIANCE + b, run, zero),
+        entry(faces, t, COMPLIANCE + n, run, zero),
+        entry(faces, t, COMPLIANCE + t, run, zero),
+        entry(faces, t, COMPLIANCE + b, run, zero),
+        entry(faces, b, COMPLIANCE + n, run, zero),
+        entry(faces, b, COMPLIANCE + t, run, zero),
+        entry(faces, b, COMPLIANCE + b, run, zero),
+    )
+
+
+@numba.njit(**OPTIONS)
+def along(w, c, s):
+    """Return the compliance (nn, nt, tn, tt) of a contact in space along the direction (c, s) of its tangent plane."""
+    return (
+        w[0],
+        c * w[1] + s * w[2],
+        c * w[3] + s * w[6],
+        c * (c * w[4] + s * w[5]) + s * (c * w[7] + s * w[8]),
+    )
+
+
+@numba.njit(**STRICT)
+def sticking_direction(gap, first, second, w):
+    """Return the direction of the force that would hold a contact against displacements without force."""
+    a, b = w[4] - w[3] * w[1] / w[0], w[5] - w[3] * w[2] / w[0]
+    c, d = w[7] - w[6] * w[1] / w[0], w[8] - w[6] * w[2] / w[0]
+    first, second = first - w[3] * gap / w[0], second - w[6] * gap / w[0]
+    determinant = a * d - b * c
+    if abs(determinant) > SINGULAR * (a + d) * (a + d):
+        first, second = (d * first - b * second) / determinant, (a * second - c * first) / determinant
+    size = math.hypot(first, second)
+    if size == 0.0:
+        return 1.0, 0.0
+    return first / size, second / size
+
+
+@numba.njit(**STRICT)
+def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go, step):
+    """Return normal force, both tangential forces, status and whether it is jammed.
+
+    Arguments are those of `contact.solve_contact`, with a number for each tangent; `before` are status, slips of the
+    last two steps, internal state and forces of the last step.
+    """
+    if gap >= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
+    was, last, earlier, state, last_normal, last_forces = before
+    first, second = sticking_direction(gap, slips[0] + strays[0], slips[1] + strays[1], w)
+    carried_on = 6.0 * last[0] + earlier[0], 6.0 * last[1] + earlier[1]
+    turn, low, high = 0.0, -math.inf, math.inf
+    turn_before, across_before = math.nan, math.nan
+    c, s, normal, tangential, status, jammed = first, second, 0.0, 0.0, 0.0, 0.0
+    for trial in range(TRIALS):
+        cosine, sine = math.cos(turn), math.sin(turn)
+        c, s = first * cosine - second * sine, second * cosine + first * sine
+        normal, tangential, status, jammed = solve_one_run(
+            gap,
+            c * slips[0] + s * slips[1],
+            c * strays[0] + s * strays[1],
+            along(w, c, s),
+            law,
+            laws,
+            number,
+            (
+                was,
+                c * last[0] + s * last[1],
+                c * earlier[0] + s * earlier[1],
+                state,
+                last_normal,
+                c * last_forces[0] + s * last_forces[1],
+            ),
+            let_go,
+            step,
+        )
+        if trial == 0 and abs(status - STICKING) < 0.5:
+            break
+        # The direction is that of the velocity that laws of the speed see, see `contact.velocity_at`.
+        moved = 9.0 * (slips[0] + w[3] * normal - (c * w[4] + s * w[5]) * tangential) + carried_on[0]
+        swerved = 9.0 * (slips[1] + w[6] * normal - (c * w[7] + s * w[8]) * tangential) + carried_on[1]
+        across = c * swerved - s * moved
+        size = abs(slips[0]) + abs(slips[1]) + (abs(w[3]) + abs(w[6])) * normal + (w[4] + w[8]) * abs(tangential)
+        size = 9.0 * size + abs(carried_on[0]) + abs(carried_on[1])
+        if abs(across) <= ACROSS * size:
+            break
+        # A force of the other sign has the slip on the other side.
+        side = across if tangential >= 0.0 else -across
+        if side > 0.0:
+            low = max(low, turn)
+        else:
+            high = min(high, turn)
+        soft = s * (s * w[4] - c * w[5]) + c * (c * w[8] - s * w[7])
+        stiff = abs(c * moved + s * swerved) + 9.0 * abs(tangential) * soft
+        change = side / stiff if stiff > 0.0 else math.inf
+        if turn != turn_before and abs(across) < 0.5 * abs(across_before) and across != across_before:
+            change = across * (turn - turn_before) / (across_before - across)
+        turn_before, across_before = turn, across
+        change = min(max(change, -LONGEST), LONGEST)
+        found = turn + change
+        if not low < found < high:
+            found = (
+                0.5 * (low + high) if math.isfinite(low) and math.isfinite(high) else turn + math.copysign(0.5, side)
+            )
+        if found == turn or not low < found < high:
+            break
+        turn = found
+    return normal, tangential * c, tangential * s, status, jammed
+
+
+def solve_in_space(gap, slips, strays, w, law, laws, run, before, let_go, step):
+    """Do `solve_one_in_space` for numbers of runs."""
+    return solve_one_in_space(gap, slips, strays, w, law, laws, run, before, let_go, step)
+
+
+@numba.njit(**STRICT)
+def lane_of_pair(pair, i):
+    """Return the numbers in a lane of two vectors."""
+    return lane(pair[0], i), lane(pair[1], i)
+
+
+@numba.njit(**STRICT)
+def solve_runs_in_space(gap, slips, strays, w, law, laws, run, before, let_go, step):
+    """Do `solve_one_in_space` for vectors of runs."""
+    normal, first, second, new, jammed = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    for i in range(LANES):
+        one = solve_one_in_space(
+            lane(gap, i),
+            lane_of_pair(slips, i),
+            lane_of_pair(strays, i),
+            (
+                lane(w[0], i),
+                lane(w[1], i),
+                lane(w[2], i),
+                lane(w[3], i),
+                lane(w[4], i),
+                lane(w[5], i),
+                lane(w[6], i),
+                lane(w[7], i),
+                lane(w[8], i),
+            ),
+            law,
+            laws,
+            run + i,
+            (
+                lane(before[0], i),
+                lane_of_pair(before[1], i),
+                lane_of_pair(before[2], i),
+                lane(before[3], i),
+                lane(before[4], i),
+                lane_of_pair(before[5], i),
+            ),
+            lane(let_go, i),
+            step,
+        )
+        normal, first, second = with_lane(normal, i, one[0]), with_lane(first, i, one[1]), with_lane(second, i, one[2])
+        new, jammed = with_lane(new, i, one[3]), with_lane(jammed, i, one[4])
+    return normal, first, second, new, jammed
+
+
+@overload(solve_in_space)
+def _overload_solve_in_space(gap, slips, strays, w, law, laws, run, before, let_go, step):
+    chosen = solve_runs_in_space if gap is VECTOR else solve_one_in_space
+
+    def implementation(gap, slips, strays, w, law, laws, run, before, let_go, step):
+        return chosen(gap, slips, strays, w, law, laws, run, before, let_go, step)
+
+    return implementation
+
+
+@numba.njit(**OPTIONS)
+def carried_in_space(carried, i, run, zero):
+    """Return status, slips of the last two steps, internal state and forces of a contact in space."""
+    first, second = carried_by(carried, i, run, zero), carried_by(carried, i + 1, run, zero)
+    return first[0], (first[1], second[1]), (first[2], second[2]), first[3], first[4], (first[5], second[5])
+
+
+@numba.njit(**PASTED)
+def forces_in_space(contacts, carried, i, run, runs, let_go, step, zero):
+    """Return normal force, both tangential forces, status and whether it is jammed of a contact in space."""
+    faces, now = contacts.faces, contacts.now
+    w = whole_compliance(faces, i, run, zero)
+    here = i * at.IN_STEP
+    normal = held(now, here + at.NORMAL_NOW, run, zero)
+    first = held(now, here + at.TANGENTIAL_NOW, run, zero)
+    second = held(now, here + at.IN_STEP + at.TANGENTIAL_NOW, run, zero)
+    gap = entry(faces, 2 * i, DISPLACEMENT, run, zero) - (w[0] * normal - w[1] * first - w[2] * second)
+    slip = entry(faces, 2 * i + 1, DISPLACEMENT, run, zero) - (w[3] * normal - w[4] * first - w[5] * second)
+    swerve = entry(faces, 2 * i + 3, DISPLACEMENT, run, zero) - (w[6] * normal - w[7] * first - w[8] * second)
+    strays = strayed(carried, i, run, zero), strayed(carried, i + 1, run, zero)
+    before = carried_in_space(carried, i, run, zero)
+    law, number = contacts.codes[i], i * runs + run
+    return solve_in_space(gap, (slip, swerve), strays, w, law, contacts.laws, number, before, let_go, step)
+
+
+@numba.njit(**OPTIONS)
+def put_second(contacts, sizes, i, run, goes_on, normal, second, status, zero):
+    """Keep and apply the force along the second tangent of contact `i`; return by how much it changed."""
+    now, here = contacts.now, (i + 1) * at.IN_STEP
+    was = held(now, here + at.TANGENTIAL_NOW, run, zero)
+    second = choose(goes_on, second, was)
+    hold(now, here + at.TANGENTIAL_NOW, run, second)
+    # The pair without a normal has the force and the status of its contact, so that it is carried and shared as that.
+    hold(now, here + at.NORMAL_NOW, run, normal)
+    hold(now, here + at.STATUS_NOW, run, status)
+    displace(contacts.faces, sizes.faces, i + 1, run, zero, second - was)
+    return second - was
+
+
+def direction(force, last):
+    """Return the direction of a force along both tangents, of the last one where there is none."""
+    return direction_of_one(force, last)
+
+
+@numba.njit(**STRICT)
+def direction_of_one(force, last):
+    """Do `direction` for one run."""
+    first, second = force if force[0] != 0.0 or force[1] != 0.0 else last
+    size = math.hypot(first, second)
+    return (first / size, second / size) if size > 0.0 else (1.0, 0.0)
+
+
+@numba.njit(**STRICT)
+def direction_of_runs(force, last):
+    """Do `direction` for vectors of runs."""
+    first, second = spread(0.0), spread(0.0)
+    for i in range(LANES):
+        one = direction_of_one(lane_of_pair(force, i), lane_of_pair(last, i))
+        first, second = with_lane(first, i, one[0]), with_lane(second, i, one[1])
+    return first, second
+
+
+@overload(direction)
+def _overload_direction(force, last):
+    chosen = direction_of_runs if force[0] is VECTOR else direction_of_one
+
+    def implementation(force, last):
+        return chosen(force, last)
+
+    return implementation
+
+
+@numba.njit(**OPTIONS)
+def pair_of(array, row, further, run, zero):
+    """Return what a contact in space has along both tangents."""
+    return held(array, row, run, zero), held(array, row + further, run, zero)
+
+
+@numba.njit(**OPTIONS)
+def on(pair, c, s):
+    """Return what a contact in space has along the direction (c, s)."""
+    return c * pair[0] + s * pair[1]
+
+
+@numba.njit(**OPTIONS)
+def free_in_space(contacts, sizes, run, zero):
+    """Put the displacements without the own forces of each contact in space, where those of one tangent have been."""
+    now, faces = contacts.now, contacts.faces
+    for i in range(sizes.contacts):
+        if is_second(contacts.codes, i + 1):
+            here = i * at.IN_STEP
+            w = whole_compliance(faces, i, run, zero)
+            normal = held(now, here + at.NORMAL_NOW, run, zero)
+            first, second = pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, run, zero)
+            gap, slip = held(now, here + at.NEW_GAP, run, zero), held(now, here + at.NEW_SLIP, run, zero)
+            swerve = held(now, here + at.IN_STEP + at.NEW_SLIP, run, zero)
+            hold(now, here + at.FREE_GAP, run, gap - w[0] * normal + w[1] * first + w[2] * second)
+            hold(now, here + at.FREE_SLIP, run, slip - w[3] * normal + w[4] * first + w[5] * second)
+            swerve = swerve - w[6] * normal + w[7] * first + w[8] * second
+            hold(now, here + at.IN_STEP + at.FREE_SLIP, run, swerve)
+
+
+@numba.njit(**OPTIONS)
+def keep_second_anchor(i, status, was, carried, run, zero):
+    """Carry where a stick of contact `i` is anchored along its second tangent."""
+    base = (i + 1) * at.CARRIED
+    stuck, sticks = magnitude(was - STICKING) < 0.5, magnitude(status - STICKING) < 0.5
+    anchor = held(carried, base + at.ANCHOR, run, zero)
+    begun = choose(stuck, anchor, held(carried, base + at.MATERIAL, run, zero))
+    hold(carried, base + at.ANCHOR, run, choose(sticks, begun, anchor))
