@@ -31,6 +31,7 @@ verify: .venv/installed
 
 peers: .venv/installed
 	$(BIN)/python benchmarks/against_siconos.py
+	$(BIN)/python benchmarks/cones.py
 
 lint: .venv/installed-dev
 	$(BIN)/ruff format --check .

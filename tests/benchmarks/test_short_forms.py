@@ -17,7 +17,7 @@ BENCHMARKS = sorted(
     path for path in FOLDER.glob("*.py") if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
 )
 # Siconos runs under a Python of its own, which has not got the package; the suite is all of its sections once more.
-APART = ("siconos_march.py", "suite.py")
+APART = ("siconos_march.py", "siconos_cones.py", "suite.py")
 
 
 def short(path: Path, **environment: str) -> subprocess.CompletedProcess[str]:
