@@ -119,6 +119,15 @@ def make(section=None, drives=lambda slider, track: [], **slider_fields):
     return st.System(contact, drives(slider, track))
 
 
+def test_a_string_survives_provenance(tmp_path):
+    system = make()
+    string = dataclasses.replace(system.track, tension=250.0)
+    stretched = st.System(dataclasses.replace(system.contacts[0], track=string))
+    again = reloaded(stretched, (), tmp_path)
+    assert again.system == stretched
+    assert again.system.track.tension == 250.0
+
+
 HISTORIES = [
     st.Constant(),
     st.Ramp(0.1),
