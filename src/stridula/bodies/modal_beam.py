@@ -48,7 +48,7 @@ class ModalBeam:
     name : str, optional
         What it is called in records; tells equal bodies apart.
     tension : float, optional
-        Tension [N], constant; it stiffens bending and leaves the axial modes as they are.
+        Tension [N]; constant, it stiffens bending and leaves the axial modes as they are.
 
     Raises
     ------
@@ -162,6 +162,19 @@ class ModalBeam:
         """Return the line along which others slide: its axis."""
         bending, axial = (along_one_angle(np.arange(1, count + 1), self.amplitude) for count in self.harmonics)
         return Path(self.ends, np.array([np.pi / self.length, 0.0]), np.zeros(2), bending, axial)
+
+    def support_force(self, end: str) -> Array:
+        """Return the rows that give the force along y on the support of an end from the modes, shape (modes,).
+
+        ``T w' - EI w'''`` at the left end, its opposite at the right end. Of a mode that is ``w_k²`` times its inertia
+        about the other end, ``rho S L / k pi`` of its amplitude.
+        """
+        numbers = np.arange(1, self.harmonics[0] + 1)
+        inertia = self._line_density * self.length / (numbers * np.pi)
+        upwards = np.where((end == "left") | (numbers % 2 == 1), 1.0, -1.0)
+        rows = np.zeros(sum(self.harmonics))
+        rows[: numbers.size] = upwards * self.amplitude * inertia * self._bending(numbers) ** 2
+        return rows
 
     @property
     def _line_density(self) -> float:
