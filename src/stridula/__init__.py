@@ -42,7 +42,7 @@ _HOME = {
     "drives": ("Force", "Gravity", "ImposedVelocity", "InitialEquilibrium", "InitialState", "InitialVelocity"),
     "histories": ("Constant", "Harmonic", "Ramp", "Sampled"),
     "system": ("System",),
-    "records": ("Acceleration", "Displacement", "Reaction", "Velocity"),
+    "records": ("Acceleration", "Displacement", "Reaction", "SupportForce", "Velocity"),
     "records.files": ("load", "save"),
     "records.export": ("export",),
     "records.plain": ("PlainRecord",),

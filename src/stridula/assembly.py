@@ -17,7 +17,7 @@ from .checks import ArgumentError, brief
 from .connections import ends, unit
 from .contact import PointContact
 from .histories import Constant, History
-from .records.probes import Acceleration, Displacement, Probe, Reaction, Velocity
+from .records.probes import Acceleration, Displacement, Probe, Reaction, SupportForce, Velocity
 from .system import System
 
 Signal = Callable[[Array, float], Array]
@@ -573,13 +573,16 @@ def _probe(probe: Probe, layout: _Layout, loads: list[_Load]) -> ProbeRows:
     direct, contact = np.zeros(len(loads) + 3), np.zeros((sum(map(_pairs, system.contacts)), 2))
     if isinstance(probe, Reaction):
         return _reaction_rows(probe, layout, loads, direct, contact)
-    if probe.point.body not in system.bodies:
-        raise ArgumentError("probe", "be on a body of this system", probe, got=f"one on {brief(probe.point.body)}")
+    if probe.body not in system.bodies:
+        raise ArgumentError("probe", "be on a body of this system", probe, got=f"one on {brief(probe.body)}")
+    matrix = np.zeros((3, layout.size))
+    if isinstance(probe, SupportForce):
+        matrix[0] = layout.blended(layout.full(probe.body, probe.body.support_force(probe.end)))
+        return ProbeRows(matrix, direct, contact)
     kind = (Displacement, Velocity, Acceleration).index(type(probe))
     along, across = probe.point.body.axes[:2]
     world = dict(zip("xyz", np.eye(3), strict=True))
     axis = np.pad({"axial": along, "transverse": across, **world}[probe.direction], (0, 3))[:3]
-    matrix = np.zeros((3, layout.size))
     matrix[kind] = axis @ layout.trace(probe.point)
     if system.is_held(probe.point.body):
         direct[len(loads) + kind] = axis[0]

@@ -238,6 +238,45 @@ def test_modal_beam_has_the_closed_forms():
     np.testing.assert_allclose(carried, 1 - 4 / (np.pi**2 * 200), atol=1e-5)
 
 
+def test_a_string_has_the_closed_form_of_fletcher():
+    """``f_k = k f sqrt(1 + B k²)`` with ``f = sqrt(T / rho S) / 2L`` and ``B = pi² EI / T L²`` (Fletcher 1964)."""
+    tension, numbers = 700.0, np.arange(1, 41)
+    wire = st.Circle(0.001)
+    string = st.ModalBeam(STEEL, wire, 0.65, bending_modes=40, axial_modes=2, tension=tension)
+    ideal = np.sqrt(tension / (STEEL.density * wire.area)) / (2 * 0.65)
+    stiffness = np.pi**2 * STEEL.young * wire.second_moment / (tension * 0.65**2)
+    frequency = string.modes().frequency
+    np.testing.assert_allclose(frequency[:40], numbers * ideal * np.sqrt(1 + stiffness * numbers**2), rtol=1e-13)
+    np.testing.assert_allclose(frequency[40:], rod_form(np.array([1, 2]), 0.65), rtol=1e-14)
+
+
+def test_no_tension_is_no_tension_to_the_last_bit():
+    """The frequencies are ``(k pi/L)² sqrt(EI / rho S)`` exactly, and a cutoff counts as it did."""
+    rigidity, line = STEEL.young * SQUARE.second_moment, STEEL.density * SQUARE.area
+    numbers = np.arange(1, 51)
+    known = (numbers * np.pi / 0.3) ** 2 * np.sqrt(rigidity / line)
+    bar = st.ModalBeam(STEEL, SQUARE, 0.3, bending_modes=50, axial_modes=0, tension=0.0)
+    np.testing.assert_array_equal(bar.modes().angular_frequency, known)
+    for cutoff in np.geomspace(300.0, 1e6, 200):
+        counted = st.ModalBeam(STEEL, SQUARE, 0.3, cutoff=float(cutoff)).harmonics[0]
+        assert counted == int(np.sqrt(2 * np.pi * cutoff * (1 + 1e-12) / known[0]))
+
+
+def test_a_string_gives_way_as_its_statics_say():
+    """A stretched wire under a force at a point is two straight lines: compliance ``a (L - a) / T L``.
+
+    Stiffness has a share of the order of ``sqrt(EI / T) / L``, 1e-4 of it here; the tail of 4000 modes is at most
+    ``2 L / (pi² T 4000)``, 2.5e-4 of it.
+    """
+    wire, tension, a = st.Section(1e-6, 1e-17), 700.0, 0.2
+    string = st.ModalBeam(STEEL, wire, 0.65, bending_modes=4000, axial_modes=0, tension=tension)
+    row, modes = string.trace(a)[1], string.modes()
+    found = float(np.sum((row / modes.angular_frequency) ** 2))
+    known = a * (0.65 - a) / (tension * 0.65)
+    tail = 2 * 0.65 / (np.pi**2 * tension * 4000)
+    assert -tail - np.sqrt(STEEL.young * wire.second_moment / tension) / tension < found - known < 0.0
+
+
 def test_modal_beam_is_the_limit_of_finite_elements():
     """A pinned beam of 24 elements against the modal one: frequencies, and the static compliance at a point."""
     bar = st.ModalBeam(STEEL, SQUARE, 0.3, bending_modes=60, axial_modes=60)

@@ -9,6 +9,7 @@ import pytest
 
 import stridula as st
 from stridula.bodies.finite_elements import element_mass
+from stridula.checks import at_least
 
 STEEL = st.Material(2.1e11, 7800.0)
 STRIP = st.Rectangle(0.020, 0.004)
@@ -94,6 +95,7 @@ MAKERS = {
     "ModalBeam.axial_modes": (lambda v: bar(axial_modes=v), "axial_modes", [-1, 1.0, NAN, True, "4", None]),
     "ModalBeam.damping": (lambda v: bar(damping=v), "damping", [NAN, INF, -0.01, 1.0, 2.0, True, "0", None]),
     "ModalBeam.cutoff": (lambda v: bar(cutoff=v), "cutoff", [*(v for v in POSITIVE if v is not None), 1.0]),
+    "ModalBeam.tension": (lambda v: bar(tension=v), "tension", [NAN, INF, -1e-9, True, "700 N", None]),
     "ModalBeam.at": (lambda v: bar().at(v), "position", [NAN, INF, -1e-9, 0.8001, True, "centre", None]),
     "ModalBeam.trace": (lambda v: bar().trace(v), "position", [NAN, INF, -1e-9, 0.8001, True, "centre", None]),
     "BodyPoint.position": (lambda v: st.BodyPoint(beam(), v), "position", [NAN, INF, -1e-9, 0.5001, True, "tip", None]),
@@ -200,6 +202,23 @@ def test_a_cutoff_of_a_modal_beam_keeps_the_modes_up_to_it():
     assert cut.harmonics == tuple(np.sum(np.array(f) <= 9e3) for f in np.split(whole.modes().frequency, [60]))
     exactly = bar(cutoff=float(whole.modes().frequency[3]))
     assert exactly.harmonics[0] == 4
+
+
+@pytest.mark.parametrize("tension", [1e-3, 10.0, 1e3, 1e6])
+def test_a_cutoff_of_a_string_keeps_the_modes_up_to_it(tension):
+    """From a hardly stretched beam to a string that is hardly stiff."""
+    whole = bar(bending_modes=300, axial_modes=30, tension=tension)
+    cut = bar(cutoff=9e3, tension=tension)
+    assert cut.harmonics == tuple(np.sum(np.array(f) <= 9e3) for f in np.split(whole.modes().frequency, [300]))
+    exactly = bar(cutoff=float(whole.modes().frequency[3]), tension=tension)
+    assert exactly.harmonics[0] == 4
+
+
+def test_a_cutoff_below_the_first_mode_of_a_string_names_its_frequency():
+    first = float(bar(tension=1e5).modes().frequency[0])
+    words = rf"^cutoff must leave at least one bending mode \(first at {at_least(first)} Hz\)"
+    with pytest.raises(ValueError, match=words):
+        bar(tension=1e5, cutoff=0.99 * first)
 
 
 def test_modal_beam_cannot_be_held():

@@ -40,6 +40,18 @@ def test_bad_reactions():
             st.Reaction(ROD, value)
 
 
+def test_bad_support_forces():
+    for value in (None, ROD, BAR.centre, "track"):
+        with pytest.raises(ValueError, match=r"^body must be a ModalBeam"):
+            st.SupportForce(value)
+    for value in (None, "tip", 0):
+        with pytest.raises(ValueError, match=r"^end must be one of left, right"):
+            st.SupportForce(BAR, value)
+    other = st.SupportForce(track(length=0.7))
+    with pytest.raises(ValueError, match=r"^probe must be on a body of this system, got one on a ModalBeam$"):
+        st.simulate(pair(lambda _: [], 0.5, rod=ROD, bar=BAR), 1e-3, probes=[other])
+
+
 def test_labels_tell_probes_apart():
     probes = [
         st.Displacement(ROD.tip),
@@ -48,6 +60,7 @@ def test_labels_tell_probes_apart():
         st.Displacement(BAR.centre),
         st.Displacement(BAR.at(0.123), "x"),
         st.Reaction(ROD, "x"),
+        st.SupportForce(BAR, "right"),
     ]
     labels = [probe_label(probe, pair(lambda _: [], 0.5, rod=ROD, bar=BAR)) for probe in probes]
     assert labels == [
@@ -57,6 +70,7 @@ def test_labels_tell_probes_apart():
         "track centre y",
         "track 0.123 m x",
         "slider root x",
+        "track right end",
     ]
 
 

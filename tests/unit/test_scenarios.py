@@ -119,6 +119,17 @@ def make(section=None, drives=lambda slider, track: [], **slider_fields):
     return st.System(contact, drives(slider, track))
 
 
+def test_a_string_survives_provenance(tmp_path):
+    system = make()
+    string = dataclasses.replace(system.track, tension=250.0)
+    stretched = st.System(dataclasses.replace(system.contacts[0], track=string))
+    probes = (st.SupportForce(string), st.SupportForce(string, "right"))
+    again = reloaded(stretched, probes, tmp_path)
+    assert again.probes == probes
+    assert again.system == stretched
+    assert again.system.track.tension == 250.0
+
+
 HISTORIES = [
     st.Constant(),
     st.Ramp(0.1),
@@ -406,7 +417,8 @@ def test_every_problem_of_a_file_is_told(tmp_path):
         "did you mean 'force'?",
         "drives.1.axial must be a number in N, mN or kN, got 'x {y}'",
         "material.young must be above 0, got -1",
-        "simulation.probes.0.quantity must be one of displacement, velocity, acceleration, reaction, got 'speed'",
+        "simulation.probes.0.quantity must be one of displacement, velocity, acceleration, reaction, support_force, "
+        "got 'speed'",
         "slider.angle must be finite, got nan",
         "slider.lenght must be one of the known keys material, section, length, angle, elements, damping, "
         "root_support, tip_support, mass, cutoff, name, got lenght = 3; did you mean 'length'?",

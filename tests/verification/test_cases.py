@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula.verification import falling, impacts, instabilities, jams, laws, orders, plates, sliders, stability
+from stridula.verification import (
+    falling,
+    impacts,
+    instabilities,
+    jams,
+    laws,
+    orders,
+    plates,
+    sliders,
+    stability,
+    strings,
+)
 from stridula.verification.case import schemes
 from stridula.verification.cases import CASES
 
@@ -129,6 +140,41 @@ def test_the_wrong_law_of_evolution_falls_short(monkeypatch):
     stepped = laws._stepped
     monkeypatch.setattr(laws, "_stepped", lambda word, *rest: stepped("slip" if word == "aging" else "aging", *rest))
     assert {"aging law: coefficient after D", "slip law: coefficient after D"} <= missed(laws.age_steps())
+
+
+def test_a_tighter_string_falls_short(monkeypatch):
+    """Negative control: a millionth more tension is half a millionth of each frequency."""
+    tighter = 1.000001 * strings.TENSION
+    real = strings.ModalBeam
+    monkeypatch.setattr(strings, "ModalBeam", lambda *words, **keys: real(*words, **keys | {"tension": tighter}))
+    assert {f"partial {k}" for k in (1, 2, 4, 8, 16, 40)} <= missed(strings.frequencies())
+
+
+def test_supports_that_are_changed_for_each_other_fall_short(monkeypatch):
+    real, other = strings.SupportForce, {"left": "right", "right": "left"}
+    monkeypatch.setattr(strings, "SupportForce", lambda string, end="left": real(string, other[end]))
+    assert {f"force at {place} of the length, {end}" for place in (0.1, 0.25) for end in other} <= missed(
+        strings.supports()
+    )
+
+
+@pytest.mark.parametrize("push", [3.0, "half the least"])
+def test_a_bow_beyond_schellengs_limits_makes_no_helmholtz_motion(push):
+    """Negative control: pressed too hard or too little, the string slips otherwise than once a period."""
+    case = strings.Bowed(0.1, 1.0)
+    case = replace(case, push=0.5 * case.least / case.most if isinstance(push, str) else push)
+    short = {row.quantity for row in strings.motion(case, case.run(), "bow") if not row.holds}
+    assert "bow: slips a period" in short
+
+
+def test_a_string_out_of_tune_falls_short(monkeypatch):
+    """Negative control: a period 2 % shorter, where the corner of Helmholtz motion takes 0.9 % to pass."""
+    case = strings.Bowed(0.2, 0.3)
+    string = case.string
+    sharp = replace(string, tension=1.04 * string.tension)
+    monkeypatch.setattr(strings.Bowed, "string", property(lambda self: sharp))
+    short = {row.quantity for row in strings.motion(case, case.run(), "bow") if not row.holds}
+    assert "bow: period" in short
 
 
 class LazyStart(st.CentralDifference):

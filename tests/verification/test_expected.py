@@ -7,7 +7,7 @@ from math import atan, pi, radians
 import numpy as np
 import pytest
 
-from stridula.verification import frequencies, impacts, instabilities, jams, laws, sliders, stability
+from stridula.verification import frequencies, impacts, instabilities, jams, laws, sliders, stability, strings
 
 
 def test_sdnd100():
@@ -131,3 +131,24 @@ def test_frequencies():
     np.testing.assert_allclose(
         frequencies.guided_free_roots(4), [2.3650204, 5.4978039, 8.6393798, 11.7809725], atol=5e-8
     )
+
+
+def test_schellengs_least_force_is_the_swing_that_the_losses_ask_for():
+    """Each mode of Helmholtz motion takes ``2 s rho S L v / (beta k pi)²`` for a bow near the bridge, in phase.
+
+    From ``q'' + 2 s q' + w² q = phi f`` in resonance, with the rectangles of the velocity under the bow; the cosines
+    add up to a parabola that swings by ``pi² / 4`` times the first, and friction can swing by ``dmu F``.
+    """
+    case = strings.Bowed(0.01, 0.3)
+    mass = case.string.total_mass
+    numbers = np.arange(1, 200_001)
+    forces = 2 * case.decay * mass * case.speed / (case.place * numbers * pi) ** 2
+    swing = forces.sum() - (forces * (-1.0) ** numbers).sum()
+    assert swing == pytest.approx(case.contrast * case.least, rel=1e-5)
+
+
+def test_the_string_of_the_bow_has_its_period_and_impedance():
+    case = strings.Bowed(0.1, 0.3)
+    string = case.string
+    assert string.modes().frequency[0] == pytest.approx(196.0 * np.sqrt(1 + case.inharmonicity), rel=1e-12)
+    assert np.sqrt(string.tension * string.total_mass / string.length) == pytest.approx(case.impedance, rel=1e-12)

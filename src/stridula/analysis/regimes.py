@@ -149,7 +149,8 @@ def signals_of(run: xr.Dataset | PlainRecord) -> Signals:
     return Signals(
         interval=float((time[-1] - time[0]) / (time.size - 1)),
         share=held["status_share"],
-        forces=np.stack([held["normal_force"], held["tangential_force"]]),
+        # In space one row for each tangent.
+        forces=np.vstack([held["normal_force"], held["tangential_force"].T]),
         landings=held.variables.get("landings"),
         lost=held["damping_loss"] + held["impact_loss"],
         rubbed=held["friction_loss"],

@@ -1,4 +1,4 @@
-"""A beam given by its exact modes: simply supported in bending, clamped in traction."""
+"""A beam or a string given by its exact modes: simply supported in bending, clamped in traction."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from ..checks import ArgumentError, at_least, instance, within
-from ..declared import Count, CountFrom0, Frequency, Length, Name, Own, check_declared
+from ..declared import Count, CountFrom0, Frequency, Length, Name, Own, Tension, check_declared
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .modes import Array, BodyPoint, Modes, hashed_once
 from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
@@ -21,11 +21,12 @@ from .sections import Circle, Material, Rectangle, Section
 @hashed_once
 @dataclass(frozen=True)
 class ModalBeam:
-    """A straight beam along world x in its exact modes ``sin(k pi x / L)``, bending ones first, then axial ones.
+    """A straight beam or string along world x in its exact modes ``sin(k pi x / L)``, bending first, then axial ones.
 
     Euler-Bernoulli, simply supported in bending: ``w_k = (k pi/L)² sqrt(EI / rho S)``; clamped in traction:
     ``w_k = (k pi/L) sqrt(E / rho)``; modal mass ``rho S L / 2``. Displacements: u along x, w along y, towards the
-    slider.
+    slider. Under a tension T it is a stiff string: bending has ``w_k² = (k pi/L)⁴ EI / rho S + (k pi/L)² T / rho S``
+    (Fletcher 1964, Journal of the Acoustical Society of America 36).
 
     Parameters
     ----------
@@ -46,6 +47,8 @@ class ModalBeam:
         Keep the modes up to this frequency [Hz]; instead of the counts above.
     name : str, optional
         What it is called in records; tells equal bodies apart.
+    tension : float, optional
+        Tension [N]; constant, it stiffens bending and leaves the axial modes as they are.
 
     Raises
     ------
@@ -66,6 +69,7 @@ class ModalBeam:
     damping: Annotated[float | Sequence[float] | DampingLaw, Own("damping")] = 0.0
     cutoff: Frequency | None = None
     name: Name = ""
+    tension: Tension = 0.0
 
     @of_ordinary_size("material, section and length")
     def __post_init__(self) -> None:
@@ -135,7 +139,10 @@ class ModalBeam:
         if self.cutoff is None:
             return self.bending_modes, self.axial_modes
         highest = 2.0 * np.pi * self.cutoff * (1.0 + 1e-12)
-        return int(np.sqrt(highest / self._bending(1))), int(highest / self._axial(1))
+        # The root k of w_k = highest in a form without cancellation, whatever the tension.
+        stiff, stretched = self._of_stiffness(1), self._of_tension(1)
+        half = 0.5 * stretched / stiff * (stretched / highest)
+        return int(np.sqrt(highest / stiff / (half + np.hypot(1.0, half)))), int(highest / self._axial(1))
 
     def modes(self, held_x: bool = False) -> Modes:
         """Return the modes, bending ones first; `held_x` is for bodies whose root is driven and must be false."""
@@ -157,10 +164,33 @@ class ModalBeam:
         bending, axial = (along_one_angle(np.arange(1, count + 1), self.amplitude) for count in self.harmonics)
         return Path(self.ends, np.array([np.pi / self.length, 0.0]), np.zeros(2), bending, axial)
 
+    def support_force(self, end: str) -> Array:
+        """Return the rows that give the force along y on the support of an end from the modes, shape (modes,).
+
+        ``T w' - EI w'''`` at the left end, its opposite at the right end. Of a mode that is ``w_k²`` times its inertia
+        about the other end, ``rho S L / k pi`` of its amplitude.
+        """
+        numbers = np.arange(1, self.harmonics[0] + 1)
+        inertia = self._line_density * self.length / (numbers * np.pi)
+        upwards = np.where((end == "left") | (numbers % 2 == 1), 1.0, -1.0)
+        rows = np.zeros(sum(self.harmonics))
+        rows[: numbers.size] = upwards * self.amplitude * inertia * self._bending(numbers) ** 2
+        return rows
+
+    @property
+    def _line_density(self) -> float:
+        return self.material.density * self.section.area
+
     def _bending(self, harmonic: int | Array) -> Array:
+        # Without a tension it is that of stiffness to the last bit.
+        return np.asarray(np.hypot(self._of_stiffness(harmonic), self._of_tension(harmonic)))
+
+    def _of_stiffness(self, harmonic: int | Array) -> Array:
         rigidity = self.material.young * self.section.second_moment
-        line_density = self.material.density * self.section.area
-        return np.asarray((harmonic * np.pi / self.length) ** 2 * np.sqrt(rigidity / line_density))
+        return np.asarray((harmonic * np.pi / self.length) ** 2 * np.sqrt(rigidity / self._line_density))
+
+    def _of_tension(self, harmonic: int | Array) -> Array:
+        return np.asarray(harmonic * np.pi / self.length * np.sqrt(self.tension / self._line_density))
 
     def _axial(self, harmonic: int | Array) -> Array:
         return np.asarray(harmonic * np.pi / self.length * np.sqrt(self.material.young / self.material.density))

@@ -75,7 +75,7 @@ def _closing(modes: xr.Dataset, given: bool) -> list[str]:
     lines = []
     for name in [str(word) for word in modes["contact"].values] if several else ["contact"]:
         one = modes.sel(contact=name) if several else modes
-        forces = [f"{float(one[word]):.4g} N {word.partition('_')[0]}" for word in ("normal_force", "tangential_force")]
+        forces = [f"{_size(one[word]):.4g} N {word.partition('_')[0]}" for word in ("normal_force", "tangential_force")]
         lines.append(f"{name}: {one['status'].item()}, {', '.join(forces)}{_motion(one)}")
     grows, kind = int(modes["unstable"].sum()), KINDS[modes.attrs["equilibrium"]]
     if modes.attrs["equilibrium"] == "jammed" and not modes.sizes["mode"]:
@@ -85,8 +85,13 @@ def _closing(modes: xr.Dataset, given: bool) -> list[str]:
     return [*lines, f"Equilibrium: {kind}; {growing} (of {modes.sizes['mode']}){about}."]
 
 
+def _size(component: xr.DataArray) -> float:
+    """Return a number, or in space the size of its components along both tangents."""
+    return float(component) if component.ndim == 0 else float(np.hypot(*component.values))
+
+
 def _motion(one: xr.Dataset) -> str:
-    slip, acceleration = float(one["slip_velocity"]), float(one["slip_acceleration"])
+    slip, acceleration = _size(one["slip_velocity"]), _size(one["slip_acceleration"])
     if np.isfinite(slip) and slip:
         return f", slip {slip:.4g} m/s"
     return f", slip accelerates by {acceleration:.4g} m/s²" if acceleration else ""

@@ -9,9 +9,8 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from ..bodies import BodyPoint
 from ..system import System
-from .probes import Probe, Reaction
+from .probes import Probe
 from .state import State
 from .variables import (
     CONTACT,
@@ -67,7 +66,7 @@ def to_dataset(
     if system.has_two_tangents:
         coordinates["tangent"] = ("tangent", list(TANGENTS))
     for kind, variable in PROBES.items():
-        chosen = [k for k, probe in enumerate(probes) if type(probe).__name__.lower() == kind]
+        chosen = [k for k, probe in enumerate(probes) if probe.quantity == kind]
         if chosen:
             dimension = f"{kind}_probe"
             coordinates[dimension] = (dimension, [probe_label(probes[k], system) for k in chosen])
@@ -146,14 +145,4 @@ def _attributes(name: str, system: System) -> dict[str, Any]:
 
 def probe_label(probe: Probe, system: System) -> str:
     """Return the label of a probe: body, place and direction."""
-    if isinstance(probe, Reaction):
-        return f"{system.body_name(probe.body)} root {probe.component}"
-    return f"{system.body_name(probe.point.body)} {_place(probe.point)} {probe.direction}"
-
-
-def _place(point: BodyPoint) -> str:
-    if point.point_name is not None:
-        return point.point_name
-    if isinstance(point.position, tuple):
-        return f"({point.position[0]:.6g}, {point.position[1]:.6g}) m"
-    return f"{point.position:.6g} m"
+    return f"{system.body_name(probe.body)} {probe.place}"

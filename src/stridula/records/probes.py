@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
-from ..bodies import BodyPoint, FiniteElementBeam
+from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam
+from ..bodies.modes import Body
 from ..checks import ArgumentError, choice, instance
 
 DIRECTIONS = ("x", "y", "z", "axial", "transverse")
@@ -12,6 +14,8 @@ DIRECTIONS = ("x", "y", "z", "axial", "transverse")
 
 @dataclass(frozen=True)
 class _Motion:
+    quantity: ClassVar[str]
+    of_slider: ClassVar[bool] = False
     point: BodyPoint
     direction: str = "y"
 
@@ -20,6 +24,22 @@ class _Motion:
         choice("direction", self.direction, DIRECTIONS)
         if self.direction == "z" and not self.point.body.is_spatial:
             raise ArgumentError("direction", "be another than z on a body in the plane", self.direction)
+
+    @property
+    def body(self) -> Body:
+        """The body that it is on."""
+        return self.point.body
+
+    @property
+    def place(self) -> str:
+        """Where it is on its body and along what, in words."""
+        return f"{_words(self.point)} {self.direction}"
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """What a scenario says of it, beside quantity and body."""
+        place = self.point.position if self.point.point_name is None else self.point.point_name
+        return {"point": place, "direction": self.direction}
 
 
 class Displacement(_Motion):
@@ -33,6 +53,8 @@ class Displacement(_Motion):
         World direction, or along or across the body's own axis.
     """
 
+    quantity = "displacement"
+
 
 class Velocity(_Motion):
     """Velocity of a point of a body along a direction [m/s], centred difference over two steps.
@@ -45,6 +67,8 @@ class Velocity(_Motion):
         World direction, or along or across the body's own axis.
     """
 
+    quantity = "velocity"
+
 
 class Acceleration(_Motion):
     """Acceleration of a point of a body along a direction [m/s²], second difference over two steps.
@@ -56,6 +80,8 @@ class Acceleration(_Motion):
     direction : {"y", "x", "z", "axial", "transverse"}, optional
         World direction, or along or across the body's own axis.
     """
+
+    quantity = "acceleration"
 
 
 @dataclass(frozen=True)
@@ -73,6 +99,8 @@ class Reaction:
         Which one.
     """
 
+    quantity: ClassVar[str] = "reaction"
+    of_slider: ClassVar[bool] = True
     body: FiniteElementBeam
     component: str = "moment"
 
@@ -80,5 +108,62 @@ class Reaction:
         instance("body", self.body, FiniteElementBeam)
         choice("component", self.component, ("x", "y", "moment"))
 
+    @property
+    def place(self) -> str:
+        """Where it is on its body and along what, in words."""
+        return f"root {self.component}"
 
-Probe = Displacement | Velocity | Acceleration | Reaction
+    @property
+    def keys(self) -> dict[str, Any]:
+        """What a scenario says of it, beside the quantity."""
+        return {"direction": self.component}
+
+
+@dataclass(frozen=True)
+class SupportForce:
+    """Force along y that a modal beam exerts on the support of one of its ends [N]: the bridge force of a string.
+
+    With the tension T it is ``T w' - EI w'''`` at the left end and ``EI w''' - T w'`` at the right end, positive
+    towards +y: a beam that is pressed down pushes its supports down. It is the sum over the modes kept, without a share
+    of damping, which is internal. The sum converges slowly: under a constant force at a the n modes kept bring all of
+    it to the support but for a share of at most ``2 / (pi (n + 1) sin(pi a / 2L))`` of the force, a counted from that
+    support, and a contact that lands or breaks away rings through the highest mode. Keep modes well beyond what is
+    listened to.
+
+    Parameters
+    ----------
+    body : ModalBeam
+        The beam or string.
+    end : {"left", "right"}, optional
+        Which of its ends.
+    """
+
+    quantity: ClassVar[str] = "support_force"
+    of_slider: ClassVar[bool] = False
+    body: ModalBeam
+    end: str = "left"
+
+    def __post_init__(self) -> None:
+        instance("body", self.body, ModalBeam)
+        choice("end", self.end, ("left", "right"))
+
+    @property
+    def place(self) -> str:
+        """Where it is on its body, in words."""
+        return f"{self.end} end"
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """What a scenario says of it, beside quantity and body."""
+        return {"end": self.end}
+
+
+Probe = Displacement | Velocity | Acceleration | Reaction | SupportForce
+
+
+def _words(point: BodyPoint) -> str:
+    if point.point_name is not None:
+        return point.point_name
+    if isinstance(point.position, tuple):
+        return f"({point.position[0]:.6g}, {point.position[1]:.6g}) m"
+    return f"{point.position:.6g} m"

@@ -19,7 +19,7 @@ from ..drives import Drive
 from ..histories import Constant
 from ..system import System
 from .packed import LONGEST_LIST, packed
-from .probes import Probe, Reaction
+from .probes import Probe
 
 # A list as tomli_w writes it, one number on a line; texts are on one line each and never match.
 _LIST_OF_NUMBERS = re.compile(r"\[\n((?:\s*[-+.\dinfaeE]+,\n)+)\s*\]")
@@ -202,11 +202,5 @@ def _drive(drive: Drive, system: System) -> dict[str, Any]:
 
 
 def _probe(probe: Probe, system: System) -> dict[str, Any]:
-    if isinstance(probe, Reaction):
-        return {"quantity": "reaction", "direction": probe.component}
-    return {
-        "quantity": type(probe).__name__.lower(),
-        "body": system.body_name(probe.point.body),
-        "point": _point(probe.point),
-        "direction": probe.direction,
-    }
+    body = {} if probe.of_slider else {"body": system.body_name(probe.body)}
+    return {"quantity": probe.quantity, **body, **{key: _value(value) for key, value in probe.keys.items()}}

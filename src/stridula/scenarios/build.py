@@ -30,7 +30,7 @@ from ..contact import LAWS, PointContact, RigidTrack
 from ..disk import is_there
 from ..drives import Drive
 from ..integration import GaussSeidel
-from ..records import Acceleration, Displacement, Probe, Reaction, Velocity
+from ..records import Acceleration, Displacement, Probe, Reaction, SupportForce, Velocity
 from ..system import System
 from .errors import ScenarioError
 from .quantities import quantity
@@ -311,6 +311,8 @@ class Builder:
                 return Reaction(system.slider, table.get("direction", "moment"))
             name = table.get("body") or ("track" if "track" in self.bodies else "slider")
             body = self._named_body((*path, "body"), name)
+            if table["quantity"] == "support_force":
+                return SupportForce(body, table.get("end", "left"))
             point = self._point((*path, "point"), body, table.get("point"), "tip")
             return MOTIONS[table["quantity"]](point, table.get("direction", "y"))
 

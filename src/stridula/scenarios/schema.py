@@ -17,7 +17,7 @@ from .schema_drives import Drive
 
 class Motion(Table):
     quantity: Literal["displacement", "velocity", "acceleration"]
-    """displacement, velocity, acceleration or reaction"""
+    """displacement, velocity, acceleration, reaction or support_force"""
     body: str | None = None
     """body: slider, track or its name; the track if left out, the slider on a rigid track"""
     point: is_.Point | None = None
@@ -28,12 +28,21 @@ class Motion(Table):
 
 class Reaction(Table):
     quantity: Literal["reaction"]
-    """displacement, velocity, acceleration or reaction"""
+    """displacement, velocity, acceleration, reaction or support_force"""
     direction: Literal["x", "y", "moment"] = "moment"
     """x, y or moment"""
 
 
-Probe = Annotated[Motion | Reaction, Field(discriminator="quantity")]
+class SupportForce(Table):
+    quantity: Literal["support_force"]
+    """displacement, velocity, acceleration, reaction or support_force"""
+    body: str | None = None
+    """modal beam: track or its name; the track if left out, the slider on a rigid track"""
+    end: Literal["left", "right"] = "left"
+    """left or right"""
+
+
+Probe = Annotated[Motion | Reaction | SupportForce, Field(discriminator="quantity")]
 
 
 class ContactSolve(Table):

@@ -15,6 +15,7 @@ from . import (
     sensations,
     sliders,
     stability,
+    strings,
 )
 from .case import Case
 
@@ -28,6 +29,7 @@ CASES: tuple[Case, ...] = (
     *laws.CASES,
     *frequencies.CASES,
     *plates.CASES,
+    *strings.CASES,
     *orders.CASES,
     *radiation.CASES,
     *sensations.CASES,
