@@ -25,8 +25,8 @@ class Spring:
         The other end, of the same or another body; the ground if left out.
     stiffness : float
         Stiffness [N/m]; force per unit of relative displacement.
-    direction : {"x", "y", "z"}, optional
-        World direction along which it acts: x, y or, in space, z.
+    direction : {"x", "y", "z"} or sequence of float, optional
+        World direction along which it acts: x, y, z, or its three components, of any length.
     """
 
     first: BodyPoint
@@ -45,7 +45,7 @@ class Spring:
         return self.stiffness, 0.0
 
     def __str__(self) -> str:
-        return f"spring {self.stiffness:.4g} N/m along {self.direction}"
+        return f"spring {self.stiffness:.4g} N/m along {_along(self)}"
 
 
 @dataclass(frozen=True)
@@ -60,8 +60,8 @@ class Dashpot:
         The other end, of the same or another body; the ground if left out.
     coefficient : float
         Force per unit of relative velocity [N s/m].
-    direction : {"x", "y", "z"}, optional
-        World direction along which it acts: x, y or, in space, z.
+    direction : {"x", "y", "z"} or sequence of float, optional
+        World direction along which it acts: x, y, z, or its three components, of any length.
     """
 
     first: BodyPoint
@@ -80,7 +80,7 @@ class Dashpot:
         return 0.0, self.coefficient
 
     def __str__(self) -> str:
-        return f"dashpot {self.coefficient:.4g} N s/m along {self.direction}"
+        return f"dashpot {self.coefficient:.4g} N s/m along {_along(self)}"
 
 
 Connection = Spring | Dashpot
@@ -88,8 +88,18 @@ CONNECTIONS = (Spring, Dashpot)
 
 
 def unit(connection: Connection) -> Array:
-    """Return the world direction of a connection, shape (3,)."""
-    return np.eye(3)["xyz".index(connection.direction)]
+    """Return the world direction of a connection, a unit vector, shape (3,)."""
+    if isinstance(connection.direction, str):
+        return np.eye(3)["xyz".index(connection.direction)]
+    components = np.array(connection.direction)
+    return np.asarray(components / np.linalg.norm(components))
+
+
+def _along(connection: Connection) -> str:
+    """Return the direction of a connection in words."""
+    if isinstance(connection.direction, str):
+        return connection.direction
+    return f"({', '.join(f'{one:.3g}' for one in connection.direction)})"
 
 
 def ends(connection: Connection) -> tuple[BodyPoint, ...]:

@@ -8,7 +8,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Annotated, Any, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ClassVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -122,6 +122,22 @@ class NumberOrWord:
 
 
 @dataclass(frozen=True)
+class Way:
+    """A direction: a word for one of the world's axes, or its three components, of any length."""
+
+    words: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+
+    def check(self, name: str, value: Any) -> str | tuple[float, ...]:
+        """Return a word, or three components as a tuple, if it is a direction."""
+        if isinstance(value, str):
+            return choice(name, value, self.words)
+        found = Each(Number()).check(name, value)
+        if len(found) != 3 or not any(found):
+            raise ArgumentError(name, "be x, y, z or three numbers, not all zero", value)
+        return found
+
+
+@dataclass(frozen=True)
 class Whole:
     """A whole number.
 
@@ -165,9 +181,9 @@ class Own:
         return value
 
 
-Kind = Number | Choice | Each | OneOrEach | NumberOrWord | Whole | Text | Own
+Kind = Number | Choice | Each | OneOrEach | NumberOrWord | Way | Whole | Text | Own
 # What is kept as it was checked: sequences as tuples, numbers of NumPy as Python's.
-_KEPT = (Each, OneOrEach, NumberOrWord)
+_KEPT = (Each, OneOrEach, NumberOrWord, Way)
 
 
 @dataclass(frozen=True)
@@ -178,7 +194,7 @@ class Declared:
     ----------
     name : str
         Its name.
-    kind : Number, Choice, Each, OneOrEach, NumberOrWord, Whole, Text or Own
+    kind : Number, Choice, Each, OneOrEach, NumberOrWord, Way, Whole, Text or Own
         What it may be.
     is_optional : bool
         Whether it may be None, too.
@@ -260,7 +276,7 @@ Newtons = Annotated[float, Number("N")]
 Tension = Annotated[float, Number("N", least=0.0)]
 Velocity = Annotated[float, Number("m/s")]
 Acceleration = Annotated[float, Number("m/s2")]
-Axis = Annotated[str, Choice(("x", "y", "z"))]
+Axis = Annotated[str | Sequence[float], Way()]
 Count = Annotated[int, Whole(1)]
 CountFrom0 = Annotated[int, Whole(0)]
 Name = Annotated[str, Text()]

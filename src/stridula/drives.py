@@ -267,11 +267,10 @@ class InitialVelocity(Drive):
     @property
     def velocities(self) -> tuple[float, ...]:
         """Its components [m/s]."""
-        return self.x, self.y, self.z
+        return (self.x, self.y, self.z) if self.body.is_spatial else (self.x, self.y)
 
     def __str__(self) -> str:
-        components = (self.x, self.y, self.z) if self.body.is_spatial else (self.x, self.y)
-        return f"initial velocity ({', '.join(f'{one:.3g}' for one in components)}) m/s"
+        return f"initial velocity ({', '.join(f'{one:.3g}' for one in self.velocities)}) m/s"
 
 
 @dataclass(frozen=True)
@@ -295,7 +294,8 @@ class InitialState(Drive):
 
     def __post_init__(self) -> None:
         if not hasattr(self.body, "modal_coordinates"):
-            instance("body", self.body, (PointMass, ReducedBody, RigidBody))
+            words = "be a PointMass, a ReducedBody or a RigidBody"
+            raise ArgumentError("body", words, self.body)
         for name in ("displacement", "velocity"):
             given = getattr(self, name)
             if given is not None:

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any, TypeVar
 
 from .checks import ArgumentError, instance
-from .connections import CONNECTIONS, Connection, ends
+from .connections import CONNECTIONS, Connection, ends, unit
 from .contact import PointContact
 from .drives import DRIVES, Drive, ImposedVelocity, InitialEquilibrium
 
@@ -174,11 +174,11 @@ class System:
             if beam.tip_support != "free":
                 raise ArgumentError("tip_support", "be free under an imposed velocity", beam.tip_support)
             for number, connection in enumerate(self.connections):
-                if connection.direction == "x" and any(point.body == beam for point in ends(connection)):
+                if unit(connection)[0] and any(point.body == beam for point in ends(connection)):
                     raise ArgumentError(
                         f"connections[{number}]",
                         "not act along x on a body under an imposed velocity, which prescribes its x; "
-                        "got direction 'x'",
+                        f"got direction {connection.direction!r}",
                     )
 
     def __str__(self) -> str:

@@ -425,6 +425,23 @@ def test_a_plate_on_three_feet_shares_its_weight():
     )
 
 
+def test_a_spring_acts_along_any_direction(tmp_path):
+    """A mass on one spring along (1, 2, 2) swings along it, held across by two others, at sqrt(k / m) each."""
+    mass = st.RigidBody(2.0)
+    ways = {(1.0, 2.0, 2.0): 1e3, (2.0, 1.0, -2.0): 3e3, (2.0, -2.0, 1.0): 5e3}
+    springs = [st.Spring(mass.centre, stiffness=rate, direction=way) for way, rate in ways.items()]
+    contact = st.PointContact(mass.centre, st.RigidTrack(), gap=1.0)
+    system = st.System(contact, [st.InitialVelocity(mass, x=0.1, y=0.2, z=0.2)], springs)
+    found = st.sliding_stability(system, status="separated")
+    np.testing.assert_allclose(found.frequency, np.sqrt(np.array(list(ways.values())) / 2.0) / (2.0 * pi), rtol=1e-12)
+    probes = [st.Displacement(mass.centre, way) for way in "xyz"]
+    run = st.simulate(system, 0.1, step=1e-4, sample_rate=1e4, probes=probes)
+    own = sqrt(1e3 / 2.0)
+    known = 0.1 / own * np.sin(own * run.time.values)[:, None] * [1.0, 2.0, 2.0]
+    np.testing.assert_allclose(run.displacement, known, atol=1e-12)
+    assert st.load_scenario(run).system == system
+
+
 # Records, restart, scenarios.
 
 
@@ -496,6 +513,10 @@ BAD = {
             BODY.centre, st.ModalBeam(st.Material(2e11, 7800.0), st.Rectangle(0.01, 0.01), 1.0, cutoff=1e3), at=0.5
         ),
         "track must be a RigidTrack or a BodyPoint for a body in space",
+    ),
+    "no direction": (
+        lambda: st.Spring(BODY.centre, stiffness=1.0, direction=(0.0, 0.0, 0.0)),
+        "direction must be x, y, z or three numbers, not all zero, got .0.0, 0.0, 0.0.",
     ),
     "mixed points": (
         lambda: st.ReducedBody(np.eye(3), np.eye(3), {"a": (0, 1, 2), "b": (0, 1)}),

@@ -105,9 +105,18 @@ def longest_unchanged(run: xr.Dataset) -> float:
 
 
 def advance(run: xr.Dataset, intervals: Array | None = None) -> float:
-    """Return how far the contact point has moved along the track [m], net, in the intervals or the whole run."""
+    """Return how far the contact point has moved along the track [m], net, in the intervals or the whole run.
+
+    In space that is the distance from where it was.
+    """
     position = record_of_one(run, "contact_position")["contact_position"].values
     time, _ = _clock(run)
+    if position.ndim == 2:
+        return float(np.linalg.norm([_advanced(time, one, intervals) for one in position.T]))
+    return _advanced(time, position, intervals)
+
+
+def _advanced(time: Array, position: Array, intervals: Array | None) -> float:
     if intervals is None:
         return float(position[-1] - position[0])
     ends = np.interp(checked_intervals(intervals), time, position)

@@ -104,9 +104,14 @@ def _one_contact(record: xr.Dataset) -> dict[str, str]:
         "normal force": _force(force),
         "dominant frequency": _frequency(record),
         "status": ", ".join(f"{word} {100 * share:.1f} %" for word, share in zip(STATUS_WORDS, shares, strict=True)),
-        "tip": f"from {place[0]:.4g} m to {place[-1]:.4g} m along the track",
+        "tip": f"from {_place(place[0])} to {_place(place[-1])} along the track",
     }
     return lines | ({"jammed": f"{counted(jammed, 'step')} in which sliding would have jammed"} if jammed else {})
+
+
+def _place(place: Array) -> str:
+    """Return an abscissa, or in space a pair of them [m]."""
+    return f"{place:.4g} m" if np.ndim(place) == 0 else f"({', '.join(f'{one:.4g}' for one in place)}) m"
 
 
 def _force(force: Array) -> str:

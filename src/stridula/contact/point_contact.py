@@ -73,7 +73,7 @@ class PointContact:
 
     def __post_init__(self) -> None:
         instance("tip", self.tip, BodyPoint)
-        if not isinstance(self.track, Track):
+        if self.path_body is None:
             instance("track", self.track, (ModalBeam, ModalPlate, RigidTrack, BodyPoint))
         if self.path_body is not None:
             within("at", self.at, *self.path_body.ends, ends=False)

@@ -184,6 +184,8 @@ def read_as(kind: Kind) -> _Kind:
             return Words(words)
         case declarations.NumberOrWord(words):
             return NumberOrWord(Words(words))
+        case declarations.Way():
+            return Way()
         case declarations.Whole(least):
             return Whole(least)
         case declarations.Own("damping"):
@@ -291,6 +293,21 @@ class NumberOrWord(_Kind):
 
     def json_schema(self) -> dict[str, Any]:
         return {"anyOf": [Whole(0).json_schema(), self.words.json_schema()]}
+
+
+@dataclass(frozen=True)
+class Way(_Kind):
+    """A direction: x, y, z, or three numbers."""
+
+    def read(self, value: Any) -> Any:
+        try:
+            return declarations.Way().check("value", value)
+        except ArgumentError:
+            raise _refused("be x, y, z or a list of three numbers, not all zero") from None
+
+    def json_schema(self) -> dict[str, Any]:
+        row = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
+        return {"anyOf": [{"enum": list(declarations.Way.words)}, row]}
 
 
 @dataclass(frozen=True)
