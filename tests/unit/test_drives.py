@@ -204,8 +204,8 @@ def test_a_drive_says_what_it_does_and_to_what():
         "initial equilibrium": ("", None, (0.5,)),
     }
     pushes = {name: drive.push[2].tolist() for name, drive in EVERY_DRIVE.items() if drive.push is not None}
-    assert pushes == {"force": [1.0, -2.0], "imposed velocity": [0.0, -3.0]}
-    assert [name for name, drive in EVERY_DRIVE.items() if drive.fall] == ["gravity"]
+    assert pushes == {"force": [1.0, -2.0, 0.0], "imposed velocity": [0.0, -3.0, 0.0]}
+    assert [name for name, drive in EVERY_DRIVE.items() if drive.fall is not None] == ["gravity"]
     assert [name for name, drive in EVERY_DRIVE.items() if drive.uniform_velocity is not None] == ["initial velocity"]
     assert [name for name, drive in EVERY_DRIVE.items() if drive.vectors] == ["initial state"]
 
