@@ -30,11 +30,17 @@ ROUND_OFF = 1e-14
 
 
 @numba.njit(**OPTIONS)
+def is_alone(sizes):
+    """Return whether there is one contact, which in space has two pairs of rows."""
+    return sizes.contacts == (2 if sizes.space else 1)
+
+
+@numba.njit(**OPTIONS)
 def start_from_last(contacts, carried, touching, sizes, run, zero):
     """Let contacts that were closed begin with the forces of the last step, in runs in which any touches."""
     faces, now = contacts.faces, contacts.now
     # One contact is solved at once.
-    warm = choose(touching > 0.5, 1.0, zero) if sizes.contacts > 1 else zero
+    warm = zero if is_alone(sizes) else choose(touching > 0.5, 1.0, zero)
     displace_freely(faces, now, sizes.contacts, run, zero)
     for i in range(sizes.contacts):
         here, base = i * at.IN_STEP, i * at.CARRIED
@@ -167,12 +173,14 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
         estimate = choose(closed, choose(reach > 0.0, misfit, zero) / choose(reach > 0.0, reach, 1.0), estimate)
         error, made = choose(goes_on, estimate, error), choose(goes_on, sweep + 1.0, made)
         done = choose(exact, 1.0, choose(error <= timing.tolerance, 1.0, done))
-        if sizes.contacts == 1:
+        if is_alone(sizes):
             return made, zero
         if everywhere(done > 0.5):
             break
         before = change
-        if sweep + 1 == FIRST_DIRECT_SOLVE or (sweep + 1) % SWEEPS_PER_DIRECT_SOLVE == 0:
+        # In space the directions of friction still turn, and the system is four times as large.
+        early = sweep + 1 == FIRST_DIRECT_SOLVE and not sizes.space
+        if early or (sweep + 1) % SWEEPS_PER_DIRECT_SOLVE == 0:
             tried = choose(done < 0.5, settled, zero)
             if anywhere(tried > 0.5):
                 solve_states(contacts, carried, sizes, run, tried, zero)

@@ -12,7 +12,7 @@ from numba.extending import overload
 
 from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
-from .contact import STICKING
+from .contact import SLIDING, STICKING
 from .faces import displace
 from .friction import STRICT
 from .lanes import choose, entry, held, hold, lane, magnitude, spread, with_lane
@@ -22,8 +22,10 @@ from .vectors import LANES, VECTOR
 
 # Trials of a direction of friction, and velocity across it, relative to its terms, that is round-off.
 TRIALS, ACROSS = 80, 1e-12
-# Longest step of a search without a bracket [rad].
-LONGEST = 1.0
+# Longest step of a search without a bracket [rad], and the step of Newton's method whose square is round-off.
+LONGEST, SETTLED = 1.0, 1e-7
+# Steps of Newton's method for a direction.
+NEWTON = 12
 # Relative determinant of the compliance of the tangents below which the slip alone tells a direction.
 SINGULAR = 1e-12
 
@@ -64,17 +66,52 @@ def along(w, c, s):
 
 @numba.njit(**STRICT)
 def sticking_direction(gap, first, second, w):
-    """Return the direction of the force that would hold a contact against displacements without force."""
+    """Return the force that would hold a contact against displacements without force: its direction, and its size.
+
+    The size is relative to the normal force, infinite where that would pull.
+    """
     a, b = w[4] - w[3] * w[1] / w[0], w[5] - w[3] * w[2] / w[0]
     c, d = w[7] - w[6] * w[1] / w[0], w[8] - w[6] * w[2] / w[0]
     first, second = first - w[3] * gap / w[0], second - w[6] * gap / w[0]
     determinant = a * d - b * c
     if abs(determinant) > SINGULAR * (a + d) * (a + d):
         first, second = (d * first - b * second) / determinant, (a * second - c * first) / determinant
-    size = math.hypot(first, second)
+    size, pressed = math.hypot(first, second), w[1] * first + w[2] * second - gap
     if size == 0.0:
-        return 1.0, 0.0
-    return first / size, second / size
+        return 1.0, 0.0, 0.0
+    return first / size, second / size, size * w[0] / pressed if pressed > 0.0 else math.inf
+
+
+@numba.njit(**STRICT)
+def sliding_direction(gap, slips, w, mu, carried_on, guess):
+    """Return the direction of friction under a ratio `mu` by Newton's method from a guess, and whether it is found."""
+    c, s = guess
+    for _ in range(NEWTON):
+        free = w[0] - mu * (c * w[1] + s * w[2])
+        if not free > 0.0:
+            return c, s, False
+        normal = -gap / free
+        turning = normal * mu * (c * w[2] - s * w[1]) / free
+        pulled, more = mu * normal, mu * turning
+        first, second = c * w[4] + s * w[5], c * w[7] + s * w[8]
+        moved = 9.0 * (slips[0] + w[3] * normal - first * pulled) + carried_on[0]
+        swerved = 9.0 * (slips[1] + w[6] * normal - second * pulled) + carried_on[1]
+        across = c * swerved - s * moved
+        moving = 9.0 * (w[3] * turning - first * more - (c * w[5] - s * w[4]) * pulled)
+        swerving = 9.0 * (w[6] * turning - second * more - (c * w[8] - s * w[7]) * pulled)
+        slope = c * swerving - s * moving - (c * moved + s * swerved)
+        if not slope < 0.0:
+            return c, s, False
+        change = -across / slope
+        if not abs(change) < LONGEST:
+            return c, s, False
+        # Of a small angle tangent and arc are the same.
+        c, s = c - s * change, s + c * change
+        size = math.sqrt(c * c + s * s)
+        c, s = c / size, s / size
+        if abs(change) < SETTLED:
+            return c, s, True
+    return c, s, False
 
 
 @numba.njit(**STRICT)
@@ -82,13 +119,25 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
     """Return normal force, both tangential forces, status and whether it is jammed.
 
     Arguments are those of `contact.solve_contact`, with a number for each tangent; `before` are status, slips of the
-    last two steps, internal state and forces of the last step.
+    last two steps, internal state, forces of the last step and a guess of those along the tangents.
     """
     if gap >= 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0
-    was, last, earlier, state, last_normal, last_forces = before
-    first, second = sticking_direction(gap, slips[0] + strays[0], slips[1] + strays[1], w)
+    was, last, earlier, state, last_normal, last_forces, guess = before
+    first, second, held = sticking_direction(gap, slips[0] + strays[0], slips[1] + strays[1], w)
     carried_on = 6.0 * last[0] + earlier[0], 6.0 * last[1] + earlier[1]
+    may_hold = True
+    if law == at.COULOMB and held > laws[number, 0] > 0.0:
+        may_hold = False
+        size = math.hypot(guess[0], guess[1])
+        near = (guess[0] / size, guess[1] / size) if size > 0.0 else (first, second)
+        c, s, found = sliding_direction(gap, slips, w, laws[number, 0], carried_on, near)
+        if found:
+            first, second = c, s
+            # Where the slip does not turn round the law is that of sliding on.
+            if was < SLIDING - 0.5 or c * last[0] + s * last[1] >= 0.0:
+                normal = -gap / (w[0] - laws[number, 0] * (c * w[1] + s * w[2]))
+                return normal, laws[number, 0] * normal * c, laws[number, 0] * normal * s, 2.0, 0.0
     turn, low, high = 0.0, -math.inf, math.inf
     turn_before, across_before = math.nan, math.nan
     c, s, normal, tangential, status, jammed = first, second, 0.0, 0.0, 0.0, 0.0
@@ -114,7 +163,7 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
             let_go,
             step,
         )
-        if trial == 0 and abs(status - STICKING) < 0.5:
+        if trial == 0 and may_hold and abs(status - STICKING) < 0.5:
             break
         # The direction is that of the velocity that laws of the speed see, see `contact.velocity_at`.
         moved = 9.0 * (slips[0] + w[3] * normal - (c * w[4] + s * w[5]) * tangential) + carried_on[0]
@@ -189,6 +238,7 @@ def solve_runs_in_space(gap, slips, strays, w, law, laws, run, before, let_go, s
                 lane(before[3], i),
                 lane(before[4], i),
                 lane_of_pair(before[5], i),
+                lane_of_pair(before[6], i),
             ),
             lane(let_go, i),
             step,
@@ -228,7 +278,8 @@ def forces_in_space(contacts, carried, i, run, runs, let_go, step, zero):
     slip = entry(faces, 2 * i + 1, DISPLACEMENT, run, zero) - (w[3] * normal - w[4] * first - w[5] * second)
     swerve = entry(faces, 2 * i + 3, DISPLACEMENT, run, zero) - (w[6] * normal - w[7] * first - w[8] * second)
     strays = strayed(carried, i, run, zero), strayed(carried, i + 1, run, zero)
-    before = carried_in_space(carried, i, run, zero)
+    was, last, earlier, state, last_normal, last_forces = carried_in_space(carried, i, run, zero)
+    before = (was, last, earlier, state, last_normal, last_forces, (first, second))
     law, number = contacts.codes[i], i * runs + run
     return solve_in_space(gap, (slip, swerve), strays, w, law, contacts.laws, number, before, let_go, step)
 
