@@ -293,7 +293,7 @@ class InitialState(Drive):
     velocity: Sequence[float] | None = None
 
     def __post_init__(self) -> None:
-        if not hasattr(self.body, "modal_coordinates"):
+        if not hasattr(self.body, "modal_coordinates") or self.body.has_positions or isinstance(self.body, type):
             words = "be a PointMass, a ReducedBody or a RigidBody"
             raise ArgumentError("body", words, self.body)
         for name in ("displacement", "velocity"):

@@ -22,11 +22,11 @@ MAKERS = {
     "Spring.direction": (
         lambda v: st.Spring(ONE.centre, stiffness=1.0, direction=v),
         "direction",
-        [None, "z", "axial", 1],
+        [None, "w", "axial", 1, (1.0, 0.0), (0.0, 0.0, 0.0)],
     ),
     "Dashpot.first": (lambda v: st.Dashpot(v, coefficient=1.0), "first", [None, ONE]),
     "Dashpot.coefficient": (lambda v: st.Dashpot(ONE.centre, coefficient=v), "coefficient", [*NUMBERS, 0.0, -1.0]),
-    "Dashpot.direction": (lambda v: st.Dashpot(ONE.centre, coefficient=1.0, direction=v), "direction", ["z", None]),
+    "Dashpot.direction": (lambda v: st.Dashpot(ONE.centre, coefficient=1.0, direction=v), "direction", ["w", None]),
     "RigidTrack.velocity": (lambda v: st.RigidTrack(v), "velocity", NUMBERS),
     "RigidTrack.normal_velocity": (lambda v: st.RigidTrack(0.0, v), "normal_velocity", NUMBERS),
     "RigidTrack.acceleration": (lambda v: st.RigidTrack(acceleration=v), "acceleration", NUMBERS),

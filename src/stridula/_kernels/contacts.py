@@ -21,12 +21,16 @@ from .space import forces_in_space, is_second, put_second
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 2, 8
 # Sweeps after which a contact that has broken away in this step is no longer held by its static coefficient.
 PATIENCE = 24
+# What is kept of contacts that have not, so that those in space know that it is late.
+LATE = 0.25
 # Gaps and slips left to undo, relative to what the forces undo, over the tolerance of the forces.
 GAPS = 0.01
 # Least share of the last change that is taken to be still to come.
 LEAST_TO_COME = 0.1
 # Change of a force by rounding alone, relative to the largest.
 ROUND_OFF = 1e-14
+# Relative rounding of the difference of two abscissas.
+ROUNDING = 1e-15
 
 
 @numba.njit(**OPTIONS)
@@ -140,6 +144,15 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
 
 
 @numba.njit(**OPTIONS)
+def rounding_of_slips(carried, sizes, run, zero):
+    """Return the slip that rounding makes of abscissas, whose difference it is."""
+    farthest = zero
+    for i in range(sizes.contacts):
+        farthest = largest_of(farthest, magnitude(held(carried, i * at.CARRIED + at.MATERIAL, run, zero)))
+    return ROUNDING * farthest
+
+
+@numba.njit(**OPTIONS)
 def largest_of(one, other):
     """Return the larger of two numbers, the first where one is none."""
     return choose(other > one, other, one)
@@ -154,6 +167,7 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
     held again: it then lets go. Which runs lie side by side does not matter: one that is done changes no more.
     """
     done = choose(touching > 0.5, zero, 1.0)
+    rounding = rounding_of_slips(carried, sizes, run, zero)
     made, error, before = zero, choose(touching > 0.5, math.inf, zero), zero + math.inf
     for sweep in range(timing.sweeps):
         change, largest, misfit, reach, settled = sweep_once(
@@ -169,7 +183,7 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
         estimate = choose(falls, change / size * to_come, math.inf)
         estimate = choose(exact, change / size, estimate)
         # Where many rows see few modes, forces creep on among sets that close the same gaps.
-        closed = misfit <= GAPS * timing.tolerance * reach
+        closed = misfit <= GAPS * timing.tolerance * reach + rounding
         estimate = choose(closed, choose(reach > 0.0, misfit, zero) / choose(reach > 0.0, reach, 1.0), estimate)
         error, made = choose(goes_on, estimate, error), choose(goes_on, sweep + 1.0, made)
         done = choose(exact, 1.0, choose(error <= timing.tolerance, 1.0, done))
@@ -178,9 +192,11 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
         if everywhere(done > 0.5):
             break
         before = change
-        # In space the directions of friction still turn, and the system is four times as large.
+        # In space the directions of friction still turn, and later it finds ever other forces of contacts that hold the
+        # same motions.
         early = sweep + 1 == FIRST_DIRECT_SOLVE and not sizes.space
-        if early or (sweep + 1) % SWEEPS_PER_DIRECT_SOLVE == 0:
+        late = sizes.space and sweep + 1 > PATIENCE
+        if early or ((sweep + 1) % SWEEPS_PER_DIRECT_SOLVE == 0 and not late):
             tried = choose(done < 0.5, settled, zero)
             if anywhere(tried > 0.5):
                 solve_states(contacts, carried, sizes, run, tried, zero)
@@ -188,7 +204,8 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
         if sweep + 1 == PATIENCE:
             for i in range(sizes.contacts):
                 here = i * at.IN_STEP
-                hold(contacts.now, here + at.LET_GO, run, held(contacts.now, here + at.BROKE, run, zero))
+                broke = held(contacts.now, here + at.BROKE, run, zero)
+                hold(contacts.now, here + at.LET_GO, run, choose(broke > 0.5, 1.0, zero + LATE))
     return made, error
 
 

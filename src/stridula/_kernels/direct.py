@@ -15,6 +15,9 @@ from .modes import OPTIONS
 from .solves import strayed
 from .space import is_second
 
+# Share of the cone that a force may be beyond it by rounding.
+BEYOND = 1.0 + 1e-9
+
 
 @numba.njit(**OPTIONS)
 def solve_states(contacts, carried, sizes, run, tried, zero):
@@ -28,7 +31,13 @@ def solve_states(contacts, carried, sizes, run, tried, zero):
         set_equations(contacts, carried, sizes, i, size, run, zero)
     regular = eliminate(scratch, size, sizes.faces, sizes.per_block, run, tried, zero)
     for i in range(sizes.contacts):
-        regular = choose(entry(scratch, 2 * i, size, run, zero) >= 0.0, regular, zero)
+        pressed = entry(scratch, 2 * i, size, run, zero)
+        regular = choose(pressed >= 0.0, regular, zero)
+        # Where more contacts stick than bodies have motions, elimination divides by round-off.
+        if set_valued(contacts.codes[i]):
+            most = BEYOND * held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero) * pressed
+            pulled = magnitude(entry(scratch, 2 * i + 1, size, run, zero))
+            regular = choose(pulled > most, zero, regular)
     for i in range(sizes.contacts):
         here = i * at.IN_STEP
         normal, tangential = held(now, here + at.NORMAL_NOW, run, zero), held(now, here + at.TANGENTIAL_NOW, run, zero)

@@ -115,6 +115,52 @@ def sliding_direction(gap, slips, w, mu, carried_on, guess):
 
 
 @numba.njit(**STRICT)
+def solve_along(c, s, free, law, laws, number, before, let_go, step):
+    """Solve a contact in space as one of the plane along a direction; `free` are gap, slips, strays and compliance."""
+    gap, slips, strays, w = free
+    was, last, earlier, state, last_normal, last_forces, _ = before
+    # When it is late nothing turns round within the step.
+    was = was if let_go == 0.0 else 0.0
+    return solve_one_run(
+        gap,
+        c * slips[0] + s * slips[1],
+        c * strays[0] + s * strays[1],
+        along(w, c, s),
+        law,
+        laws,
+        number,
+        (
+            was,
+            c * last[0] + s * last[1],
+            c * earlier[0] + s * earlier[1],
+            state,
+            last_normal,
+            c * last_forces[0] + s * last_forces[1],
+        ),
+        let_go,
+        step,
+    )
+
+
+@numba.njit(**STRICT)
+def carried_on_by(before, let_go):
+    """Return the share of the last two slips in the velocity that friction is along, in units of a ninth of a slip.
+
+    Where contacts that come to rest together find no forces with it, friction is along the slip after some sweeps.
+    """
+    if let_go > 0.0:
+        return 0.0, 0.0
+    return 6.0 * before[1][0] + before[2][0], 6.0 * before[1][1] + before[2][1]
+
+
+@numba.njit(**STRICT)
+def slip_under(c, s, normal, tangential, slips, w):
+    """Return the slip along both tangents under a normal force and one along a direction."""
+    first = slips[0] + w[3] * normal - (c * w[4] + s * w[5]) * tangential
+    return first, slips[1] + w[6] * normal - (c * w[7] + s * w[8]) * tangential
+
+
+@numba.njit(**STRICT)
 def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go, step):
     """Return normal force, both tangential forces, status and whether it is jammed.
 
@@ -123,55 +169,56 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
     """
     if gap >= 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0
-    was, last, earlier, state, last_normal, last_forces, guess = before
     first, second, held = sticking_direction(gap, slips[0] + strays[0], slips[1] + strays[1], w)
-    carried_on = 6.0 * last[0] + earlier[0], 6.0 * last[1] + earlier[1]
-    may_hold = True
-    if law == at.COULOMB and held > laws[number, 0] > 0.0:
-        may_hold = False
-        size = math.hypot(guess[0], guess[1])
+    may_hold = law != at.COULOMB or held <= laws[number, 0] or laws[number, 0] == 0.0
+    was, last, guess = before[0], before[1], before[6]
+    if not may_hold:
+        mu, size = laws[number, 0], math.hypot(guess[0], guess[1])
         near = (guess[0] / size, guess[1] / size) if size > 0.0 else (first, second)
-        c, s, found = sliding_direction(gap, slips, w, laws[number, 0], carried_on, near)
+        carried_on = carried_on_by(before, let_go)
+        c, s, found = sliding_direction(gap, slips, w, mu, carried_on, near)
         if found:
+            normal = -gap / (w[0] - mu * (c * w[1] + s * w[2]))
+            slip, swerve = slip_under(c, s, normal, mu * normal, slips, w)
+            if was < SLIDING - 0.5 or c * slip + s * swerve >= 0.0:
+                return normal, mu * normal * c, mu * normal * s, 2.0, 0.0
             first, second = c, s
-            # Where the slip does not turn round the law is that of sliding on.
-            if was < SLIDING - 0.5 or c * last[0] + s * last[1] >= 0.0:
-                normal = -gap / (w[0] - laws[number, 0] * (c * w[1] + s * w[2]))
-                return normal, laws[number, 0] * normal * c, laws[number, 0] * normal * s, 2.0, 0.0
+    free = (gap, slips, strays, w)
+    c, s, normal, tangential, status, jammed = searched(
+        first, second, may_hold, free, law, laws, number, before, let_go, step
+    )
+    if was > SLIDING - 0.5 and let_go == 0.0 and abs(status - SLIDING) < 0.5:
+        slip, swerve = slip_under(c, s, normal, tangential, slips, w)
+        size = math.hypot(last[0], last[1])
+        if size > 0.0 and tangential * (c * slip + s * swerve) < 0.0:
+            # It comes to rest within the step, or turns round: along the line that it came.
+            c, s = last[0] / size, last[1] / size
+            normal, tangential, status, jammed = solve_along(c, s, free, law, laws, number, before, let_go, step)
+    return normal, tangential * c, tangential * s, status, jammed
+
+
+@numba.njit(**STRICT)
+def searched(first, second, may_hold, free, law, laws, number, before, let_go, step):
+    """Return the direction of friction, by the secant method within a bracket from a first one, and the contact there.
+
+    Where a contact may be held and is along the first direction, it is held.
+    """
+    carried_on, (_, slips, _, w) = carried_on_by(before, let_go), free
     turn, low, high = 0.0, -math.inf, math.inf
     turn_before, across_before = math.nan, math.nan
     c, s, normal, tangential, status, jammed = first, second, 0.0, 0.0, 0.0, 0.0
     for trial in range(TRIALS):
         cosine, sine = math.cos(turn), math.sin(turn)
         c, s = first * cosine - second * sine, second * cosine + first * sine
-        normal, tangential, status, jammed = solve_one_run(
-            gap,
-            c * slips[0] + s * slips[1],
-            c * strays[0] + s * strays[1],
-            along(w, c, s),
-            law,
-            laws,
-            number,
-            (
-                was,
-                c * last[0] + s * last[1],
-                c * earlier[0] + s * earlier[1],
-                state,
-                last_normal,
-                c * last_forces[0] + s * last_forces[1],
-            ),
-            let_go,
-            step,
-        )
+        normal, tangential, status, jammed = solve_along(c, s, free, law, laws, number, before, let_go, step)
         if trial == 0 and may_hold and abs(status - STICKING) < 0.5:
             break
         # The direction is that of the velocity that laws of the speed see, see `contact.velocity_at`.
-        moved = 9.0 * (slips[0] + w[3] * normal - (c * w[4] + s * w[5]) * tangential) + carried_on[0]
-        swerved = 9.0 * (slips[1] + w[6] * normal - (c * w[7] + s * w[8]) * tangential) + carried_on[1]
+        slip, swerve = slip_under(c, s, normal, tangential, slips, w)
+        moved, swerved = 9.0 * slip + carried_on[0], 9.0 * swerve + carried_on[1]
         across = c * swerved - s * moved
         size = abs(slips[0]) + abs(slips[1]) + (abs(w[3]) + abs(w[6])) * normal + (w[4] + w[8]) * abs(tangential)
-        size = 9.0 * size + abs(carried_on[0]) + abs(carried_on[1])
-        if abs(across) <= ACROSS * size:
+        if abs(across) <= ACROSS * (9.0 * size + abs(carried_on[0]) + abs(carried_on[1])):
             break
         # A force of the other sign has the slip on the other side.
         side = across if tangential >= 0.0 else -across
@@ -185,16 +232,14 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
         if turn != turn_before and abs(across) < 0.5 * abs(across_before) and across != across_before:
             change = across * (turn - turn_before) / (across_before - across)
         turn_before, across_before = turn, across
-        change = min(max(change, -LONGEST), LONGEST)
-        found = turn + change
+        found = turn + min(max(change, -LONGEST), LONGEST)
         if not low < found < high:
-            found = (
-                0.5 * (low + high) if math.isfinite(low) and math.isfinite(high) else turn + math.copysign(0.5, side)
-            )
+            has_bracket = math.isfinite(low) and math.isfinite(high)
+            found = 0.5 * (low + high) if has_bracket else turn + math.copysign(0.5, side)
         if found == turn or not low < found < high:
             break
         turn = found
-    return normal, tangential * c, tangential * s, status, jammed
+    return c, s, normal, tangential, status, jammed
 
 
 def solve_in_space(gap, slips, strays, w, law, laws, run, before, let_go, step):
