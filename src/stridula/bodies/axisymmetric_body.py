@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from .fourier_elements import FourierElements
 
 DIRECTIONS = ("r", "theta", "z")
-# Largest side of a cell as a share of the shortest wave's length over 2 pi.
-CELL = 0.75
+# Largest side of a cell as a share of the thickness of the thinnest part, and of the shortest wave's length over 2 pi:
+# frequencies within 1e-3 and less, within 2e-3 where corners point inwards.
+CELL_OF_THICKNESS, CELL_OF_WAVE = 0.5, 0.4
 # Square of the speed of surface waves, the slowest where nothing bends, over that of shear waves, at least.
 SURFACE_WAVES = 0.75
 # A free ring of order n bends like a beam of a length of n - 1 waves and more.
@@ -209,7 +210,7 @@ class AxisymmetricBody:
         return _solution(self).numbers
 
     def modes(self, held_x: bool = False) -> Modes:
-        """Return the modes, translation of shape (3, modes); `held_x` is for bodies with a driven end, must be false."""
+        """Return the modes, translation of shape (3, modes); `held_x` is for driven ends and must be false."""
         if held_x:
             raise ArgumentError("held_x", "be False for an AxisymmetricBody: it has no driven end", held_x)
         return _solution(self).modes
@@ -304,7 +305,8 @@ class _Solution:
 @lru_cache(maxsize=16)
 @of_ordinary_size("material, profile and cutoff")
 def _mesh(body: AxisymmetricBody) -> ProfileMesh:
-    return body.profile.mesh(body.profile.size or min(body.profile.thinnest, CELL / body._waves))
+    finest = min(CELL_OF_THICKNESS * body.profile.thinnest, CELL_OF_WAVE / body._waves)
+    return body.profile.mesh(body.profile.size or finest)
 
 
 @lru_cache(maxsize=16)
@@ -376,7 +378,9 @@ def _materials(given: Any, regions: tuple[str, ...]) -> Material | tuple[tuple[s
         instance(f"material[{name!r}]", material, Material)
     missing = [name for name in regions if name not in given]
     if missing:
-        raise ArgumentError("material", f"be given for all regions, {listed(regions)}", got=f"none for {listed(missing)}")
+        raise ArgumentError(
+            "material", f"be given for all regions, {listed(regions)}", got=f"none for {listed(missing)}"
+        )
     return tuple((name, given[name]) for name in regions)
 
 

@@ -1,7 +1,7 @@
 """Quadratic elements on a profile: stiffness and mass of a body of revolution for each order round its axis.
 
-``u_r = U cos n theta``, ``u_theta = V sin n theta``, ``u_z = W cos n theta``. The strains of (U, V, W) are, each with the
-cosine or the sine that belongs to it,
+``u_r = U cos n theta``, ``u_theta = V sin n theta``, ``u_z = W cos n theta``. The strains of (U, V, W) are, each with
+the cosine or the sine that belongs to it,
 
     rr: U,r    theta theta: (U + n V) / r    zz: W,z
     rz: U,z + W,r    r theta: V,r - V / r - n U / r    theta z: V,z - n W / r

@@ -15,6 +15,8 @@ from ..checks import ArgumentError
 # Share of the profile's size below which two places are one.
 SAME_PLACE = 1e-9
 MOST_CELLS = 100_000
+# The region of profiles that have one, and of cells in no other.
+BODY = "body"
 # Sides of the smallest box around a region.
 SIDES = ("inner", "outer", "bottom", "top")
 # Rows of a table of pairs of edges that is made at once.
@@ -92,7 +94,7 @@ class ProfileMesh:
         """Return the sides of cells that lie within a box [m], shape (sides, 2)."""
         margin = SAME_PLACE * self.size
         low, high = np.array([r[0], z[0]]) - margin, np.array([r[1], z[1]]) + margin
-        inside = ((self.nodes >= low) & (self.nodes <= high)).all(axis=1)
+        inside: Array = np.all((self.nodes >= low) & (self.nodes <= high), axis=1)
         return np.asarray(self.sides[inside[self.sides].all(axis=1)])
 
     def cell_at(self, r: float, z: float) -> int | None:
@@ -100,7 +102,9 @@ class ProfileMesh:
         sides = self.nodes[_sides(self.cells)]
         along = sides[:, :, 1] - sides[:, :, 0]
         to_point = np.array([r, z]) - sides[:, :, 0]
-        depth = (along[..., 0] * to_point[..., 1] - along[..., 1] * to_point[..., 0]) / np.hypot(*np.moveaxis(along, -1, 0))
+        depth = (along[..., 0] * to_point[..., 1] - along[..., 1] * to_point[..., 0]) / np.hypot(
+            *np.moveaxis(along, -1, 0)
+        )
         deepest = depth.min(axis=1)
         cell = int(np.argmax(deepest))
         return cell if deepest[cell] >= -SAME_PLACE * self.size else None
@@ -184,7 +188,9 @@ def _check_edge(name: str, mesh: ProfileMesh) -> None:
         if crossing is None:
             return
         r, z = mesh.nodes[outline[crossing]].mean(axis=0)
-    raise ArgumentError(name, "not cross or touch itself", got=f"an outline that does near r = {r:.6g} m, z = {z:.6g} m")
+    raise ArgumentError(
+        name, "not cross or touch itself", got=f"an outline that does near r = {r:.6g} m, z = {z:.6g} m"
+    )
 
 
 def _first_crossing(nodes: Array, outline: Array, margin: float) -> int | None:
@@ -218,9 +224,11 @@ def _straddles(a: Array, b: Array, length: Array, line: Array, side: Array, marg
 
 
 def lines(values: Array, size: float) -> Array:
-    """Return rising numbers with others between, at most `size` apart and at least one in each interval."""
+    """Return rising numbers with others between, at most `size` apart, one or more in each interval."""
     counts = np.maximum(np.ceil(np.diff(values) / size * (1.0 - SAME_PLACE)).astype(int), 2)
-    between = [low + (high - low) * np.arange(n) / n for low, high, n in zip(values[:-1], values[1:], counts, strict=True)]
+    between = [
+        low + (high - low) * np.arange(n) / n for low, high, n in zip(values[:-1], values[1:], counts, strict=True)
+    ]
     return np.concatenate([*between, values[-1:]])
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
 from .fourier_elements import FourierElements, U, V, W
@@ -18,8 +19,8 @@ from .ordinary import check_mode_count
 
 # Frequency of the shift, below zero, as a share of the cutoff: far enough from rigid motions for the factorisation.
 SHIFT = 0.1
-# Modes asked for at first, of each order.
-FIRST = 8
+# Modes of an order asked for at first, beyond as many as the order before it has.
+MORE = 2
 # Up to so many degrees of freedom matrices are dense.
 DENSE = 150
 # Share of the size of rigid motions at held points below which they are not held.
@@ -70,15 +71,17 @@ def families(
     elements: FourierElements, held: Sequence[Constraint], cutoff: float, orders: Sequence[int]
 ) -> tuple[list[Family], float]:
     """Return the modes up to a cutoff [Hz] of some orders, and the lowest frequency of all [Hz]."""
-    found, lowest, modes = [], math.inf, 0
+    found, lowest, modes, expected = [], math.inf, 0, 0
     for order in orders:
         kinds = [((U, W), (COSINE,)), ((V,), (SINE,))] if order == 0 else [((U, V, W), (COSINE, SINE))]
         for components, sides in kinds:
-            family = _family(elements, held, cutoff, order, components, sides)
+            with threadpool_limits(1):
+                family = _family(elements, held, cutoff, order, components, sides, expected)
             if family.squared.size:
                 lowest = min(lowest, math.sqrt(family.squared[0]) / (2.0 * math.pi))
             below = np.sqrt(family.squared) <= 2.0 * math.pi * cutoff
-            modes += len(sides) * int(below.sum())
+            expected = int(below.sum())
+            modes += len(sides) * expected
             check_mode_count(modes, cutoff)
             if below.any():
                 found.append(Family(order, sides, family.squared[below], family.shapes[..., below]))
@@ -92,6 +95,7 @@ def _family(
     order: int,
     components: tuple[int, ...],
     sides: tuple[int, ...],
+    expected: int,
 ) -> Family:
     angle = 2.0 * math.pi if order == 0 else math.pi
     free = _free(elements, held, order, components)
@@ -106,7 +110,7 @@ def _family(
     rigid = _unheld(elements, held, order, components)
     # Every row of `free` has one entry at most, and every column one that is +1.
     rigid = np.asarray(scipy.sparse.csr_matrix(free > 0.0).astype(float).T @ rigid)
-    squared, vectors = _lowest_modes(stiffness, mass, rigid, cutoff)
+    squared, vectors = _lowest_modes(stiffness, mass, rigid, cutoff, expected)
     vectors = vectors * np.sign(vectors[np.abs(vectors).argmax(axis=0), np.arange(vectors.shape[1])])
     return Family(order, sides, squared, np.asarray(free @ vectors).reshape(3, count, -1))
 
@@ -120,13 +124,13 @@ def _free(elements: FourierElements, held: Sequence[Constraint], order: int, com
     kept = np.zeros((3, count), dtype=bool)
     kept[list(components)] = True
     for one in held:
-        kept[np.ix_(one.components, one.points)] = False
+        kept[_block(one.components, one.points)] = False
     single = {0: (W,), 1: (U, V)}.get(order, ())
-    kept[np.ix_([k for k in range(3) if k not in single], axis)] = False
+    kept[_block([k for k in range(3) if k not in single], axis)] = False
     tied = axis[:0]
     if order == 1:
         tied = axis[kept[U, axis] & kept[V, axis]]
-        kept[np.ix_([U, V], axis)] = False
+        kept[_block([U, V], axis)] = False
         kept[U, tied] = True
     columns = np.full(3 * count, -1)
     rows = np.flatnonzero(kept.ravel())
@@ -136,13 +140,18 @@ def _free(elements: FourierElements, held: Sequence[Constraint], order: int, com
     return scipy.sparse.csr_matrix((entries, places), shape=(3 * count, rows.size))
 
 
+def _block(components: Sequence[int], points: Array) -> tuple[Array, Array]:
+    """Return the indices of some components of some points."""
+    return np.array(components, dtype=int)[:, None], points[None]
+
+
 def _unheld(elements: FourierElements, held: Sequence[Constraint], order: int, components: tuple[int, ...]) -> Array:
     """Return the rigid motions of an order that nothing holds, shape (3 points, motions)."""
     numbers = _RIGID.get((order, components))
     if numbers is None:
         return np.zeros((3 * elements.count, 0))
     motions = _rigid(elements, order)[:, :, list(numbers)]
-    rows = [motions[np.ix_(one.components, one.points)].reshape(-1, len(numbers)) for one in held]
+    rows = [motions[_block(one.components, one.points)].reshape(-1, len(numbers)) for one in held]
     if rows:
         # As many rows of nothing as there are motions, so that each has a size.
         at_held = np.concatenate([*rows, np.zeros((len(numbers), len(numbers)))])
@@ -168,14 +177,14 @@ def _rigid(elements: FourierElements, order: int) -> Array:
     return np.array([[one, z], [-one, -z], [none, -r / size]]).transpose(0, 2, 1)
 
 
-def _lowest_modes(stiffness: Any, mass: Any, rigid: Array, cutoff: float) -> tuple[Array, Array]:
+def _lowest_modes(stiffness: Any, mass: Any, rigid: Array, cutoff: float, expected: int) -> tuple[Array, Array]:
     """Return squared frequencies, rising, and vectors of unit mass: all up to a cutoff [Hz] and one more.
 
     The first are the rigid motions as they are, the others orthogonal to them.
     """
     size, count = stiffness.shape[0], rigid.shape[1]
     rigid = _orthonormal(rigid, mass)
-    limit, wanted = (2.0 * math.pi * cutoff) ** 2, count + FIRST
+    limit, wanted = (2.0 * math.pi * cutoff) ** 2, count + expected + MORE
     solve = None
     while True:
         if size <= max(DENSE, 2 * wanted):
@@ -197,9 +206,7 @@ def _lowest_modes(stiffness: Any, mass: Any, rigid: Array, cutoff: float) -> tup
 
 
 def _solver(matrix: Any) -> LinearOperator:
-    factors = splu(
-        matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-    )
+    factors = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     return LinearOperator(matrix.shape, matvec=factors.solve)
 
 

@@ -15,10 +15,8 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, brief, finite, instance, non_negative, positive
 from .modes import hashed_once
-from .profile_mesh import MOST_CELLS, SAME_PLACE, ProfileMesh, checked_mesh, lines, merged, overlap
+from .profile_mesh import BODY, MOST_CELLS, SAME_PLACE, ProfileMesh, checked_mesh, lines, merged, overlap
 
-# The region of profiles that have one.
-BODY = "body"
 Range = tuple[float, float]
 
 
@@ -103,8 +101,11 @@ class RectangleProfile:
         boxes = self._boxes
         size = min(size, float(np.ptp(boxes, axis=(0, 2)).max()))
         r, z = (_checked_lines(merged(boxes[:, axis].ravel(), self._margin), size) for axis in (0, 1))
+        # Lines divide what lies between rectangles, too.
+        _check_count(float(len(r)) * len(z) * len(boxes) / 50.0)
         middle = np.stack(np.meshgrid(0.5 * (r[1:] + r[:-1]), 0.5 * (z[1:] + z[:-1]), indexing="ij"), axis=2)
-        inside = ((middle[None] > boxes[:, None, None, :, 0]) & (middle[None] < boxes[:, None, None, :, 1])).all(axis=3)
+        low, high = boxes[:, None, None, :, 0], boxes[:, None, None, :, 1]
+        inside: Array = np.all((middle[None] > low) & (middle[None] < high), axis=3)
         i, j = np.nonzero(inside.any(axis=0))
         owner = inside[:, i, j].argmax(axis=0)
         corner = i * len(z) + j
@@ -249,7 +250,7 @@ class MeshProfile:
         regions = named or {BODY: np.arange(len(cells))}
         edges = {name: _numbers(f"edges[{name!r}]", one, int).reshape(-1, 2) for name, one in self.edges.items()}
         for name, one in (("cells", cells), *((f"edges[{name!r}]", one) for name, one in edges.items())):
-            if one.size and not (0 <= one.min() and one.max() < len(nodes)):
+            if one.size and not (one.min() >= 0 and one.max() < len(nodes)):
                 raise ArgumentError(name, f"be numbers of nodes, from 0 to {len(nodes) - 1}", got=f"{one.max()}")
         _check_division(regions, len(cells))
         object.__setattr__(self, "_mesh", checked_mesh("cells", nodes, cells, regions, edges))
@@ -263,7 +264,8 @@ class MeshProfile:
         Parameters
         ----------
         path : str or path
-            The file. Named groups of cells become regions, named groups of lines edges that can be held. Triangles and
+            The file. Named groups of cells become regions, cells of no group one called ``body``; groups that share
+            cells are left out, all of them. Named groups of lines become edges that can be held. Triangles and
             quadrilaterals may mix, these are halved then; sides are taken as straight.
         scale : float, optional
             Length of the file's unit [m]: 1e-3 for millimetres.
@@ -328,7 +330,9 @@ def _across(points: Array) -> Array:
     share = 1.0 + np.sum(before * after, axis=1)
     if share.min() <= SAME_PLACE:
         at = int(np.argmin(share))
-        raise ArgumentError("points", "not turn back on the way they came", got=f"a turn at {tuple(points[at].tolist())}")
+        raise ArgumentError(
+            "points", "not turn back on the way they came", got=f"a turn at {tuple(points[at].tolist())}"
+        )
     across = (before + after) / share[:, None]
     for end in (0, -1):
         if abs(points[end, 0]) <= SAME_PLACE * np.ptp(points, axis=0).max():
@@ -376,7 +380,7 @@ def _sequence(name: str, values: Any) -> list[Any]:
 def _numbers(name: str, values: Any, kind: type) -> Array:
     try:
         given = np.asarray(values)
-        found = given.astype(kind)
+        found: Array = given.astype(kind)
     except (TypeError, ValueError, OverflowError):
         raise ArgumentError(name, "be an array of numbers", got=brief(values)) from None
     if kind is int and not np.array_equal(found, given):
