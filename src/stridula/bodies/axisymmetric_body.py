@@ -23,9 +23,10 @@ if TYPE_CHECKING:
     from .fourier_elements import FourierElements
 
 DIRECTIONS = ("r", "theta", "z")
-# Largest side of a cell as a share of the thickness of the thinnest part, and of the shortest wave's length over 2 pi:
-# frequencies within 1e-3 and less, within 2e-3 where corners point inwards.
-CELL_OF_THICKNESS, CELL_OF_WAVE = 0.5, 0.4
+# Largest side of a cell as a share of 1 / k, of the shortest waves: in parts thicker than that, and in parts so thin
+# that cells of their thickness would be more than bending needs; between them it is a share of the thickness.
+# Frequencies come out within 1e-3, and within 5e-3 where corners point inwards.
+CELL_OF_WAVE, CELL_OF_BENDING, CELL_OF_THICKNESS = 0.4, 0.1, 0.5
 # Square of the speed of surface waves, the slowest where nothing bends, over that of shear waves, at least.
 SURFACE_WAVES = 0.75
 # A free ring of order n bends like a beam of a length of n - 1 waves and more.
@@ -135,9 +136,8 @@ class AxisymmetricBody:
         instance("profile", self.profile, PROFILES)
         object.__setattr__(self, "material", _materials(self.material, self.profile.region_names))
         positive("cutoff", self.cutoff)
-        given = (self.held,) if isinstance(self.held, (str, Held)) else self.held
-        if not isinstance(given, Sequence):
-            raise ArgumentError("held", "be the name of a place, Held or several of these", self.held)
+        is_one = isinstance(self.held, str) or not isinstance(self.held, Sequence)
+        given = (self.held,) if is_one else self.held
         object.__setattr__(self, "held", tuple(Held(one) if isinstance(one, str) else one for one in given))
         for number, one in enumerate(self.held):
             instance(f"held[{number}]", one, Held)
@@ -268,19 +268,24 @@ class AxisymmetricBody:
             if not len(one.sides(self.mesh)):
                 raise ArgumentError(name, "hold a side of a cell or more", got=f"none at {brief(one.place)}")
 
-    @property
-    def _waves(self) -> float:
-        """Wavenumber of the shortest waves below the cutoff [rad/m], not below it.
+    def _waves(self, thickness: float) -> float:
+        """Return the wavenumber of the shortest waves below the cutoff in parts of a thickness [rad/m], not below it.
 
         In a plate ``k² <= k_b² + k_s²`` with the waves of Kirchhoff's plate and those of shear (Mindlin 1951).
         """
-        angular, thickness = 2.0 * math.pi * self.cutoff, self.profile.thinnest
-        squares = []
+        angular, squares = 2.0 * math.pi * self.cutoff, []
         for one in self.materials.values():
             slowness = one.density / one.young
             shear = 2.0 * (1.0 + one.poisson) * slowness / SURFACE_WAVES
             squares.append(angular * math.sqrt(12.0 * slowness) / thickness + angular**2 * shear)
         return math.sqrt(max(squares))
+
+    def _cell(self, thickness: float) -> float:
+        """Return the largest side of the cells of parts of a thickness [m]."""
+        if self.profile.size is not None:
+            return self.profile.size
+        wave = 1.0 / self._waves(thickness)
+        return min(CELL_OF_WAVE * wave, max(CELL_OF_THICKNESS * thickness, CELL_OF_BENDING * wave))
 
 
 @dataclass(frozen=True, eq=False)
@@ -305,8 +310,13 @@ class _Solution:
 @lru_cache(maxsize=16)
 @of_ordinary_size("material, profile and cutoff")
 def _mesh(body: AxisymmetricBody) -> ProfileMesh:
-    finest = min(CELL_OF_THICKNESS * body.profile.thinnest, CELL_OF_WAVE / body._waves)
-    return body.profile.mesh(body.profile.size or finest)
+    try:
+        return body.profile.mesh(body._cell)
+    except ArgumentError as error:
+        if error.argument != "size" or body.profile.size is not None:
+            raise
+        # The size follows from the waves.
+        raise error.renamed("cutoff") from None
 
 
 @lru_cache(maxsize=16)
@@ -318,7 +328,7 @@ def _solution(body: AxisymmetricBody) -> _Solution:
     mesh = body.mesh
     elements = fourier_elements(mesh, [body.materials[name] for name in mesh.regions])
     held = [Constraint(one.components, elements.points_on(one.sides(mesh))) for one in body.held]
-    highest = math.ceil(mesh.nodes[:, 0].max() * body._waves) + ORDERS_MORE
+    highest = math.ceil(mesh.nodes[:, 0].max() * body._waves(body.profile.thinnest)) + ORDERS_MORE
     if body.orders is not None:
         highest = min(highest, body.orders)
     found, lowest = families(elements, held, body.cutoff, range(highest + 1))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 
@@ -19,6 +20,8 @@ MOST_CELLS = 100_000
 BODY = "body"
 # Sides of the smallest box around a region.
 SIDES = ("inner", "outer", "bottom", "top")
+# Growth of the sides of cells with the distance from smaller ones, and points of an interval at which it is reckoned.
+GROWTH, SAMPLES = 0.5, 257
 # Rows of a table of pairs of edges that is made at once.
 EDGES_AT_ONCE = 256
 
@@ -223,13 +226,22 @@ def _straddles(a: Array, b: Array, length: Array, line: Array, side: Array, marg
     return np.asarray(distances[0] * distances[1] <= 0.0)
 
 
-def lines(values: Array, size: float) -> Array:
-    """Return rising numbers with others between, at most `size` apart, one or more in each interval."""
-    counts = np.maximum(np.ceil(np.diff(values) / size * (1.0 - SAME_PLACE)).astype(int), 2)
-    between = [
-        low + (high - low) * np.arange(n) / n for low, high, n in zip(values[:-1], values[1:], counts, strict=True)
-    ]
-    return np.concatenate([*between, values[-1:]])
+def lines(values: Array, sizes: Array, least: int = 1) -> Array:
+    """Return rising numbers with others between, `least` steps or more in each interval.
+
+    Steps are at most as long as the size of their interval and grow by `GROWTH` of the distance from one whose steps
+    are shorter.
+    """
+    sizes = np.minimum(sizes, np.diff(values) / least)
+    found = [values[:1]]
+    for low, high in pairwise(values):
+        at = np.linspace(low, high, SAMPLES)
+        away = np.maximum(np.maximum(values[:-1] - at[:, None], at[:, None] - values[1:]), 0.0)
+        rate = 1.0 / (sizes + GROWTH * away).min(axis=1)
+        steps = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(at))])
+        number = max(math.ceil(steps[-1] * (1.0 - SAME_PLACE)), least)
+        found.append(np.append(np.interp(steps[-1] * np.arange(1, number) / number, steps, at), high))
+    return np.concatenate(found)
 
 
 def merged(values: Array, margin: float) -> Array:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import hashlib
 import math
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
@@ -18,6 +19,8 @@ from .modes import hashed_once
 from .profile_mesh import BODY, MOST_CELLS, SAME_PLACE, ProfileMesh, checked_mesh, lines, merged, overlap
 
 Range = tuple[float, float]
+# Largest side of the cells of a part by its thickness [m].
+Size = Callable[[float], float]
 
 
 class Profile(Protocol):
@@ -43,8 +46,8 @@ class Profile(Protocol):
     def region_names(self) -> tuple[str, ...]:
         """Names of its regions, each of one material."""
 
-    def mesh(self, size: float) -> ProfileMesh:
-        """Return its cells, none with a side above `size` [m] where it is free to choose."""
+    def mesh(self, size: Size) -> ProfileMesh:
+        """Return its cells, with sides as long as parts of their thickness may have, where it is free to choose."""
 
 
 @hashed_once
@@ -84,7 +87,7 @@ class RectangleProfile:
         if shared:
             (first, _), (second, _) = (self.rectangles[number] for number in shared)
             raise ArgumentError("rectangles", "not overlap", got=f"{first!r} and {second!r} with an area in common")
-        self.mesh(math.inf)
+        self.mesh(_any_size)
 
     @property
     def region_names(self) -> tuple[str, ...]:
@@ -96,11 +99,11 @@ class RectangleProfile:
         """Shortest side of a rectangle [m]."""
         return float(np.diff(self._boxes, axis=2).min())
 
-    def mesh(self, size: float) -> ProfileMesh:
-        """Return its cells, none with a side above `size` [m]."""
+    def mesh(self, size: Size) -> ProfileMesh:
+        """Return its cells, in each rectangle with sides as long as its shorter side lets them be."""
         boxes = self._boxes
-        size = min(size, float(np.ptp(boxes, axis=(0, 2)).max()))
-        r, z = (_checked_lines(merged(boxes[:, axis].ravel(), self._margin), size) for axis in (0, 1))
+        sizes = np.array([size(float(np.diff(box, axis=1).min())) for box in boxes])
+        r, z = (self._lines(axis, sizes) for axis in (0, 1))
         # Lines divide what lies between rectangles, too.
         _check_count(float(len(r)) * len(z) * len(boxes) / 50.0)
         middle = np.stack(np.meshgrid(0.5 * (r[1:] + r[:-1]), 0.5 * (z[1:] + z[:-1]), indexing="ij"), axis=2)
@@ -115,6 +118,16 @@ class RectangleProfile:
         named = np.array([self.region_names.index(name) for name, _ in self.rectangles])[owner]
         regions = {name: np.flatnonzero(named == k) for k, name in enumerate(self.region_names)}
         return checked_mesh("rectangles", nodes, cells.reshape(-1, 4), regions)
+
+    def _lines(self, axis: int, sizes: Array) -> Array:
+        """Return the places along an axis that divide the profile, from the size of the cells of each rectangle."""
+        values, spans = merged(self._boxes[:, axis].ravel(), self._margin), self._boxes[:, axis]
+        middle = 0.5 * (values[1:] + values[:-1])
+        inside = (spans[:, :1] < middle) & (middle < spans[:, 1:])
+        # Cells of no rectangle are left out.
+        allowed = np.minimum(np.where(inside, sizes[:, None], math.inf).min(axis=0), np.diff(values))
+        _check_count(float((np.diff(values) / allowed).sum()))
+        return lines(values, allowed, least=2)
 
     @property
     def _boxes(self) -> Array:
@@ -172,7 +185,7 @@ class LineProfile:
             positive("thickness", self.thickness)
         if self.size is not None:
             positive("size", self.size)
-        self.mesh(math.inf)
+        self.mesh(_any_size)
 
     @property
     def region_names(self) -> tuple[str, ...]:
@@ -184,19 +197,15 @@ class LineProfile:
         """Least thickness [m]."""
         return float(np.min(self.thickness))
 
-    def mesh(self, size: float) -> ProfileMesh:
-        """Return its cells, none with a side along the line above `size` [m]; edges ``start`` and ``end``."""
+    def mesh(self, size: Size) -> ProfileMesh:
+        """Return its cells, with sides along the line as long as its thickness there lets them be."""
         points = np.array(self.points)
-        steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-        place = np.concatenate([[0.0], np.cumsum(steps)])
-        ratios = steps / min(size, place[-1]) * (1.0 - SAME_PLACE)
-        _check_count(2.0 * float(ratios.sum()))
-        counts = np.ceil(ratios).astype(int)
-        along = np.concatenate(
-            [low + (high - low) * np.arange(n) / n for low, high, n in zip(place[:-1], place[1:], counts, strict=True)]
-        )
-        along = np.append(along, place[-1])
         thick = np.broadcast_to(np.asarray(self.thickness, dtype=float), len(points))
+        steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        sizes = np.array([min(size(float(min(pair))), steps.sum()) for pair in pairwise(thick)])
+        _check_count(2.0 * float((steps / sizes).sum()))
+        place = np.concatenate([[0.0], np.cumsum(steps)])
+        along = lines(place, sizes)
         offset = 0.5 * thick[:, None] * _across(points)
         middle, half = (np.stack([np.interp(along, place, c) for c in one.T], axis=1) for one in (points, offset))
         nodes = np.stack([middle - half, middle, middle + half], axis=1).reshape(-1, 2)
@@ -291,15 +300,15 @@ class MeshProfile:
     @property
     def thinnest(self) -> float:
         """Shortest side of a cell [m], not above the thickness of its thinnest part."""
-        return self.mesh(math.inf).shortest_side
+        return self._mesh.shortest_side  # type: ignore[attr-defined]
 
-    def mesh(self, size: float) -> ProfileMesh:
+    def mesh(self, size: Size) -> ProfileMesh:
         """Return its cells, whatever their size."""
         found: ProfileMesh = self._mesh  # type: ignore[attr-defined]
         return found
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, MeshProfile) and self._digest == other._digest
+        return type(other) is MeshProfile and self._digest == other._digest
 
     def __hash__(self) -> int:
         return hash(self._digest)
@@ -394,9 +403,8 @@ def _check_division(regions: Mapping[str, Array], cells: int) -> None:
         raise ArgumentError("regions", f"hold each of the {cells} cells once", got=f"{every.size} in {len(regions)}")
 
 
-def _checked_lines(values: Array, size: float) -> Array:
-    _check_count(float(np.ptp(values)) / size)
-    return lines(values, size)
+def _any_size(thickness: float) -> float:
+    return math.inf
 
 
 def _check_count(count: float) -> None:
