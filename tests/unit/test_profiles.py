@@ -33,13 +33,28 @@ def test_rectangles_fill_their_area_whatever_the_cells():
 
 def test_small_cells_grow_step_by_step():
     mesh = st.RectangleProfile({"hub": ((0.0, 0.05), (0.0, 0.05)), "flange": ((0.05, 0.1), (0.0, 0.001))}).mesh(
-        lambda thickness: thickness
+        lambda thickness, region: thickness
     )
     heights = np.diff(np.unique(mesh.nodes[:, 1]))
     assert heights.min() == pytest.approx(0.0005)
     assert len(heights) < 12
     # Sides that grow by half of the distance grow by exp(1 / 2) from cell to cell.
     assert (heights[1:] / heights[:-1]).max() < 1.02 * math.exp(0.5)
+
+
+@pytest.mark.parametrize(
+    ("profile", "thinnest"),
+    [
+        (PROFILE, 0.01),
+        (st.RectangleProfile({"lining": ((0.0, 1.0), (0.0, 0.1)), "disc": ((0.0, 1.0), (0.1, 0.4))}), 0.4),
+        (st.RectangleProfile({"rod": ((0.0, 0.1), (0.0, 5.0))}), 0.1),
+        (st.LineProfile([(0.1, 0.0), (0.1, 0.2), (0.2, 0.4)], [0.01, 0.004, 0.008]), 0.004),
+    ],
+)
+def test_the_thinnest_part_is_known(profile, thinnest):
+    """Straight in from a side that leans a little it is somewhat farther; cells here are coarse."""
+    found = profile.mesh(lambda thickness, region: 0.01).thinnest
+    assert found == pytest.approx(thinnest, rel=0.03)
 
 
 def test_places_are_where_they_say():
@@ -72,7 +87,7 @@ def test_bodies_are_compared_by_content_and_travel():
     same = st.MeshProfile(mesh.nodes.tolist(), mesh.cells[:, ::-1].tolist(), mesh.regions)
     assert pickle.loads(pickle.dumps(profile)) == profile
     assert len({profile, st.MeshProfile(mesh.nodes, mesh.cells, mesh.regions)}) == 1
-    assert same.mesh(lambda thickness: 1.0).volumes.min() > 0.0
+    assert same.mesh(lambda thickness, region: 1.0).volumes.min() > 0.0
     with pytest.raises(ValueError, match="read-only"):
         profile.nodes[0] = 1.0
 
@@ -97,21 +112,40 @@ def test_damping_takes_the_forms_of_other_bodies():
         replace(BODY, damping=[0.01]).modes()
 
 
-def written(path, mesh, file_format: str) -> st.MeshProfile:
-    """Write a mesh in millimetres, its hat of quadrilaterals of nine nodes named, and read it again."""
+def parts(mesh):
+    """Return nodes in millimetres, and the cells of each group of a mesh."""
     points = np.hstack([1e3 * mesh.nodes, np.zeros((len(mesh.nodes), 1))])
-    top = mesh.sides_of("hat.top")
-    cells = [("quad", mesh.cells[mesh.regions["disc"]]), ("quad", mesh.cells[mesh.regions["hat"]]), ("line", top)]
-    tags = [np.full(len(block), k + 1) for k, (_, block) in enumerate(cells)]
+    disc, hat = (mesh.cells[mesh.regions[name]] for name in ("disc", "hat"))
+    return points, {"disc": ("quad", disc), "hat": ("quad", hat), "clamp": ("line", mesh.sides_of("hat.top"))}
+
+
+def write_gmsh(path, mesh):
+    """Groups as a number of each cell."""
+    points, groups = parts(mesh)
+    tags = [np.full(len(block), k + 1) for k, (_, block) in enumerate(groups.values())]
+    names = {name: np.array([k + 1, 1 if kind == "line" else 2]) for k, (name, (kind, _)) in enumerate(groups.items())}
     data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
-    names = {"disc": np.array([1, 2]), "hat": np.array([2, 2]), "clamp": np.array([3, 1])}
-    meshio.Mesh(points, cells, cell_data=data, field_data=names).write(path, file_format=file_format)
-    return st.MeshProfile.read(path, scale=1e-3)
+    written = meshio.Mesh(points, list(groups.values()), cell_data=data, field_data=names)
+    written.write(path.with_suffix(".msh"), file_format="gmsh22")
+    return path.with_suffix(".msh")
 
 
-@pytest.mark.parametrize("file_format", ["gmsh22"])
-def test_a_profile_from_a_file_has_the_same_modes(tmp_path, file_format):
-    profile = written(tmp_path / "disc.msh", BODY.mesh, file_format)
+def write_abaqus(path, mesh):
+    """Groups as sets of cells."""
+    points, groups = parts(mesh)
+    sets = {
+        name: [
+            np.arange(len(block)) if other == name else np.zeros(0, dtype=int) for other, (_, block) in groups.items()
+        ]
+        for name in groups
+    }
+    meshio.Mesh(points, list(groups.values()), cell_sets=sets).write(path.with_suffix(".inp"))
+    return path.with_suffix(".inp")
+
+
+@pytest.mark.parametrize("write", [write_gmsh, write_abaqus])
+def test_a_profile_from_a_file_has_the_same_modes(tmp_path, write):
+    profile = st.MeshProfile.read(write(tmp_path / "disc", BODY.mesh), scale=1e-3)
     assert profile.region_names == ("disc", "hat")
     body = replace(BODY, profile=profile, held="clamp")
     np.testing.assert_allclose(body.modes().frequency, BODY.modes().frequency, rtol=1e-8)
@@ -127,7 +161,7 @@ def test_cells_of_higher_degree_and_mixed_ones_are_read(tmp_path):
     assert profile.cells.shape == (4, 3)
     assert len(profile.nodes) == 6
     assert profile.region_names == ("body",)
-    assert profile.mesh(lambda thickness: 1.0).volumes.sum() == pytest.approx(math.pi * 4.0)
+    assert profile.mesh(lambda thickness, region: 1.0).volumes.sum() == pytest.approx(math.pi * 4.0)
     with pytest.raises(st.ArgumentError, match="plane must be the plane of the mesh"):
         st.MeshProfile.read(path)
 

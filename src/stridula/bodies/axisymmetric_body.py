@@ -268,24 +268,31 @@ class AxisymmetricBody:
             if not len(one.sides(self.mesh)):
                 raise ArgumentError(name, "hold a side of a cell or more", got=f"none at {brief(one.place)}")
 
-    def _waves(self, thickness: float) -> float:
-        """Return the wavenumber of the shortest waves below the cutoff in parts of a thickness [rad/m], not below it.
-
-        In a plate ``k² <= k_b² + k_s²`` with the waves of Kirchhoff's plate and those of shear (Mindlin 1951).
-        """
-        angular, squares = 2.0 * math.pi * self.cutoff, []
-        for one in self.materials.values():
-            slowness = one.density / one.young
-            shear = 2.0 * (1.0 + one.poisson) * slowness / SURFACE_WAVES
-            squares.append(angular * math.sqrt(12.0 * slowness) / thickness + angular**2 * shear)
-        return math.sqrt(max(squares))
-
-    def _cell(self, thickness: float) -> float:
-        """Return the largest side of the cells of parts of a thickness [m]."""
+    def _cell(self, thickness: float, region: str) -> float:
+        """Return the largest side of the cells of parts of a thickness in a region [m]."""
         if self.profile.size is not None:
             return self.profile.size
-        wave = 1.0 / self._waves(thickness)
+        wave = 1.0 / _shortest_waves([self.materials[region]], thickness, self.cutoff)
         return min(CELL_OF_WAVE * wave, max(CELL_OF_THICKNESS * thickness, CELL_OF_BENDING * wave))
+
+    @property
+    def _highest_order(self) -> int:
+        """Highest order that has waves below the cutoff, not below it."""
+        waves = _shortest_waves(tuple(self.materials.values()), self.mesh.thinnest, self.cutoff)
+        highest = math.ceil(float(self.mesh.nodes[:, 0].max()) * waves) + ORDERS_MORE
+        return highest if self.orders is None else min(highest, self.orders)
+
+
+def _shortest_waves(materials: Sequence[Material], thickness: float, cutoff: float) -> float:
+    """Return the wavenumber of the shortest waves below a cutoff [Hz] in layers [rad/m], not below it.
+
+    In a plate ``k² <= k_b² + k_s²`` with the waves of Kirchhoff's plate and those of shear (Mindlin 1951). Layers are
+    no slower than a plate as heavy as the heaviest and as soft as the softest.
+    """
+    angular, density = 2.0 * math.pi * cutoff, max(one.density for one in materials)
+    bending = angular * math.sqrt(12.0 * density / min(one.young for one in materials)) / thickness
+    shear = max(2.0 * (1.0 + one.poisson) / one.young for one in materials) * density / SURFACE_WAVES
+    return math.sqrt(bending + angular**2 * shear)
 
 
 @dataclass(frozen=True, eq=False)
@@ -328,10 +335,7 @@ def _solution(body: AxisymmetricBody) -> _Solution:
     mesh = body.mesh
     elements = fourier_elements(mesh, [body.materials[name] for name in mesh.regions])
     held = [Constraint(one.components, elements.points_on(one.sides(mesh))) for one in body.held]
-    highest = math.ceil(mesh.nodes[:, 0].max() * body._waves(body.profile.thinnest)) + ORDERS_MORE
-    if body.orders is not None:
-        highest = min(highest, body.orders)
-    found, lowest = families(elements, held, body.cutoff, range(highest + 1))
+    found, lowest = families(elements, held, body.cutoff, range(body._highest_order + 1))
     if not found:
         raise ArgumentError(
             "cutoff",

@@ -22,8 +22,8 @@ BODY = "body"
 SIDES = ("inner", "outer", "bottom", "top")
 # Growth of the sides of cells with the distance from smaller ones, and points of an interval at which it is reckoned.
 GROWTH, SAMPLES = 0.5, 257
-# Rows of a table of pairs of edges that is made at once.
-EDGES_AT_ONCE = 256
+# Rows of a table of pairs of sides that is made at once.
+SIDES_AT_ONCE = 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,10 +66,29 @@ class ProfileMesh:
         return np.asarray(np.pi / 3.0 * ((r + other_r) * (r * other_z - other_r * z)).sum(axis=1))
 
     @property
-    def shortest_side(self) -> float:
-        """Length of the shortest side of a cell [m]."""
-        ends = self.nodes[self.sides]
-        return float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).min())
+    def outline(self) -> Array:
+        """Pairs of nodes of the sides of one cell alone, the profile to their left, shape (sides, 2)."""
+        sides = _sides(self.cells).reshape(-1, 2)
+        _, which, times = np.unique(np.sort(sides), axis=0, return_inverse=True, return_counts=True)
+        return np.asarray(sides[times[which.ravel()] == 1])
+
+    @property
+    def thinnest(self) -> float:
+        """Least distance through the profile, straight in from the middle of a side of its outline [m]."""
+        ends = self.nodes[self.outline]
+        start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
+        inward = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.linalg.norm(along, axis=1)[:, None]
+        middle, least = start + 0.5 * along, math.inf
+        for first in range(0, len(ends), SIDES_AT_ONCE):
+            rows = slice(first, first + SIDES_AT_ONCE)
+            across = _cross(inward[rows, None], along[None])
+            to_start = start[None] - middle[rows, None]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                away = _cross(to_start, along[None]) / across
+                share = _cross(to_start, inward[rows, None]) / across
+            meets = (away > SAME_PLACE * self.size) & (share >= -SAME_PLACE) & (share <= 1.0 + SAME_PLACE)
+            least = min(least, float(np.where(meets, away, math.inf).min()))
+        return least
 
     @property
     def place_names(self) -> tuple[str, ...]:
@@ -105,9 +124,7 @@ class ProfileMesh:
         sides = self.nodes[_sides(self.cells)]
         along = sides[:, :, 1] - sides[:, :, 0]
         to_point = np.array([r, z]) - sides[:, :, 0]
-        depth = (along[..., 0] * to_point[..., 1] - along[..., 1] * to_point[..., 0]) / np.hypot(
-            *np.moveaxis(along, -1, 0)
-        )
+        depth = _cross(along, to_point) / np.linalg.norm(along, axis=-1)
         deepest = depth.min(axis=1)
         cell = int(np.argmax(deepest))
         return cell if deepest[cell] >= -SAME_PLACE * self.size else None
@@ -143,6 +160,10 @@ def checked_mesh(
     return mesh
 
 
+def _cross(first: Array, second: Array) -> Array:
+    return np.asarray(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0])
+
+
 def _sides(cells: Array) -> Array:
     """Return the pairs of nodes along each cell, shape (cells, sides, 2)."""
     return np.stack([cells, np.roll(cells, -1, axis=1)], axis=2)
@@ -151,8 +172,7 @@ def _sides(cells: Array) -> Array:
 def _corners(nodes: Array, cells: Array) -> Array:
     """Return twice the area of the triangle at each corner of each cell [m²], shape (cells, corners)."""
     here, before, after = nodes[cells], nodes[np.roll(cells, 1, axis=1)], nodes[np.roll(cells, -1, axis=1)]
-    first, second = here - before, after - here
-    return np.asarray(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0])
+    return _cross(here - before, after - here)
 
 
 def _counter_clockwise(name: str, nodes: Array, cells: Array) -> Array:
@@ -201,8 +221,8 @@ def _first_crossing(nodes: Array, outline: Array, margin: float) -> int | None:
     a, b = nodes[outline[:, 0]], nodes[outline[:, 1]]
     length = np.linalg.norm(b - a, axis=1)
     low, high = np.minimum(a, b) - margin, np.maximum(a, b) + margin
-    for start in range(0, len(outline), EDGES_AT_ONCE):
-        rows = np.arange(start, min(start + EDGES_AT_ONCE, len(outline)))[:, None]
+    for start in range(0, len(outline), SIDES_AT_ONCE):
+        rows = np.arange(start, min(start + SIDES_AT_ONCE, len(outline)))[:, None]
         near = ((low[rows] <= high[None]) & (low[None] <= high[rows])).all(axis=2)
         shared = (outline[rows][..., :, None] == outline[None][..., None, :]).any(axis=(2, 3))
         first, second = np.nonzero(near & ~shared)
@@ -221,7 +241,7 @@ def _straddles(a: Array, b: Array, length: Array, line: Array, side: Array, marg
     distances = []
     for end in (a[side], b[side]):
         to_end = end - a[line]
-        distance = (along[:, 0] * to_end[:, 1] - along[:, 1] * to_end[:, 0]) / length[line]
+        distance = _cross(along, to_end) / length[line]
         distances.append(np.where(np.abs(distance) <= margin, 0.0, distance))
     return np.asarray(distances[0] * distances[1] <= 0.0)
 

@@ -19,8 +19,8 @@ from .modes import hashed_once
 from .profile_mesh import BODY, MOST_CELLS, SAME_PLACE, ProfileMesh, checked_mesh, lines, merged, overlap
 
 Range = tuple[float, float]
-# Largest side of the cells of a part by its thickness [m].
-Size = Callable[[float], float]
+# Largest side of the cells of a part by its thickness and its region [m].
+Size = Callable[[float, str], float]
 
 
 class Profile(Protocol):
@@ -37,10 +37,6 @@ class Profile(Protocol):
     @property
     def size(self) -> float | None:
         """Largest side of its cells [m], None where that follows from the waves."""
-
-    @property
-    def thinnest(self) -> float:
-        """Thickness of its thinnest part [m]; not above it where it is not known."""
 
     @property
     def region_names(self) -> tuple[str, ...]:
@@ -94,15 +90,10 @@ class RectangleProfile:
         """Names of its regions."""
         return tuple(dict.fromkeys(name for name, _ in self.rectangles))
 
-    @property
-    def thinnest(self) -> float:
-        """Shortest side of a rectangle [m]."""
-        return float(np.diff(self._boxes, axis=2).min())
-
     def mesh(self, size: Size) -> ProfileMesh:
         """Return its cells, in each rectangle with sides as long as its shorter side lets them be."""
         boxes = self._boxes
-        sizes = np.array([size(float(np.diff(box, axis=1).min())) for box in boxes])
+        sizes = np.array([size(float(np.diff(box).min()), name) for name, box in self.rectangles])
         r, z = (self._lines(axis, sizes) for axis in (0, 1))
         # Lines divide what lies between rectangles, too.
         _check_count(float(len(r)) * len(z) * len(boxes) / 50.0)
@@ -192,17 +183,12 @@ class LineProfile:
         """Name of its only region."""
         return (BODY,)
 
-    @property
-    def thinnest(self) -> float:
-        """Least thickness [m]."""
-        return float(np.min(self.thickness))
-
     def mesh(self, size: Size) -> ProfileMesh:
         """Return its cells, with sides along the line as long as its thickness there lets them be."""
         points = np.array(self.points)
         thick = np.broadcast_to(np.asarray(self.thickness, dtype=float), len(points))
         steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-        sizes = np.array([min(size(float(min(pair))), steps.sum()) for pair in pairwise(thick)])
+        sizes = np.array([min(size(float(min(pair)), BODY), steps.sum()) for pair in pairwise(thick)])
         _check_count(2.0 * float((steps / sizes).sum()))
         place = np.concatenate([[0.0], np.cumsum(steps)])
         along = lines(place, sizes)
@@ -296,11 +282,6 @@ class MeshProfile:
     def region_names(self) -> tuple[str, ...]:
         """Names of its regions."""
         return tuple(self.regions)
-
-    @property
-    def thinnest(self) -> float:
-        """Shortest side of a cell [m], not above the thickness of its thinnest part."""
-        return self._mesh.shortest_side  # type: ignore[attr-defined]
 
     def mesh(self, size: Size) -> ProfileMesh:
         """Return its cells, whatever their size."""
@@ -403,7 +384,7 @@ def _check_division(regions: Mapping[str, Array], cells: int) -> None:
         raise ArgumentError("regions", f"hold each of the {cells} cells once", got=f"{every.size} in {len(regions)}")
 
 
-def _any_size(thickness: float) -> float:
+def _any_size(thickness: float, region: str) -> float:
     return math.inf
 
 
