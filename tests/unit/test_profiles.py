@@ -243,6 +243,8 @@ def body(**changes):
         (body(material={"disc": STEEL}), "material must be given for all regions, disc, hat, got none for hat"),
         (body(material={"disc": STEEL, "hub": STEEL}), "material must be one of disc, hat"),
         (body(material=7800.0), "material must be a Material"),
+        (body(material=st.Material(1e7, 1e3, 0.4999)), "material must have a Poisson's ratio from -0.99 to 0.499"),
+        (body(material=st.Material(2e11, 1e-300)), "material and profile must hold numbers of ordinary size"),
         (body(profile=BOXES), "profile must be a RectangleProfile"),
         (body(cutoff=0.0), "cutoff must be above 0"),
         (body(cutoff=1e8), "cutoff must leave at most 100000 cells"),

@@ -14,7 +14,7 @@ from ..arrays import Array
 from ..checks import ArgumentError, at_least, brief, choice, count, finite, instance, listed, positive
 from .damping import DampingLaw, checked_damping, damping_rates
 from .modes import BodyPoint, Modes, hashed_once
-from .ordinary import of_ordinary_size
+from .ordinary import NotOrdinary, of_ordinary_size
 from .profile_mesh import ProfileMesh
 from .profiles import PROFILES, Profile
 from .sections import Material
@@ -29,6 +29,10 @@ DIRECTIONS = ("r", "theta", "z")
 CELL_OF_WAVE, CELL_OF_BENDING, CELL_OF_THICKNESS = 0.4, 0.1, 0.5
 # Square of the speed of surface waves, the slowest where nothing bends, over that of shear waves, at least.
 SURFACE_WAVES = 0.75
+# Poisson's ratios beyond which displacements alone cannot tell pressure, or shear, from rounding.
+LEAST_POISSON, MOST_POISSON = -0.99, 0.499
+# Squares of masses and stiffnesses [kg, N/m] can be held.
+LARGEST = 1e100
 # A free ring of order n bends like a beam of a length of n - 1 waves and more.
 ORDERS_MORE = 2
 
@@ -93,7 +97,8 @@ class AxisymmetricBody:
     profile : RectangleProfile, LineProfile or MeshProfile
         Its section through the axis, the half with r >= 0.
     material : Material or mapping
-        What it is made of, or the material of each region of the profile by its name.
+        What it is made of, or the material of each region of the profile by its name; Poisson's ratios from -0.99 to
+        0.499.
     cutoff : float
         Keep all the modes up to this frequency [Hz].
     held : str, Held or sequence of these, optional
@@ -152,6 +157,9 @@ class AxisymmetricBody:
         object.__setattr__(self, "origin", origin)
         instance("name", self.name, str)
         self._check_held()
+        sizes = (self.total_mass, *(one.young * self.mesh.size for one in self.materials.values()))
+        if not all(1.0 / LARGEST < size < LARGEST for size in sizes):
+            raise NotOrdinary("material and profile")
 
     @property
     def materials(self) -> dict[str, Material]:
@@ -384,18 +392,25 @@ def _materials(given: Any, regions: tuple[str, ...]) -> Material | tuple[tuple[s
     if isinstance(given, tuple):
         given = dict(given)
     if not isinstance(given, Mapping):
-        instance("material", given, Material)
-        one: Material = given
-        return one
+        return _solid("material", given)
     for name, material in given.items():
         choice("material", name, regions)
-        instance(f"material[{name!r}]", material, Material)
+        _solid(f"material[{name!r}]", material)
     missing = [name for name in regions if name not in given]
     if missing:
         raise ArgumentError(
             "material", f"be given for all regions, {listed(regions)}", got=f"none for {listed(missing)}"
         )
     return tuple((name, given[name]) for name in regions)
+
+
+def _solid(name: str, given: Any) -> Material:
+    instance(name, given, Material)
+    material: Material = given
+    if not LEAST_POISSON <= material.poisson <= MOST_POISSON:
+        allowed = f"have a Poisson's ratio from {LEAST_POISSON} to {MOST_POISSON} in a solid"
+        raise ArgumentError(name, allowed, material, got=material.poisson)
+    return material
 
 
 def _box(place: Any) -> tuple[tuple[float, float], tuple[float, float]]:
