@@ -108,6 +108,9 @@ class AxisymmetricBody:
     damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
         Damping ratio of every mode [1], from 0 to 1 (1 excluded), one for each mode in their order, or a law of their
         frequency.
+    residual_at : sequence of tuple of float, optional
+        Places (r, z) of the profile [m] where forces act, at any angle: to those, and to gravity, modes of the same
+        orders beyond the cutoff still yield statically, by residual shapes without mass, which come last.
     axis : tuple of float, optional
         Direction of its axis of revolution in the world, of any length.
     origin : tuple of float, optional
@@ -133,6 +136,7 @@ class AxisymmetricBody:
     held: Any = ()
     orders: int | None = None
     damping: float | Sequence[float] | DampingLaw = 0.0
+    residual_at: Any = ()
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     name: str = ""
@@ -156,7 +160,12 @@ class AxisymmetricBody:
         object.__setattr__(self, "axis", tuple(one / length + 0.0 for one in axis))
         object.__setattr__(self, "origin", origin)
         instance("name", self.name, str)
+        object.__setattr__(self, "residual_at", _places(self.residual_at))
+        # From here on it has a hash: all fields are as they stay.
         self._check_held()
+        for number, place in enumerate(self.residual_at):
+            if self.mesh.cell_at(*place) is None:
+                raise ArgumentError(f"residual_at[{number}]", "be (r, z) in the profile", place)
         sizes = (self.total_mass, *(one.young * self.mesh.size for one in self.materials.values()))
         if not all(1.0 / LARGEST < size < LARGEST for size in sizes):
             raise NotOrdinary("material and profile")
@@ -212,8 +221,8 @@ class AxisymmetricBody:
     def numbers(self) -> Array:
         """Numbers of each mode, shape (modes, 3).
 
-        Its order n; which one it is of its order and kind, from 0; 0 for the cosine of a pair, 1 for the sine. Of order
-        0, those with 0 do not twist and those with 1 are torsion.
+        Its order n; which one it is of its order and kind, from 0, residual shapes last; 0 for the cosine of a pair, 1
+        for the sine. Of order 0, those with 0 do not twist and those with 1 are torsion.
         """
         return _solution(self).numbers
 
@@ -343,8 +352,9 @@ def _solution(body: AxisymmetricBody) -> _Solution:
     mesh = body.mesh
     elements = fourier_elements(mesh, [body.materials[name] for name in mesh.regions])
     held = [Constraint(one.components, elements.points_on(one.sides(mesh))) for one in body.held]
-    found, lowest = families(elements, held, body.cutoff, range(body._highest_order + 1))
-    if not found:
+    found = families(elements, held, body.cutoff, range(body._highest_order + 1), body.residual_at)
+    lowest = min(one.lowest for one in found)
+    if lowest > body.cutoff:
         raise ArgumentError(
             "cutoff",
             f"leave at least one mode (first at {at_least(lowest)} Hz)",
@@ -352,7 +362,7 @@ def _solution(body: AxisymmetricBody) -> _Solution:
             got=f"{body.cutoff!r} Hz",
         )
     rows = [
-        (squared, one.order, one.sides[0], index, number)
+        (squared, one.kind.order, one.kind.sides[0], index, number)
         for number, one in enumerate(found)
         for index, squared in enumerate(one.squared)
     ]
@@ -360,14 +370,16 @@ def _solution(body: AxisymmetricBody) -> _Solution:
     numbers, columns, translation, squares = [], [], [], []
     for column, (squared, order, _, index, number) in enumerate(rows):
         family = found[number]
-        for side in family.sides:
+        for side in family.kind.sides:
             numbers.append((order, index, side))
             columns.append(column)
             squares.append(squared)
             translation.append(_translation(body, elements, family, index, side))
     shapes = np.stack([found[number].shapes[:, :, index] for *_, index, number in rows], axis=2)
     angular = np.sqrt(squares)
-    modes = Modes(angular, damping_rates(body.damping, angular), np.array(translation).T)
+    rates = np.zeros(angular.size)
+    rates[np.isfinite(angular)] = damping_rates(body.damping, angular[np.isfinite(angular)])
+    modes = Modes(angular, rates, np.array(translation).T)
     solution = _Solution(elements, modes, np.array(numbers), np.array(columns), shapes)
     for array in (modes.angular_frequency, modes.translation, solution.numbers, shapes):
         array.flags.writeable = False
@@ -380,9 +392,9 @@ def _translation(body: AxisymmetricBody, elements: FourierElements, family: Any,
     Of ``integral rho u dV`` only order 0 has a share along the axis, and order 1 one across it.
     """
     u, v, w = family.shapes[:, :, index]
-    if family.order == 0 and side == 0:
+    if family.kind.order == 0 and side == 0:
         return np.asarray(2.0 * math.pi * (elements.mass @ w).sum() * body.frame[2])
-    if family.order == 1:
+    if family.kind.order == 1:
         return np.asarray(math.pi * (elements.mass @ (u - v)).sum() * body.frame[side])
     return np.zeros(3)
 
@@ -411,6 +423,18 @@ def _solid(name: str, given: Any) -> Material:
         allowed = f"have a Poisson's ratio from {LEAST_POISSON} to {MOST_POISSON} in a solid"
         raise ArgumentError(name, allowed, material, got=material.poisson)
     return material
+
+
+def _places(given: Any) -> tuple[tuple[float, float], ...]:
+    if isinstance(given, str) or not isinstance(given, Sequence):
+        raise ArgumentError("residual_at", "be places (r, z) of the profile", given)
+    found = []
+    for number, one in enumerate(given):
+        name = f"residual_at[{number}]"
+        if isinstance(one, str) or not isinstance(one, Sequence) or len(one) != 2:
+            raise ArgumentError(name, "be a place (r, z) of the profile", one)
+        found.append((finite(f"{name}[0]", one[0]), finite(f"{name}[1]", one[1])))
+    return tuple(found)
 
 
 def _box(place: Any) -> tuple[tuple[float, float], tuple[float, float]]:
