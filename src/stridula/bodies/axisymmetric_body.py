@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -21,8 +21,10 @@ from .sections import Material
 
 if TYPE_CHECKING:
     from .fourier_elements import FourierElements
+    from .profile_modes import Family
 
 DIRECTIONS = ("r", "theta", "z")
+Z = (0.0, 0.0, 1.0)
 # Largest side of a cell as a share of 1 / k, of the shortest waves: in parts thicker than that, and in parts so thin
 # that cells of their thickness would be more than bending needs; between them it is a share of the thickness.
 # Frequencies come out within 1e-3, and within 5e-3 where corners point inwards.
@@ -137,7 +139,7 @@ class AxisymmetricBody:
     orders: int | None = None
     damping: float | Sequence[float] | DampingLaw = 0.0
     residual_at: Any = ()
-    axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    axis: tuple[float, float, float] = Z
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     name: str = ""
 
@@ -344,7 +346,7 @@ def _mesh(body: AxisymmetricBody) -> ProfileMesh:
 
 
 @lru_cache(maxsize=16)
-def _solution(body: AxisymmetricBody) -> _Solution:
+def _families(body: AxisymmetricBody) -> tuple[FourierElements, list[Family]]:
     # Here, not above: scikit-fem takes a third of a second to import.
     from .fourier_elements import fourier_elements
     from .profile_modes import Constraint, families
@@ -355,12 +357,15 @@ def _solution(body: AxisymmetricBody) -> _Solution:
     found = families(elements, held, body.cutoff, range(body._highest_order + 1), body.residual_at)
     lowest = min(one.lowest for one in found)
     if lowest > body.cutoff:
-        raise ArgumentError(
-            "cutoff",
-            f"leave at least one mode (first at {at_least(lowest)} Hz)",
-            body.cutoff,
-            got=f"{body.cutoff!r} Hz",
-        )
+        words = f"leave at least one mode (first at {at_least(lowest)} Hz)"
+        raise ArgumentError("cutoff", words, body.cutoff, got=f"{body.cutoff!r} Hz")
+    return elements, found
+
+
+@lru_cache(maxsize=16)
+def _solution(body: AxisymmetricBody) -> _Solution:
+    # How it is damped and stands has no share in its shapes.
+    elements, found = _families(replace(body, damping=0.0, axis=Z, origin=(0.0, 0.0, 0.0), name=""))
     rows = [
         (squared, one.kind.order, one.kind.sides[0], index, number)
         for number, one in enumerate(found)
@@ -386,7 +391,7 @@ def _solution(body: AxisymmetricBody) -> _Solution:
     return solution
 
 
-def _translation(body: AxisymmetricBody, elements: FourierElements, family: Any, index: int, side: int) -> Array:
+def _translation(body: AxisymmetricBody, elements: FourierElements, family: Family, index: int, side: int) -> Array:
     """Return what a uniform acceleration along x, y and z gives a mode [kg^(1/2)], shape (3,).
 
     Of ``integral rho u dV`` only order 0 has a share along the axis, and order 1 one across it.
