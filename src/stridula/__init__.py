@@ -9,17 +9,22 @@ from .version import __version__
 
 _HOME = {
     "bodies": (
+        "AxisymmetricBody",
         "BodyPoint",
         "Circle",
         "FiniteElementBeam",
+        "Held",
         "Line",
+        "LineProfile",
         "Material",
+        "MeshProfile",
         "ModalBeam",
         "ModalPlate",
         "Modes",
         "PointMass",
         "Rayleigh",
         "Rectangle",
+        "RectangleProfile",
         "ReducedBody",
         "RigidBody",
         "RisingDamping",

@@ -18,6 +18,8 @@ import stridula
 ROOT = Path(stridula.__file__).parent
 FILES = sorted(path for path in ROOT.rglob("*.py") if "__pycache__" not in path.parts)
 HEAVY = ("numba", "xarray", "matplotlib", "scipy", "pandas", "pydantic", "typer", "rich", "h5netcdf", "dask")
+# Packages that one module owns.
+OWNED = {"skfem": "bodies.fourier_elements", "meshio": "bodies.mesh_files"}
 # Each takes a quarter of a second and more to import, or brings others that do.
 SLOW_PARTS = ("scipy.signal", "scipy.stats", "scipy.ndimage", "scipy.optimize", "scipy.interpolate")
 
@@ -122,6 +124,11 @@ def test_matplotlib_is_for_figures_only(path):
         assert "matplotlib" not in roots(imports(path))
 
 
+@pytest.mark.parametrize("package", OWNED)
+def test_packages_with_an_owner_are_imported_there_alone(package):
+    assert [module_of(path) for path in FILES if package in roots(imports(path))] == [OWNED[package]]
+
+
 @pytest.mark.parametrize("path", FILES, ids=IDS)
 def test_nothing_inside_imports_the_package_root(path):
     names = imports(path) - {"stridula.version", "stridula.version.__version__"}
@@ -144,7 +151,7 @@ def test_import_harness_sees_a_forbidden_import():
 
 def loaded_after(code: str) -> set[str]:
     """Heavy packages loaded after `code` in a fresh interpreter."""
-    listing = f"{code}; import sys; print(*(m for m in {(*HEAVY, *SLOW_PARTS)!r} if m in sys.modules))"
+    listing = f"{code}; import sys; print(*(m for m in {(*HEAVY, *SLOW_PARTS, *OWNED)!r} if m in sys.modules))"
     done = subprocess.run([sys.executable, "-c", listing], capture_output=True, text=True, check=True)
     return set(done.stdout.split())
 
@@ -155,7 +162,16 @@ def test_plain_import_is_light():
 
 def test_descriptions_need_no_compiler_and_no_records():
     code = "import stridula as st; st.ModalBeam(st.Material(1.0, 1.0), st.Circle(1.0), 1.0)"
-    assert not loaded_after(code) & {"numba", "xarray", "matplotlib"}
+    assert not loaded_after(code) & {"numba", "xarray", "matplotlib", *OWNED}
+
+
+def test_a_body_of_revolution_takes_its_elements_when_it_is_asked_for_modes():
+    code = (
+        "import stridula as st; b = st.AxisymmetricBody("
+        "st.RectangleProfile({'disc': ((0.1, 0.2), (0.0, 0.01))}), st.Material(2e11, 7800.0), 2e3, 'inner')"
+    )
+    assert not loaded_after(code) & {"numba", "xarray", "matplotlib", "meshio", *SLOW_PARTS, "skfem"}
+    assert "skfem" in loaded_after(f"{code}; b.modes()")
 
 
 def test_the_list_of_scenarios_needs_nothing_heavy():

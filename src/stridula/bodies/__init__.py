@@ -1,5 +1,6 @@
 """What vibrates: bodies that end as mass-normalised modes and their traces."""
 
+from .axisymmetric_body import AxisymmetricBody, Held
 from .damping import Rayleigh, RisingDamping, SampledDamping
 from .finite_element_beam import FiniteElementBeam
 from .modal_beam import ModalBeam
@@ -7,25 +8,32 @@ from .modal_plate import Line, ModalPlate
 from .modes import Body, BodyPoint, HasRoot, Modes
 from .paths import Path, Track, Waves
 from .point_mass import PointMass
+from .profiles import LineProfile, MeshProfile, Profile, RectangleProfile
 from .reduced_body import ReducedBody
 from .rigid_body import RigidBody
 from .sections import Circle, Material, Rectangle, Section
 
 __all__ = [
+    "AxisymmetricBody",
     "Body",
     "BodyPoint",
     "Circle",
     "FiniteElementBeam",
     "HasRoot",
+    "Held",
     "Line",
+    "LineProfile",
     "Material",
+    "MeshProfile",
     "ModalBeam",
     "ModalPlate",
     "Modes",
     "Path",
     "PointMass",
+    "Profile",
     "Rayleigh",
     "Rectangle",
+    "RectangleProfile",
     "ReducedBody",
     "RigidBody",
     "RisingDamping",

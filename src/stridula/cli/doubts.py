@@ -15,6 +15,8 @@ from .exits import GOOD, say
 # From soft rubber to diamond [Pa], from foam to osmium [kg/m3].
 YOUNG = (1e5, 2e12)
 DENSITY = (10.0, 3e4)
+# Numbers from here on were MPa, numbers below that were t/mm3: aluminium has 7e4 and 2.7e-9.
+MEGA, TONNES = 2e3, 1e-6
 MOST_MODES = 5000
 
 
@@ -33,11 +35,15 @@ def say_doubts(name: str) -> None:
 
 def _of(name: str, body: Any) -> Iterator[str]:
     material = getattr(body, "material", None)
-    if isinstance(material, Material):
-        if not YOUNG[0] <= material.young <= YOUNG[1]:
-            yield f"{name}: Young's modulus of {material.young:.4g} Pa; did you mean GPa?"
-        if not DENSITY[0] <= material.density <= DENSITY[1]:
-            yield f"{name}: density of {material.density:.4g} kg/m3; did you mean g/cm3?"
+    materials = {"": material} if isinstance(material, Material) else getattr(body, "materials", {})
+    for region, one in materials.items():
+        whose = f"{name}, {region}" if region else name
+        if not YOUNG[0] <= one.young <= YOUNG[1]:
+            unit = "MPa" if MEGA <= one.young < YOUNG[0] else "GPa"
+            yield f"{whose}: Young's modulus of {one.young:.4g} Pa; did you mean {unit}?"
+        if not DENSITY[0] <= one.density <= DENSITY[1]:
+            unit = "t/mm3, as finite-element programs have it" if one.density < TONNES else "g/cm3"
+            yield f"{whose}: density of {one.density:.4g} kg/m3; did you mean {unit}?"
     if isinstance(body, (FiniteElementBeam, ModalBeam)):
         across = getattr(body.section, "height", getattr(body.section, "diameter", 0.0))
         if across > 0.5 * body.length:

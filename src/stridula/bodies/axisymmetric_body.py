@@ -1,0 +1,464 @@
+"""A body of revolution at rest: a disc, a wheel, a bell or a glass by Fourier finite elements on its profile."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ..arrays import Array
+from ..checks import ArgumentError, at_least, brief, choice, count, finite, instance, listed, positive
+from .damping import DampingLaw, checked_damping, damping_rates
+from .modes import BodyPoint, Modes, hashed_once
+from .ordinary import NotOrdinary, of_ordinary_size
+from .profile_mesh import ProfileMesh
+from .profiles import PROFILES, Profile
+from .sections import Material
+
+if TYPE_CHECKING:
+    from .fourier_elements import FourierElements
+    from .profile_modes import Family
+
+DIRECTIONS = ("r", "theta", "z")
+Z = (0.0, 0.0, 1.0)
+# Largest side of a cell as a share of 1 / k, of the shortest waves: in parts thicker than that, and in parts so thin
+# that cells of their thickness would be more than bending needs; between them it is a share of the thickness.
+# Frequencies come out within 1e-3, and within 5e-3 where corners point inwards.
+CELL_OF_WAVE, CELL_OF_BENDING, CELL_OF_THICKNESS = 0.4, 0.1, 0.5
+# Square of the speed of surface waves, the slowest where nothing bends, over that of shear waves, at least.
+SURFACE_WAVES = 0.75
+# Poisson's ratios beyond which displacements alone cannot tell pressure, or shear, from rounding.
+LEAST_POISSON, MOST_POISSON = -0.99, 0.499
+# Squares of masses and stiffnesses [kg, N/m] can be held.
+LARGEST = 1e100
+# A free ring of order n bends like a beam of a length of n - 1 waves and more.
+ORDERS_MORE = 2
+
+
+@hashed_once
+@dataclass(frozen=True)
+class Held:
+    """A part of a profile that does not move in some directions.
+
+    Parameters
+    ----------
+    place : str or tuple
+        The name of a place of the profile, or a box: its range of r and its range of z [m]. Every profile has
+        ``inner``, ``outer``, ``bottom`` and ``top``, its edges of least and largest r, least and largest z; one with
+        several regions has each of them as a whole by its name and its edges as ``hat.inner``; lines have ``start`` and
+        ``end``; meshes have their named edges. Sides of cells that lie in a box as a whole are held.
+    directions : str or sequence of str, optional
+        Those in which it is held, of ``r``, ``theta`` and ``z``; all if left out.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+
+    place: Any
+    directions: Any = DIRECTIONS
+
+    def __post_init__(self) -> None:
+        given = (self.directions,) if isinstance(self.directions, str) else self.directions
+        if not isinstance(given, Sequence) or not given:
+            raise ArgumentError("directions", f"be one or more of {', '.join(DIRECTIONS)}", self.directions)
+        words = tuple(choice(f"directions[{k}]", one, DIRECTIONS) for k, one in enumerate(given))
+        object.__setattr__(self, "directions", tuple(one for one in DIRECTIONS if one in words))
+        if not isinstance(self.place, str):
+            object.__setattr__(self, "place", _box(self.place))
+
+    @property
+    def components(self) -> tuple[int, ...]:
+        """Numbers of its directions: 0 for r, 1 for theta, 2 for z."""
+        return tuple(DIRECTIONS.index(one) for one in self.directions)
+
+    def sides(self, mesh: ProfileMesh) -> Array:
+        """Return the sides of cells that are held, shape (sides, 2)."""
+        if not isinstance(self.place, str):
+            return mesh.sides_within(*self.place)
+        return mesh.sides_of(self.place)
+
+
+@hashed_once
+@dataclass(frozen=True)
+class AxisymmetricBody:
+    """A body of revolution, at rest, by Fourier finite elements on its profile.
+
+    Round the axis its displacement goes as ``u_r = U cos n theta``, ``u_theta = V sin n theta``,
+    ``u_z = W cos n theta``, or as that turned by a quarter of a wave, with U, V and W on the profile in quadratic
+    elements of three-dimensional elasticity. Every order n above 0 has its modes in pairs of the same frequency. Modes
+    come by rising frequency, the two of a pair one after the other; rigid motions, of frequency zero, come first.
+
+    Parameters
+    ----------
+    profile : RectangleProfile, LineProfile or MeshProfile
+        Its section through the axis, the half with r >= 0.
+    material : Material or mapping
+        What it is made of, or the material of each region of the profile by its name; Poisson's ratios from -0.99 to
+        0.499.
+    cutoff : float
+        Keep all the modes up to this frequency [Hz].
+    held : str, Held or sequence of these, optional
+        Parts of the profile that do not move, such as ``"inner"`` or ``Held("bottom", "z")``; if left out it is free.
+    orders : int, optional
+        Highest number of waves round the axis that is kept; if left out all that have modes below the cutoff.
+    damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
+        Damping ratio of every mode [1], from 0 to 1 (1 excluded), one for each mode in their order, or a law of their
+        frequency.
+    residual_at : sequence of tuple of float, optional
+        Places (r, z) of the profile [m] where forces act, at any angle: to those, and to gravity, modes of the same
+        orders beyond the cutoff still yield statically, by residual shapes without mass, which come last.
+    axis : tuple of float, optional
+        Direction of its axis of revolution in the world, of any length.
+    origin : tuple of float, optional
+        The point of the world on its axis where z is 0 [m].
+    name : str, optional
+        What it is called in records; tells equal bodies apart.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, if a region has no material, or if nothing is where it is held; from
+        `modes` on, if no mode lies below the cutoff.
+    """
+
+    kind: ClassVar[str] = "axisymmetric"
+    point_names: ClassVar[tuple[str, ...]] = ()
+    has_positions: ClassVar[bool] = True
+    has_translation: ClassVar[bool] = True
+    is_spatial: ClassVar[bool] = True
+    profile: Profile
+    material: Any
+    cutoff: float
+    held: Any = ()
+    orders: int | None = None
+    damping: float | Sequence[float] | DampingLaw = 0.0
+    residual_at: Any = ()
+    axis: tuple[float, float, float] = Z
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        instance("profile", self.profile, PROFILES)
+        object.__setattr__(self, "material", _materials(self.material, self.profile.region_names))
+        positive("cutoff", self.cutoff)
+        is_one = isinstance(self.held, str) or not isinstance(self.held, Sequence)
+        given = (self.held,) if is_one else self.held
+        object.__setattr__(self, "held", tuple(Held(one) if isinstance(one, str) else one for one in given))
+        for number, one in enumerate(self.held):
+            instance(f"held[{number}]", one, Held)
+        if self.orders is not None:
+            count("orders", self.orders, low=0)
+        object.__setattr__(self, "damping", checked_damping(self.damping))
+        axis, origin = _triple("axis", self.axis), _triple("origin", self.origin)
+        length = math.hypot(*axis)
+        if not 0.0 < length < math.inf:
+            raise ArgumentError("axis", "be a direction, of a length above 0", self.axis)
+        object.__setattr__(self, "axis", tuple(one / length + 0.0 for one in axis))
+        object.__setattr__(self, "origin", origin)
+        instance("name", self.name, str)
+        object.__setattr__(self, "residual_at", _places(self.residual_at))
+        # From here on it has a hash: all fields are as they stay.
+        self._check_held()
+        for number, place in enumerate(self.residual_at):
+            if self.mesh.cell_at(*place) is None:
+                raise ArgumentError(f"residual_at[{number}]", "be (r, z) in the profile", place)
+        sizes = (self.total_mass, *(one.young * self.mesh.size for one in self.materials.values()))
+        if not all(1.0 / LARGEST < size < LARGEST for size in sizes):
+            raise NotOrdinary("material and profile")
+
+    @property
+    def materials(self) -> dict[str, Material]:
+        """Material of each region of the profile, by its name."""
+        if isinstance(self.material, tuple):
+            return dict(self.material)
+        return dict.fromkeys(self.profile.region_names, self.material)
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words."""
+        r, z = self.mesh.nodes.T
+        return f"{2.0 * r.max():.4g} m across, {np.ptp(z):.4g} m high"
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words."""
+        return f"axis along ({', '.join(f'{one:.4g}' for one in self.axis)})"
+
+    @property
+    def axes(self) -> Array:
+        """World components of the axes of its displacements, which are x, y and z, shape (3, 3)."""
+        return np.eye(3)
+
+    @property
+    def frame(self) -> Array:
+        """World components of the directions theta = 0 and theta = 90 degrees and of its axis, shape (3, 3).
+
+        The world's x, y and z, turned the shortest way from z to the axis; from -z to the axis where it points down.
+        """
+        (a, b, c) = self.axis
+        sign = math.copysign(1.0, c)
+        share = -1.0 / (sign + c)
+        first = [1.0 + sign * a * a * share, sign * a * b * share, -sign * a]
+        return np.array([first, [a * b * share, sign + b * b * share, -b], self.axis]) + 0.0
+
+    @property
+    def total_mass(self) -> float:
+        """Mass [kg]."""
+        volumes = self.mesh.volumes
+        materials = self.materials
+        return float(sum(materials[one].density * volumes[cells].sum() for one, cells in self.mesh.regions.items()))
+
+    @property
+    def mesh(self) -> ProfileMesh:
+        """Cells of the profile."""
+        return _mesh(self)
+
+    @property
+    def numbers(self) -> Array:
+        """Numbers of each mode, shape (modes, 3).
+
+        Its order n; which one it is of its order and kind, from 0, residual shapes last; 0 for the cosine of a pair, 1
+        for the sine. Of order 0, those with 0 do not twist and those with 1 are torsion.
+        """
+        return _solution(self).numbers
+
+    def modes(self, held_x: bool = False) -> Modes:
+        """Return the modes, translation of shape (3, modes); `held_x` is for driven ends and must be false."""
+        if held_x:
+            raise ArgumentError("held_x", "be False for an AxisymmetricBody: it has no driven end", held_x)
+        return _solution(self).modes
+
+    def trace(self, position: Any, held_x: bool = False) -> Array:
+        """Return the rows that give the world displacement (x, y, z) at `position` from the modes.
+
+        Parameters
+        ----------
+        position : tuple of float
+            Distance r from the axis [m], angle theta round it [rad], place z along it [m].
+        held_x : bool, optional
+            Must be false.
+
+        Returns
+        -------
+        ndarray, shape (3, modes)
+            Displacements for unit modes [kg^(-1/2)].
+        """
+        self.modes(held_x)
+        r, theta, z = self._position(position)
+        return np.asarray(self._directions(theta).T @ _solution(self).cylindrical(r, theta, z))
+
+    def place(self, position: Any) -> Array:
+        """Return where in the world a point (r, theta, z) is at rest [m], shape (3,)."""
+        r, theta, z = self._position(position)
+        radial, _, axial = self._directions(theta)
+        return np.asarray(self.origin + r * radial + z * axial)
+
+    def at(self, position: Any) -> BodyPoint:
+        """Return the point at a distance r from the axis [m], an angle theta [rad] and a place z along it [m]."""
+        return BodyPoint(self, _triple("position", position))  # type: ignore[arg-type]
+
+    def check_position(self, position: Any) -> None:
+        """Raise ValueError if `position`, (r, theta, z) in metres and radians, is not in the body."""
+        self._position(position)
+
+    def _position(self, position: Any) -> tuple[float, float, float]:
+        r, theta, z = _triple("position", position)
+        if self.mesh.cell_at(r, z) is None:
+            raise ArgumentError("position", "be (r, theta, z) in the profile", position)
+        return r, theta, z
+
+    def _directions(self, theta: float) -> Array:
+        """Return the world components of the directions r, theta and z at an angle, shape (3, 3)."""
+        first, second, axial = self.frame
+        cosine, sine = math.cos(theta), math.sin(theta)
+        return np.array([cosine * first + sine * second, cosine * second - sine * first, axial])
+
+    def _check_held(self) -> None:
+        for number, one in enumerate(self.held):
+            name = f"held[{number}]"
+            if isinstance(one.place, str):
+                choice(name, one.place, self.mesh.place_names)
+            if not len(one.sides(self.mesh)):
+                raise ArgumentError(name, "hold a side of a cell or more", got=f"none at {brief(one.place)}")
+
+    def _cell(self, thickness: float, region: str) -> float:
+        """Return the largest side of the cells of parts of a thickness in a region [m]."""
+        if self.profile.size is not None:
+            return self.profile.size
+        wave = 1.0 / _shortest_waves([self.materials[region]], thickness, self.cutoff)
+        return min(CELL_OF_WAVE * wave, max(CELL_OF_THICKNESS * thickness, CELL_OF_BENDING * wave))
+
+    @property
+    def _highest_order(self) -> int:
+        """Highest order that has waves below the cutoff, not below it."""
+        waves = _shortest_waves(tuple(self.materials.values()), self.mesh.thinnest, self.cutoff)
+        highest = math.ceil(float(self.mesh.nodes[:, 0].max()) * waves) + ORDERS_MORE
+        return highest if self.orders is None else min(highest, self.orders)
+
+
+def _shortest_waves(materials: Sequence[Material], thickness: float, cutoff: float) -> float:
+    """Return the wavenumber of the shortest waves below a cutoff [Hz] in layers [rad/m], not below it.
+
+    In a plate ``k² <= k_b² + k_s²`` with the waves of Kirchhoff's plate and those of shear (Mindlin 1951). Layers are
+    no slower than a plate as heavy as the heaviest and as soft as the softest.
+    """
+    angular, density = 2.0 * math.pi * cutoff, max(one.density for one in materials)
+    bending = angular * math.sqrt(12.0 * density / min(one.young for one in materials)) / thickness
+    shear = max(2.0 * (1.0 + one.poisson) / one.young for one in materials) * density / SURFACE_WAVES
+    return math.sqrt(bending + angular**2 * shear)
+
+
+@dataclass(frozen=True, eq=False)
+class _Solution:
+    elements: FourierElements
+    modes: Modes
+    numbers: Array
+    # Of each mode, its U, V and W among `shapes`.
+    columns: Array
+    shapes: Array
+
+    def cylindrical(self, r: float, theta: float, z: float) -> Array:
+        """Return the displacements along r, theta and z for unit modes, shape (3, modes)."""
+        points, values = self.elements.shape_functions(r, z)
+        u, v, w = np.einsum("cpk,p->ck", self.shapes[:, points], values)[:, self.columns]
+        order, _, side = self.numbers.T
+        cosine, sine = np.cos(order * theta), np.sin(order * theta)
+        along = np.where(side == 0, cosine, sine)
+        return np.array([u * along, v * np.where(side == 0, sine, -cosine), w * along])
+
+
+@lru_cache(maxsize=16)
+@of_ordinary_size("material, profile and cutoff")
+def _mesh(body: AxisymmetricBody) -> ProfileMesh:
+    try:
+        return body.profile.mesh(body._cell)
+    except ArgumentError as error:
+        if error.argument != "size" or body.profile.size is not None:
+            raise
+        # The size follows from the waves.
+        raise error.renamed("cutoff") from None
+
+
+@lru_cache(maxsize=16)
+def _families(body: AxisymmetricBody) -> tuple[FourierElements, list[Family]]:
+    # Here, not above: scikit-fem takes a third of a second to import.
+    from .fourier_elements import fourier_elements
+    from .profile_modes import Constraint, families
+
+    mesh = body.mesh
+    elements = fourier_elements(mesh, [body.materials[name] for name in mesh.regions])
+    held = [Constraint(one.components, elements.points_on(one.sides(mesh))) for one in body.held]
+    found = families(elements, held, body.cutoff, range(body._highest_order + 1), body.residual_at)
+    lowest = min(one.lowest for one in found)
+    if lowest > body.cutoff:
+        words = f"leave at least one mode (first at {at_least(lowest)} Hz)"
+        raise ArgumentError("cutoff", words, body.cutoff, got=f"{body.cutoff!r} Hz")
+    return elements, found
+
+
+@lru_cache(maxsize=16)
+def _solution(body: AxisymmetricBody) -> _Solution:
+    # How it is damped and stands has no share in its shapes.
+    elements, found = _families(replace(body, damping=0.0, axis=Z, origin=(0.0, 0.0, 0.0), name=""))
+    rows = [
+        (squared, one.kind.order, one.kind.sides[0], index, number)
+        for number, one in enumerate(found)
+        for index, squared in enumerate(one.squared)
+    ]
+    rows.sort()
+    numbers, columns, translation, squares = [], [], [], []
+    for column, (squared, order, _, index, number) in enumerate(rows):
+        family = found[number]
+        for side in family.kind.sides:
+            numbers.append((order, index, side))
+            columns.append(column)
+            squares.append(squared)
+            translation.append(_translation(body, elements, family, index, side))
+    shapes = np.stack([found[number].shapes[:, :, index] for *_, index, number in rows], axis=2)
+    angular = np.sqrt(squares)
+    rates = np.zeros(angular.size)
+    rates[np.isfinite(angular)] = damping_rates(body.damping, angular[np.isfinite(angular)])
+    modes = Modes(angular, rates, np.array(translation).T)
+    solution = _Solution(elements, modes, np.array(numbers), np.array(columns), shapes)
+    for array in (modes.angular_frequency, modes.translation, solution.numbers, shapes):
+        array.flags.writeable = False
+    return solution
+
+
+def _translation(body: AxisymmetricBody, elements: FourierElements, family: Family, index: int, side: int) -> Array:
+    """Return what a uniform acceleration along x, y and z gives a mode [kg^(1/2)], shape (3,).
+
+    Of ``integral rho u dV`` only order 0 has a share along the axis, and order 1 one across it.
+    """
+    u, v, w = family.shapes[:, :, index]
+    if family.kind.order == 0 and side == 0:
+        return np.asarray(2.0 * math.pi * (elements.mass @ w).sum() * body.frame[2])
+    if family.kind.order == 1:
+        return np.asarray(math.pi * (elements.mass @ (u - v)).sum() * body.frame[side])
+    return np.zeros(3)
+
+
+def _materials(given: Any, regions: tuple[str, ...]) -> Material | tuple[tuple[str, Material], ...]:
+    """Return one material, or pairs of a region and its material."""
+    if isinstance(given, tuple):
+        given = dict(given)
+    if not isinstance(given, Mapping):
+        return _solid("material", given)
+    for name, material in given.items():
+        choice("material", name, regions)
+        _solid(f"material[{name!r}]", material)
+    missing = [name for name in regions if name not in given]
+    if missing:
+        raise ArgumentError(
+            "material", f"be given for all regions, {listed(regions)}", got=f"none for {listed(missing)}"
+        )
+    return tuple((name, given[name]) for name in regions)
+
+
+def _solid(name: str, given: Any) -> Material:
+    instance(name, given, Material)
+    material: Material = given
+    if not LEAST_POISSON <= material.poisson <= MOST_POISSON:
+        allowed = f"have a Poisson's ratio from {LEAST_POISSON} to {MOST_POISSON} in a solid"
+        raise ArgumentError(name, allowed, material, got=material.poisson)
+    return material
+
+
+def _places(given: Any) -> tuple[tuple[float, float], ...]:
+    if isinstance(given, str) or not isinstance(given, Sequence):
+        raise ArgumentError("residual_at", "be places (r, z) of the profile", given)
+    found = []
+    for number, one in enumerate(given):
+        name = f"residual_at[{number}]"
+        if isinstance(one, str) or not isinstance(one, Sequence) or len(one) != 2:
+            raise ArgumentError(name, "be a place (r, z) of the profile", one)
+        found.append((finite(f"{name}[0]", one[0]), finite(f"{name}[1]", one[1])))
+    return tuple(found)
+
+
+def _box(place: Any) -> tuple[tuple[float, float], tuple[float, float]]:
+    words = "be the name of a place or a box, its range of r and its range of z"
+    if not isinstance(place, Sequence) or len(place) != 2:
+        raise ArgumentError("place", words, place)
+    ranges = []
+    for axis, values in zip("rz", place, strict=True):
+        if not isinstance(values, Sequence) or isinstance(values, str) or len(values) != 2:
+            raise ArgumentError("place", words, place)
+        low, high = (finite(f"place, {axis}[{k}]", one) for k, one in enumerate(values))
+        if low > high:
+            raise ArgumentError("place", "have ranges that do not fall", place)
+        ranges.append((low, high))
+    return ranges[0], ranges[1]
+
+
+def _triple(name: str, values: Any) -> tuple[float, float, float]:
+    if isinstance(values, str) or not isinstance(values, (Sequence, np.ndarray)) or len(values) != 3:
+        raise ArgumentError(name, "be three numbers", values)
+    x, y, z = (finite(f"{name}[{k}]", one) for k, one in enumerate(values))
+    return x, y, z
