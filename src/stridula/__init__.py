@@ -24,6 +24,8 @@ _HOME = {
         "RisingDamping",
         "SampledDamping",
         "Section",
+        "SolidBody",
+        "SolidMesh",
     ),
     "contact": (
         "Coulomb",

@@ -9,6 +9,8 @@ from .paths import Path, Track, Waves
 from .point_mass import PointMass
 from .reduced_body import ReducedBody
 from .sections import Circle, Material, Rectangle, Section
+from .solid_body import SolidBody
+from .solid_mesh import SolidMesh
 
 __all__ = [
     "Body",
@@ -29,6 +31,8 @@ __all__ = [
     "RisingDamping",
     "SampledDamping",
     "Section",
+    "SolidBody",
+    "SolidMesh",
     "Track",
     "Waves",
 ]
