@@ -10,6 +10,7 @@ import scipy.sparse
 
 from ..arrays import Array
 from ..checks import ArgumentError
+from .matrix_input import ROUND_OFF
 from .sections import Material
 from .solid_kinds import ElementKind
 
@@ -19,14 +20,18 @@ DEGREES = (2, 4, 4)
 AT_ONCE = 2048
 
 
-def check_jacobians(kind: ElementKind, nodes: Array, elements: Array) -> None:
-    """Raise ValueError where an element is inverted or has no volume at a point of integration."""
-    mesh, _ = _mesh(kind, nodes, elements)
+def check_elements(kind: ElementKind, nodes: Array, elements: Array) -> None:
+    """Raise ValueError where elements do not share their nodes, or one is inverted at a point of integration."""
+    _mesh(kind, nodes, elements)
     points, _ = _integration(kind)
-    mapping = mesh._mapping()
+    element = _finite_element(kind)
+    slopes = np.array([element.lbasis(points, number)[1] for number in range(len(kind.nodes))])
+    ours = elements[:, _order(kind, element)]
     bad = np.zeros(len(elements), dtype=bool)
     for part in _parts(np.arange(len(elements))):
-        bad[part] = (mapping.detDF(points, part) <= 0.0).any(axis=-1)
+        jacobian = np.einsum("eni,njq->eqij", nodes[ours[part]], slopes)
+        least = ROUND_OFF * np.linalg.norm(jacobian, axis=2).prod(axis=2)
+        bad[part] = (np.linalg.det(jacobian) <= least).any(axis=1)
     if bad.any():
         first = np.flatnonzero(bad)[0]
         raise ArgumentError(
@@ -109,9 +114,7 @@ def _mesh(kind: ElementKind, nodes: Array, elements: Array) -> tuple[Any, Array]
     import skfem
 
     element = _finite_element(kind)
-    # Both know where their nodes lie in the unit element: so neither order need be known here.
-    distance = np.linalg.norm(element.doflocs[:, None] - kind.nodes[None], axis=2)
-    ours = elements[:, np.argmin(distance, axis=1)].T
+    ours = elements[:, _order(kind, element)].T
     holder = skfem.MeshTet1 if len(kind.corners) == 4 else skfem.MeshHex1
     is_affine = kind.middles == 0 and len(kind.corners) == 4
     mesh = holder(np.ascontiguousarray(nodes.T), ours, elem=type(element), affine=is_affine)
@@ -125,6 +128,12 @@ def _mesh(kind: ElementKind, nodes: Array, elements: Array) -> tuple[Any, Array]
             got=f"{len(nodes)} nodes where {number.size} belong to such elements",
         )
     return mesh, number
+
+
+def _order(kind: ElementKind, element: Any) -> Array:
+    """Return the number of our node at each node of scikit-fem; both say where theirs lie in the unit element."""
+    distance = np.linalg.norm(element.doflocs[:, None] - kind.nodes[None], axis=2)
+    return np.asarray(np.argmin(distance, axis=1))
 
 
 def _finite_element(kind: ElementKind) -> Any:

@@ -17,7 +17,7 @@ from ..arrays import Array
 from ..checks import ArgumentError, choice, count, finite, instance, listed, positive
 from . import solid_files, solid_shapes
 from .matrix_input import check_finite, numbers
-from .solid_elements import check_jacobians
+from .solid_elements import check_elements
 from .solid_kinds import KINDS, ElementKind
 
 # Meshes of more nodes have factors that no usual memory holds.
@@ -102,7 +102,7 @@ class SolidMesh:
             self._set(word, _groups(word, getattr(self, word), *limit))
         self._set("faces", _face_groups(self.faces, len(elements), len(self.element_kind.faces)))
         self._check_whole()
-        check_jacobians(self.element_kind, nodes, elements)
+        check_elements(self.element_kind, nodes, elements)
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], scale: float = 1.0) -> SolidMesh:
