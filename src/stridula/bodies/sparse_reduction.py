@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 import scipy.sparse.linalg
+from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least
@@ -76,6 +77,12 @@ def reduce_sparse(problem: SparseProblem, cutoff: float | None) -> SparseReducti
     ValueError
         If no mode is left, or if a frequency is zero where no motion is rigid.
     """
+    # Factors are made of many small blocks, which threads delay; and one thread gives the same bits on every machine.
+    with threadpool_limits(1):
+        return _reduced(problem, cutoff)
+
+
+def _reduced(problem: SparseProblem, cutoff: float | None) -> SparseReduction:
     size = problem.mass.shape[0]
     highest = np.inf if cutoff is None else 2.0 * np.pi * cutoff
     largest = float(np.max(problem.stiffness.diagonal() / problem.mass.diagonal()))
