@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula.bodies import factorisation
+from stridula.bodies import factorisation, sparse_reduction
 from stridula.bodies.factorisation import dissection, factorised
 from stridula.bodies.solid_body import _assembled
 
@@ -113,6 +113,17 @@ def test_a_cutoff_is_needed_for_many_degrees_of_freedom():
     refused(low.modes, "cutoff must leave at least one mode")
     counted = st.SolidBody(CUBE, STEEL, damping=[0.1, 0.1])
     refused(counted.modes, "damping must have one ratio or 60")
+
+
+def test_a_cutoff_beyond_most_modes_finds_all_at_once(monkeypatch):
+    mesh = st.SolidMesh.block((1.0, 1.0, 1.0), (3, 3, 3))
+    every = st.SolidBody(mesh, STEEL).modes()
+    body = st.SolidBody(mesh, STEEL, cutoff=2.0 * every.frequency[-1])
+    assert every.count > 600
+    np.testing.assert_array_equal(body.modes().angular_frequency, every.angular_frequency)
+    monkeypatch.setattr(sparse_reduction, "MOST_MODES", 30)
+    large = st.SolidMesh.block((1.0, 1.0, 1.0), (12, 6, 4))
+    refused(st.SolidBody(large, STEEL, cutoff=1e5).modes, "cutoff must leave at most 30 modes", "100000 Hz")
 
 
 def test_points_by_set_number_and_place():

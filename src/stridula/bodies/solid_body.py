@@ -31,6 +31,8 @@ from .sparse_reduction import SparseProblem, reduce_sparse
 DIRECTIONS = "xyz"
 # Speed of waves in diamond is 18 km/s; beyond, units are mixed.
 FASTEST = 30e3
+# Degrees of freedom whose factors SuperLU can number; they take some 20 GB.
+MOST_FREE = 300_000
 # Of the size of a body: motions that held nodes follow by less are none.
 RIGID = 1e-9
 
@@ -124,6 +126,8 @@ class SolidBody:
         size = int(self._free.sum())
         if not size:
             raise ArgumentError("fixed", "leave something free", got="all nodes held")
+        if size > MOST_FREE:
+            raise ArgumentError("mesh", f"have at most {MOST_FREE} degrees of freedom", got=f"{size}, {self.mesh!r}")
         if self.cutoff is None and size > LARGEST_SIZE:
             raise ArgumentError(
                 "cutoff", f"be given for more than {LARGEST_SIZE} degrees of freedom", got=f"none for {size}"
@@ -225,7 +229,7 @@ class SolidBody:
     @property
     def total_mass(self) -> float:
         """Mass [kg]."""
-        return float(_assembled(self)[0].sum())
+        return float(self._reduction.mass.sum())
 
     @property
     def shapes(self) -> Array:
@@ -294,7 +298,7 @@ class SolidBody:
         content = hashlib.sha256(self.mesh._digest)
         for one in fields(self)[1:]:
             value = getattr(self, one.name)
-            content.update(repr(dict(value) if isinstance(value, Mapping) else value).encode())
+            content.update(repr(sorted(value.items()) if isinstance(value, Mapping) else value).encode())
         return content.digest()
 
     @cached_property
@@ -305,7 +309,6 @@ class SolidBody:
         object.__setattr__(self, name, value)
 
 
-@lru_cache(maxsize=2)
 def _assembled(body: SolidBody) -> tuple[Any, Any]:
     mesh = body.mesh
     materials = _elements_of(body.materials, mesh)

@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 from ..arrays import Array
 from ..checks import ArgumentError, at_least
 from .factorisation import Solve, factorised
+from .matrix_files import LARGEST_SIZE
 from .matrix_input import ROUND_OFF
 from .reduction import RESIDUAL
 
@@ -20,6 +21,10 @@ from .reduction import RESIDUAL
 DENSE = 600
 # Distance of the shift below zero, of the squared cutoff: far enough for digits, near enough for a fast search.
 SHIFT = 0.01
+# Beyond this share of the modes all are found at once in less time, where that can be done.
+DENSE_SHARE = 8
+# Modes that are searched for at most; a thousand take minutes.
+MOST_MODES = 2000
 # Modes that the first search asks for.
 FIRST_SEARCH = 24
 # A Ritz value at this tolerance tells whether a mode was left out.
@@ -200,10 +205,15 @@ def _modes_up_to(problem: SparseProblem, solve: Solve, shift: float, highest: fl
     found = np.zeros((size, 0)) if problem.rigid is None else problem.rigid
     rigid, many = found.shape[1], FIRST_SEARCH
     while True:
-        room = size - found.shape[1]
-        values, vectors = _search(problem, solve, shift, found, min(many, room - 1))
+        if found.shape[1] + many > (size // DENSE_SHARE if size <= LARGEST_SIZE else MOST_MODES):
+            if size <= LARGEST_SIZE:
+                return _all_modes(problem)
+            raise ArgumentError(
+                "cutoff", f"leave at most {MOST_MODES} modes of a mesh", got=f"{highest / (2.0 * np.pi):.6g} Hz"
+            )
+        values, vectors = _search(problem, solve, shift, found, many)
         found = _beside(problem.mass, np.hstack([found, vectors]), rigid)
-        if values.max() <= highest**2 and room - 1 > many:
+        if values.max() <= highest**2:
             many *= 2
             continue
         nearest, _ = _search(problem, solve, shift, found, 1, COARSE)
