@@ -17,22 +17,20 @@ import scipy.sparse
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_most, choice, count, instance, listed, positive
-from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
+from .damping import DampingLaw, checked_damping
 from .factorisation import dissection
-from .matrix_files import LARGEST_SIZE
+from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
 from .matrix_input import check_finite, numbers
 from .modes import BodyPoint, Modes
 from .ordinary import of_ordinary_size
 from .sections import Material
 from .solid_elements import assembled
 from .solid_mesh import Face, SolidMesh
-from .sparse_reduction import SparseProblem, reduce_sparse
+from .sparse_reduction import SparseProblem, modes_of, reduce_sparse
 
 DIRECTIONS = "xyz"
 # Speed of waves in diamond is 18 km/s; beyond, units are mixed.
 FASTEST = 30e3
-# Degrees of freedom whose factors SuperLU can number; they take some 20 GB.
-MOST_FREE = 300_000
 # Of the size of a body: motions that held nodes follow by less are none.
 RIGID = 1e-9
 
@@ -126,8 +124,7 @@ class SolidBody:
         size = int(self._free.sum())
         if not size:
             raise ArgumentError("fixed", "leave something free", got="all nodes held")
-        if size > MOST_FREE:
-            raise ArgumentError("mesh", f"have at most {MOST_FREE} degrees of freedom", got=f"{size}, {self.mesh!r}")
+        check_size("mesh", size, LARGEST_SPARSE)
         if self.cutoff is None and size > LARGEST_SIZE:
             raise ArgumentError(
                 "cutoff", f"be given for more than {LARGEST_SIZE} degrees of freedom", got=f"none for {size}"
@@ -340,11 +337,7 @@ def _reduced(body: SolidBody) -> SolidReduction:
     shapes = np.zeros((free.size, found.angular_frequency.size))
     shapes[free] = found.shapes
     shapes.flags.writeable = False
-    angular = found.angular_frequency
-    massless = np.isinf(angular)
-    check_damping_count(body.damping, int((~massless).sum()))
-    rates = np.append(damping_rates(body.damping, angular[~massless]), np.zeros(int(massless.sum())))
-    return SolidReduction(Modes(angular, rates, pulled.T @ shapes), shapes, node_mass)
+    return SolidReduction(modes_of(found, body.damping, pulled.T @ shapes), shapes, node_mass)
 
 
 def _rigid(mesh: SolidMesh, free: Array, mass: Any) -> Array:

@@ -12,10 +12,12 @@ from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least
+from .damping import check_damping_count, damping_rates
 from .factorisation import Solve, factorised
 from .matrix_files import LARGEST_SIZE
 from .matrix_input import ROUND_OFF
-from .reduction import RESIDUAL
+from .modes import Modes
+from .reduction import RESIDUAL, Reduction
 
 # Up to so many degrees of freedom all modes are found at once, in less time than some of them.
 DENSE = 600
@@ -70,6 +72,29 @@ class SparseProblem:
     forces: Array
     rigid: Array | None = None
     order: Array | None = None
+
+
+def reduce_sparse_body(body: Any) -> Reduction:
+    """Return the modes of a `ReducedBody` of sparse matrices and their shapes."""
+    rows = list(body.points.values()) if body.residual_flexibility else []
+    if body.residual_flexibility and body.translation is not None:
+        rows.append(body.translation @ body.mass)
+    forces = np.concatenate(rows).T if rows else np.zeros((body.mass.shape[0], 0))
+    found = reduce_sparse(SparseProblem(body.mass, body.stiffness, forces), body.cutoff)
+    found.shapes.flags.writeable = False
+    moved = np.zeros((2, found.angular_frequency.size))
+    if body.translation is not None:
+        moved = body.translation @ body.mass @ found.shapes
+    return Reduction(modes_of(found, body.damping, moved), found.shapes)
+
+
+def modes_of(found: SparseReduction, damping: Any, translation: Array) -> Modes:
+    """Return modes with their damping, residual shapes without."""
+    angular = found.angular_frequency
+    massless = np.isinf(angular)
+    check_damping_count(damping, int((~massless).sum()))
+    rates = np.append(damping_rates(damping, angular[~massless]), np.zeros(int(massless.sum())))
+    return Modes(angular, rates, translation)
 
 
 def reduce_sparse(problem: SparseProblem, cutoff: float | None) -> SparseReduction:
