@@ -257,10 +257,15 @@ def test_other_libraries_are_taken_where_they_are(monkeypatch):
         dense = np.linalg.inv(matrix.toarray())
         return lambda right: dense @ right
 
-    monkeypatch.setattr(factorisation, "find_spec", lambda name: object() if name == "pypardiso" else None)
-    monkeypatch.setattr(factorisation, "_pardiso", fake)
+    def broken(matrix):
+        asked.append("broken")
+        raise ImportError("no shared library")
+
+    monkeypatch.setattr(factorisation, "find_spec", lambda name: object())
+    monkeypatch.setattr(factorisation, "LIBRARIES", {"sksparse": broken, "pypardiso": fake})
     expected = st.SolidBody(PAIR, STEEL, {"tip": (2.0, 1.0, 1.0)}, ["left"], 2001.0).modes()
-    assert asked
+    assert asked[0] == "broken"
+    assert len(asked) == 2
     monkeypatch.undo()
     found = st.SolidBody(PAIR, STEEL, {"tip": (2.0, 1.0, 1.0)}, ["left"], 2002.0).modes()
     np.testing.assert_allclose(found.angular_frequency, expected.angular_frequency, rtol=1e-9)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -37,9 +38,11 @@ def factorised(matrix: Any, order: Array | None = None) -> Solve:
     ValueError
         If the factors do not fit into memory.
     """
-    for package, make in (("sksparse", _cholmod), ("pypardiso", _pardiso)):
+    for package, make in LIBRARIES.items():
         if find_spec(package) is not None:
-            return make(matrix)
+            # What is there may still lack its shared library.
+            with suppress(ImportError):
+                return make(matrix)
     return _superlu(matrix, order)
 
 
@@ -113,7 +116,12 @@ def _cholmod(matrix: Any) -> Solve:
 
 
 def _pardiso(matrix: Any) -> Solve:
-    rows = matrix.tocsr()
-    solver = import_module("pypardiso").PyPardisoSolver()
+    # Its kind 2: symmetric positive definite, the upper triangle in rows.
+    rows = scipy.sparse.csr_matrix(scipy.sparse.triu(matrix))
+    rows.sort_indices()
+    solver = import_module("pypardiso").PyPardisoSolver(mtype=2)
     solver.factorize(rows)
     return lambda right: np.asarray(solver.solve(rows, np.asfortranarray(right))).reshape(right.shape)
+
+
+LIBRARIES = {"sksparse": _cholmod, "pypardiso": _pardiso}

@@ -180,8 +180,8 @@ class ReducedBody:
         OSError
             If a file cannot be read.
         ValueError
-            If a file is damaged, of another kind or too large (2 GiB, 4000 degrees of freedom, 300 000 in sparse ones with a
-            cutoff), or as in `ReducedBody`.
+            If a file is damaged, of another kind or too large (2 GiB, 4000 degrees of freedom, 300 000 in
+            sparse ones), or as in `ReducedBody`.
         """
         given_files = {
             word: file for word, file in zip(FILES, (path, mass, stiffness), strict=True) if file is not None
