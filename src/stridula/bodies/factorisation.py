@@ -111,7 +111,10 @@ def _superlu(matrix: Any, order: Array | None) -> Solve:
 
 
 def _cholmod(matrix: Any) -> Solve:
-    factors = import_module("sksparse.cholmod").cholesky(matrix.tocsc())
+    factorise = getattr(import_module("sksparse.cholmod"), "cholesky", None)
+    factors = factorise(matrix.tocsc()) if factorise else None
+    if not callable(factors):
+        raise ImportError("scikit-sparse of another interface")
     return lambda right: np.asarray(factors(right))
 
 
