@@ -70,6 +70,12 @@ def test_lonely_nodes_and_wrong_numbers_are_refused():
     refused(lambda: parts(CUBE, faces={"a": [[0, 6]]}), "faces['a']")
     refused(lambda: parts(CUBE, volumes={"a": [1]}), "volumes['a']")
     refused(lambda: CUBE.named("a", [20]), "node_sets['a']")
+    twice = np.where(CUBE.elements == CUBE.elements[0, 0], CUBE.elements[0, 1], CUBE.elements)
+    kept = np.unique(twice, return_inverse=True)
+    refused(
+        lambda: st.SolidMesh(CUBE.nodes[kept[0]], kept[1].reshape(1, -1), CUBE.kind),
+        "elements must name each node once",
+    )
 
 
 def test_nodes_in_the_middle_of_an_edge_are_shared():

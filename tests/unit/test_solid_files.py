@@ -230,6 +230,21 @@ def test_cut_files_are_refused_in_one_line(tmp_path):
             assert said is None or "\n" not in said
 
 
+@pytest.mark.parametrize("form", [*TEXTS, "nastran"])
+def test_files_with_wrong_characters_are_read_or_refused_in_one_line(tmp_path, form):
+    write, ending = {**TEXTS, "nastran": (nastran, "bdf")}[form]
+    text, path = write(mesh_of("hexahedron20")), tmp_path / f"wrong.{ending}"
+    random = np.random.default_rng(1)
+    said = []
+    for wrong in np.tile([1, 3, 20], 12):
+        letters = np.array(list(text))
+        letters[random.integers(0, letters.size, wrong)] = random.choice(list("0123456789-.,e *$\n"), wrong)
+        path.write_text("".join(letters))
+        said.append(one_line_of(path))
+    assert any(said)
+    assert not any("\n" in line for line in said if line)
+
+
 def one_line_of(path):
     """Return what is said of a file that is refused, None where it is read."""
     try:
