@@ -30,6 +30,8 @@ _HOME = {
         "RisingDamping",
         "SampledDamping",
         "Section",
+        "SolidBody",
+        "SolidMesh",
     ),
     "contact": (
         "Coulomb",

@@ -12,6 +12,8 @@ from .profiles import LineProfile, MeshProfile, Profile, RectangleProfile
 from .reduced_body import ReducedBody
 from .rigid_body import RigidBody
 from .sections import Circle, Material, Rectangle, Section
+from .solid_body import SolidBody
+from .solid_mesh import SolidMesh
 
 __all__ = [
     "AxisymmetricBody",
@@ -39,6 +41,8 @@ __all__ = [
     "RisingDamping",
     "SampledDamping",
     "Section",
+    "SolidBody",
+    "SolidMesh",
     "Track",
     "Waves",
 ]

@@ -12,8 +12,19 @@ import scipy.linalg
 from ..arrays import Array
 from ..checks import ArgumentError
 from .damping import Rayleigh
-from .matrix_files import AlignedMatrices, check_size
-from .matrix_input import check_mass, is_labelled, is_pair, point_rows, rows_of, square, symmetric
+from .factorisation import factorised
+from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, AlignedMatrices, check_size
+from .matrix_input import (
+    check_mass,
+    is_labelled,
+    is_pair,
+    point_rows,
+    rows_of,
+    sparse_square,
+    sparse_symmetric,
+    square,
+    symmetric,
+)
 
 
 def from_container(held: dict[str, Any]) -> dict[str, Any]:
@@ -31,7 +42,7 @@ def from_container(held: dict[str, Any]) -> dict[str, Any]:
 def from_matrices(files: AlignedMatrices, points: Mapping[str, Any], translation: Any) -> dict[str, Any]:
     """Return the arguments of a body from files of matrices, without the degrees of freedom held in them."""
     free, size = files.free, files.free.size
-    check_size("stiffness", int(free.sum()))
+    check_size("stiffness", int(free.sum()), LARGEST_SPARSE)
     arguments: dict[str, Any] = {name: matrix[free][:, free] for name, matrix in files.matrices.items()}
     arguments["points"] = {
         name: point_rows(f"points[{name!r}]", _by_number(f"points[{name!r}]", value, files.labels), size)[:, free]
@@ -39,11 +50,18 @@ def from_matrices(files: AlignedMatrices, points: Mapping[str, Any], translation
     }
     if translation is not None:
         motion = _translation(translation, files.labels, size)
-        mass = symmetric("mass", square("mass", arguments["mass"]))
-        check_mass(mass)
-        held = scipy.linalg.solve(mass, files.matrices["mass"][free][:, ~free] @ motion[:, ~free].T, assume_a="pos")
-        arguments["translation"] = motion[:, free] + held.T
+        pulled = files.matrices["mass"][free][:, ~free] @ motion[:, ~free].T
+        arguments["translation"] = motion[:, free] + _held_back(arguments["mass"], pulled).T
     return arguments
+
+
+def _held_back(mass: Any, pulled: Array) -> Array:
+    """Return the mass's answer to what pulls on it."""
+    if mass.shape[0] > LARGEST_SIZE:
+        return factorised(sparse_symmetric("mass", sparse_square("mass", mass)))(pulled)
+    dense = symmetric("mass", square("mass", mass))
+    check_mass(dense)
+    return np.asarray(scipy.linalg.solve(dense, pulled, assume_a="pos"))
 
 
 def _by_number(word: str, value: Any, labels: Array | None) -> Any:

@@ -25,6 +25,8 @@ from .matlab import read_matlab
 
 LARGEST_FILE = 2 * 1024**3
 LARGEST_SIZE = 4000
+# Of sparse matrices: what the factors of meshes can number, in some 20 GB.
+LARGEST_SPARSE = 300_000
 # Readers of the headers of NumPy's arrays, by version; of version 3 are arrays with named fields only.
 HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 LONGEST_HEADER = 10_000
@@ -62,12 +64,10 @@ class AlignedMatrices:
     free: Array
 
 
-def check_size(name: str, size: int) -> None:
-    """Raise ValueError if a matrix of `size` rows is too large to be made dense."""
-    if size > LARGEST_SIZE:
-        raise ArgumentError(
-            name, f"have at most {LARGEST_SIZE} degrees of freedom", got=f"{size}: reduce the model first"
-        )
+def check_size(name: str, size: int, most: int = LARGEST_SIZE) -> None:
+    """Raise ValueError if a matrix of `size` rows is too large, by default to be made dense."""
+    if size > most:
+        raise ArgumentError(name, f"have at most {most} degrees of freedom", got=f"{size}: reduce the model first")
 
 
 def read_container(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -128,7 +128,7 @@ def read_matrices(paths: Mapping[str, str | os.PathLike[str]]) -> AlignedMatrice
         size = max(int(every.max(initial=-1)) + 1, *(file.size or 0 for file in files.values()))
         if size > every.size:
             # Rows that no file names; those that Abaqus constrains, and are left out, stand in one.
-            check_size("stiffness", size)
+            check_size("stiffness", size, LARGEST_SPARSE)
         matrices = {name: file.on(None, file.size or size) for name, file in files.items()}
     for name, matrix in matrices.items():
         if matrix.shape != matrices["stiffness"].shape:
@@ -286,7 +286,7 @@ def _matrix_market(name: str, path: str | os.PathLike[str]) -> _Entries:
     rows, columns, entries, layout, field, symmetry = scipy.io.mminfo(os.fspath(path))
     if rows != columns:
         raise ArgumentError(name, "be square", got=f"{rows} x {columns}")
-    check_size(name, rows)
+    check_size(name, rows, LARGEST_SIZE if layout == "array" else LARGEST_SPARSE)
     if field not in ("real", "integer", "unsigned-integer") or entries > rows * columns:
         raise ValueError(f"the header must announce at most {rows * columns} real entries, it says {entries} {field}")
     if symmetry not in ("general", "symmetric"):

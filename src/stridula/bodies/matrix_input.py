@@ -14,7 +14,7 @@ from ..arrays import Array
 from ..checks import ArgumentError, instance
 from ..declared import DAMPING_RATIO
 from .damping import DampingLaw, checked_damping
-from .matrix_files import check_size
+from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
 
 SYMMETRY = 1e-8
 
@@ -112,6 +112,57 @@ def symmetric(name: str, matrix: Array) -> Array:
             ),
         )
     return 0.5 * (matrix + matrix.T)
+
+
+def stays_sparse(matrix: Any) -> bool:
+    """Return whether a matrix is sparse and too large to be made dense."""
+    return scipy.sparse.issparse(matrix) and len(matrix.shape) == 2 and matrix.shape[0] > LARGEST_SIZE
+
+
+def sparse_square(name: str, value: Any, size: int | None = None) -> Any:
+    """Return a large sparse matrix in rows of its own, each entry once and finite."""
+    if not stays_sparse(value) or value.shape[0] != value.shape[1] or value.shape[0] != (size or value.shape[0]):
+        wanted = f"be a sparse matrix of {size} degrees of freedom, as mass is" if size else "be a square matrix"
+        raise ArgumentError(name, wanted, got=f"a {type(value).__name__} of the shape {getattr(value, 'shape', ())}")
+    check_size(name, value.shape[0], LARGEST_SPARSE)
+    if hasattr(value, "check_format"):
+        value.check_format(full_check=True)
+    if value.dtype.kind not in "iuf":
+        raise ArgumentError(name, "be real", got=f"numbers of {value.dtype}")
+    rows = scipy.sparse.csr_array(value.tocoo(), dtype=float)
+    rows.sum_duplicates()
+    rows.eliminate_zeros()
+    check_finite(name, rows.data)
+    return rows
+
+
+def sparse_symmetric(name: str, matrix: Any) -> Any:
+    """Return a sparse matrix made exactly symmetric, or raise ValueError if it is not so to a hundred-millionth."""
+    skew = np.abs(matrix - matrix.T)
+    if skew.nnz and skew.max() > SYMMETRY * np.abs(matrix).max():
+        raise ArgumentError(
+            name, "be symmetric", got=f"entries that differ by {skew.max():.6g} from their mirror images"
+        )
+    whole = scipy.sparse.csr_array(0.5 * (matrix + matrix.T))
+    whole.eliminate_zeros()
+    # What was made of a file and what was made here are equal to the byte.
+    whole.indices, whole.indptr = whole.indices.astype(np.int32), whole.indptr.astype(np.int32)
+    whole.sort_indices()
+    for array in (whole.data, whole.indices, whole.indptr):
+        array.flags.writeable = False
+    return whole
+
+
+def check_sparse_mass(mass: Any) -> None:
+    """Raise ValueError where the diagonal of a sparse mass matrix shows that it is not positive definite."""
+    diagonal = mass.diagonal()
+    if diagonal.min() <= 0.0:
+        number = int(np.argmin(diagonal))
+        raise ArgumentError(
+            "mass",
+            "be positive definite",
+            got=f"{diagonal[number]:.6g} at row and column {number} (from 0); condense degrees of freedom without mass",
+        )
 
 
 def rows_of(name: str, value: Any, size: int, directions: int | None = None) -> Array:

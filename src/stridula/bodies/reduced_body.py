@@ -15,22 +15,27 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, choice, instance, positive
-from .damping import DampingLaw, Rayleigh
+from .damping import DampingLaw, Rayleigh, checked_damping
 from .matrix_arguments import from_container, from_matrices
-from .matrix_files import POINT, read_container, read_matrices, write_npz
+from .matrix_files import LARGEST_SIZE, POINT, read_container, read_matrices, write_npz
 from .matrix_input import (
     check_finite,
     check_mass,
+    check_sparse_mass,
     damping_of,
     numbers,
     points_of,
     rows_of,
+    sparse_square,
+    sparse_symmetric,
     square,
+    stays_sparse,
     symmetric,
 )
 from .modes import BodyPoint, Modes
 from .ordinary import of_ordinary_size
 from .reduction import Reduction, reduce_body
+from .sparse_reduction import reduce_sparse_body
 
 FILES = ("path", "mass", "stiffness")
 
@@ -48,7 +53,7 @@ class ReducedBody:
     mass, stiffness : array_like or scipy sparse, shape (n, n)
         Mass matrix, positive definite, and stiffness matrix, positive semidefinite; real and symmetric, in SI units for
         displacements in metres. Asymmetry up to 1e-8 of the largest entry, as text files have it, is averaged away. At
-        most 4000 degrees of freedom.
+        most 4000 degrees of freedom; of sparse matrices, if a cutoff is given, 300 000.
     points : mapping
         What each point's displacement along world (x, y), or in space (x, y, z), is made of, by its name: rows on the
         degrees of freedom, shape (2, n) or (3, n), or the numbers of two or three of them from 0, such as ``(0, 1)``;
@@ -92,14 +97,19 @@ class ReducedBody:
         instance("residual_flexibility", self.residual_flexibility, bool)
         if self.cutoff is not None:
             self._set("cutoff", positive("cutoff", self.cutoff))
-        self._set("mass", symmetric("mass", square("mass", self.mass)))
+        is_large = stays_sparse(self.mass)
+        of_shape, made_symmetric = (sparse_square, sparse_symmetric) if is_large else (square, symmetric)
+        self._set("mass", made_symmetric("mass", of_shape("mass", self.mass)))
         size = self.mass.shape[0]
-        self._set("stiffness", symmetric("stiffness", square("stiffness", self.stiffness, size)))
+        self._set("stiffness", made_symmetric("stiffness", of_shape("stiffness", self.stiffness, size)))
         self._set("points", MappingProxyType(points_of(self.points, size)))
-        self._set("damping", damping_of(self.damping, size))
+        self._set("damping", checked_damping(self.damping) if is_large else damping_of(self.damping, size))
         if self.translation is not None:
             self._set("translation", rows_of("translation", self.translation, size, self._directions))
-        check_mass(self.mass)
+        if is_large:
+            self._check_large()
+        else:
+            check_mass(self.mass)
         # Found now, since only the modes tell whether stiffness, damping and cutoff are fit.
         self.modes()
 
@@ -170,7 +180,8 @@ class ReducedBody:
         OSError
             If a file cannot be read.
         ValueError
-            If a file is damaged, of another kind or too large (2 GiB, 4000 degrees of freedom), or as in `ReducedBody`.
+            If a file is damaged, of another kind or too large (2 GiB, 4000 degrees of freedom, 300 000 in
+            sparse ones), or as in `ReducedBody`.
         """
         given_files = {
             word: file for word, file in zip(FILES, (path, mass, stiffness), strict=True) if file is not None
@@ -214,6 +225,10 @@ class ReducedBody:
         instance("path", path, (str, os.PathLike))
         if Path(path).suffix.lower() != ".npz":
             raise ArgumentError("path", "end in .npz", os.fspath(path))
+        if stays_sparse(self.mass):
+            raise ArgumentError(
+                "mass", f"have at most {LARGEST_SIZE} degrees of freedom to be saved", got=self.mass.shape[0]
+            )
         arrays: dict[str, Any] = {"mass": self.mass, "stiffness": self.stiffness, "name": self.name}
         arrays["residual_flexibility"] = self.residual_flexibility
         arrays |= {POINT + name: rows for name, rows in self.points.items()}
@@ -330,6 +345,9 @@ class ReducedBody:
         for value in self._values:
             parts = sorted(value.items()) if isinstance(value, Mapping) else [("", value)]
             for name, part in parts:
+                if stays_sparse(part):
+                    content.update(b"".join(array.tobytes() for array in (part.indptr, part.indices, part.data)))
+                    part = part.shape
                 is_array = isinstance(part, np.ndarray)
                 content.update(repr((name, part.shape if is_array else part, len(parts))).encode())
                 content.update(part.tobytes() if is_array else b"")
@@ -337,7 +355,17 @@ class ReducedBody:
 
     @cached_property
     def _reduction(self) -> Reduction:
-        return reduce_body(self)
+        return reduce_sparse_body(self) if stays_sparse(self.mass) else reduce_body(self)
+
+    def _check_large(self) -> None:
+        """Raise ValueError where sparse matrices lack a cutoff or their mass is none."""
+        if self.cutoff is None:
+            raise ArgumentError(
+                "cutoff",
+                f"be given for more than {LARGEST_SIZE} degrees of freedom",
+                got=f"none for {self.mass.shape[0]}",
+            )
+        check_sparse_mass(self.mass)
 
     def _set(self, name: str, value: Any) -> None:
         if isinstance(value, np.ndarray):

@@ -1,0 +1,130 @@
+"""Factors of sparse symmetric positive definite matrices: the one place that knows which library makes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+import scipy.sparse
+import scipy.sparse.linalg
+
+from ..arrays import Array
+from ..checks import ArgumentError
+
+# Nodes below which a part of a mesh is not cut further.
+SMALLEST_PART = 60
+
+Solve = Callable[[Array], Array]
+
+
+def factorised(matrix: Any, order: Array | None = None) -> Solve:
+    """Return the function that solves with a sparse symmetric positive definite matrix.
+
+    CHOLMOD (scikit-sparse) or Pardiso (pypardiso) factorise it where they are installed, else SuperLU.
+
+    Parameters
+    ----------
+    matrix : scipy sparse, shape (n, n)
+        The matrix.
+    order : ndarray, shape (n,), optional
+        Order of elimination for SuperLU, such as `dissection` gives; minimum degree if left out.
+
+    Raises
+    ------
+    ValueError
+        If the factors do not fit into memory.
+    """
+    for package, make in LIBRARIES.items():
+        if find_spec(package) is not None:
+            # What is there may still lack its shared library.
+            with suppress(ImportError):
+                return make(matrix)
+    return _superlu(matrix, order)
+
+
+def dissection(graph: Any, places: Array) -> Array:
+    """Return an order of elimination by nested dissection: halves of a mesh first, the nodes between them last.
+
+    On meshes in space it leaves factors of two thirds of the entries that minimum degree leaves, in less than half of
+    the time.
+
+    Parameters
+    ----------
+    graph : scipy sparse, shape (nodes, nodes)
+        Which nodes share an element.
+    places : ndarray, shape (nodes, 3)
+        Their coordinates [m].
+    """
+    graph = scipy.sparse.csr_array(graph)
+    reached = np.zeros(len(places), dtype=bool)
+    order: list[Array] = []
+    # Written from the end: what separates two parts comes after both.
+    parts = [np.arange(len(places))]
+    while parts:
+        part = parts.pop()
+        if part.size <= SMALLEST_PART:
+            order.append(part)
+            continue
+        coordinate = places[part, np.argmax(np.ptp(places[part], axis=0))]
+        low = coordinate < np.median(coordinate)
+        if not low.any():
+            low = np.arange(part.size) < part.size // 2
+        reached[:] = False
+        reached[part[low]] = True
+        high = part[~low]
+        rows = graph[high]
+        between = np.zeros(high.size, dtype=bool)
+        between[np.repeat(np.arange(high.size), np.diff(rows.indptr))[reached[rows.indices]]] = True
+        order.append(high[between])
+        parts += [part[low], high[~between]]
+    return np.concatenate(order[::-1])
+
+
+def _superlu(matrix: Any, order: Array | None) -> Solve:
+    columns = matrix.tocsc()
+    if order is not None:
+        columns = columns[order][:, order].tocsc()
+    try:
+        factors = scipy.sparse.linalg.splu(
+            columns,
+            permc_spec="MMD_AT_PLUS_A" if order is None else "NATURAL",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+    except MemoryError:
+        raise ArgumentError(
+            "mesh", "have factors that fit into memory", got=f"{matrix.shape[0]} degrees of freedom"
+        ) from None
+    if order is None:
+        return lambda right: np.asarray(factors.solve(right))
+
+    def solve(right: Array) -> Array:
+        solution = np.empty_like(right)
+        solution[order] = factors.solve(right[order])
+        return solution
+
+    return solve
+
+
+def _cholmod(matrix: Any) -> Solve:
+    factorise = getattr(import_module("sksparse.cholmod"), "cholesky", None)
+    factors = factorise(matrix.tocsc()) if factorise else None
+    if not callable(factors):
+        raise ImportError("scikit-sparse of another interface")
+    return lambda right: np.asarray(factors(right))
+
+
+def _pardiso(matrix: Any) -> Solve:
+    # Its kind 2: symmetric positive definite, the upper triangle in rows.
+    rows = scipy.sparse.csr_matrix(scipy.sparse.triu(matrix))
+    rows.sort_indices()
+    solver = import_module("pypardiso").PyPardisoSolver(mtype=2)
+    solver.factorize(rows)
+    return lambda right: np.asarray(solver.solve(rows, np.asfortranarray(right))).reshape(right.shape)
+
+
+LIBRARIES = {"sksparse": _cholmod, "pypardiso": _pardiso}

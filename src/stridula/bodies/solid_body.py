@@ -1,0 +1,451 @@
+"""A body meshed in space."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from functools import cached_property, lru_cache
+from numbers import Integral
+from types import MappingProxyType
+from typing import Any, ClassVar
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse
+
+from ..arrays import Array
+from ..checks import ArgumentError, at_most, choice, count, instance, listed, positive
+from .damping import DampingLaw, checked_damping
+from .factorisation import dissection
+from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
+from .matrix_input import check_finite, numbers
+from .modes import BodyPoint, Modes
+from .ordinary import of_ordinary_size
+from .sections import Material
+from .solid_elements import assembled
+from .solid_mesh import Face, SolidMesh
+from .sparse_reduction import SparseProblem, modes_of, reduce_sparse
+
+DIRECTIONS = "xyz"
+# Speed of waves in diamond is 18 km/s; beyond, units are mixed.
+FASTEST = 30e3
+# Of the size of a body: motions that held nodes follow by less are none.
+RIGID = 1e-9
+
+
+@dataclass(frozen=True)
+class SolidReduction:
+    """Modes of a body in space.
+
+    Attributes
+    ----------
+    modes : Modes
+        The modes, residual shapes last.
+    shapes : ndarray, shape (3 nodes, modes)
+        Their shapes, the three directions of a node one after the other; zero where nodes are held.
+    mass : csr_array, shape (nodes, nodes)
+        Mass of one direction [kg].
+    """
+
+    modes: Modes
+    shapes: Array
+    mass: Any
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SolidBody:
+    """A linear elastic body given by a mesh in space, its modes found on first use.
+
+    Its coordinates are those of the world. Rigid motions that `fixed` leaves, six where nothing is fixed, have the
+    frequency zero exactly. Bodies are compared and hashed by content and cannot be changed.
+
+    Parameters
+    ----------
+    mesh : SolidMesh
+        The mesh. Elements without nodes in the middle of their edges get them, as linear ones are too stiff in bending.
+    materials : Material or mapping
+        One material, or the material of each group of elements by its name; the groups must cover the mesh once.
+    points : mapping, optional
+        Nodes by name: each the name of a set of one node, the number of a node from 0, or coordinates [m] of a node,
+        met to a thousandth of the size of the mesh. Sets of one node are points by their own name, too.
+    fixed : sequence of str or mapping, optional
+        Groups of faces or nodes that are held: their names, or by name the directions in which they are, such as "z" or
+        "xyz".
+    cutoff : float, optional
+        Keep the modes up to this frequency [Hz], rigid ones always; all modes if left out. Must be given for more
+        than 4000 degrees of freedom.
+    damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
+        One damping ratio [1] for every elastic mode, one for each mode kept in the order of rising frequency, or a
+        law of their frequency.
+    residual_flexibility : bool, optional
+        Whether the modes that a cutoff leaves out still yield statically to the forces at the points and to gravity,
+        so that the body is as soft there as all its modes make it.
+    linear : bool, optional
+        Whether elements without nodes in the middle of their edges stay as they are.
+    name : str, optional
+        What it is called in records; tells equal bodies apart.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range or does not fit the others.
+    """
+
+    kind: ClassVar[str] = "solid"
+    has_positions: ClassVar[bool] = False
+    has_translation: ClassVar[bool] = True
+    is_spatial: ClassVar[bool] = True
+    mesh: SolidMesh
+    materials: Material | Mapping[str, Material]
+    points: Mapping[str, Any] = field(default_factory=dict)
+    fixed: Sequence[str] | Mapping[str, str] = ()
+    cutoff: float | None = None
+    damping: float | Sequence[float] | Array | DampingLaw = 0.0
+    residual_flexibility: bool = True
+    linear: bool = False
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        instance("mesh", self.mesh, SolidMesh)
+        instance("name", self.name, str)
+        for word in ("residual_flexibility", "linear"):
+            instance(word, getattr(self, word), bool)
+        if self.cutoff is not None:
+            self._set("cutoff", positive("cutoff", self.cutoff))
+        self._set("damping", checked_damping(self.damping))
+        self._set("materials", _materials(self.materials))
+        _elements_of(self.materials, self.mesh)
+        if not self.linear:
+            self._set("mesh", self.mesh.quadratic())
+        self._set("points", MappingProxyType(_points(self.points, self.mesh)))
+        self._set("fixed", MappingProxyType(_fixed(self.fixed, self.mesh)))
+        size = int(self._free.sum())
+        if not size:
+            raise ArgumentError("fixed", "leave something free", got="all nodes held")
+        check_size("mesh", size, LARGEST_SPARSE)
+        if self.cutoff is None and size > LARGEST_SIZE:
+            raise ArgumentError(
+                "cutoff", f"be given for more than {LARGEST_SIZE} degrees of freedom", got=f"none for {size}"
+            )
+
+    @classmethod
+    def read(
+        cls,
+        path: str | os.PathLike[str],
+        materials: Material | Mapping[str, Material],
+        *,
+        scale: float = 1.0,
+        **options: Any,
+    ) -> SolidBody:
+        """Read a body from a file of a mesh.
+
+        Parameters
+        ----------
+        path : str or Path
+            File of gmsh (``.msh``), Abaqus or CalculiX (``.inp``), Nastran (``.bdf``, ``.nas``) or VTK (``.vtk``,
+            ``.vtu``), see `SolidMesh.read`.
+        materials : Material or mapping
+            As in `SolidBody`.
+        scale : float, optional
+            Length of the unit of the file [m], 0.001 for millimetres.
+        **options
+            As in `SolidBody`: `points`, `fixed`, `cutoff` and so on.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be read.
+        ValueError
+            As in `SolidMesh.read` and `SolidBody`.
+        """
+        return cls(SolidMesh.read(path, scale), materials, **options)
+
+    @classmethod
+    def block(
+        cls,
+        lengths: Sequence[float],
+        divisions: Sequence[int],
+        materials: Material | Mapping[str, Material],
+        **options: Any,
+    ) -> SolidBody:
+        """Return a block, see `SolidMesh.block`.
+
+        Parameters
+        ----------
+        lengths : sequence of float, length 3
+            Sides along x, y and z [m]; one corner is the origin.
+        divisions : sequence of int, length 3
+            Numbers of elements along x, y and z.
+        materials : Material or mapping
+            As in `SolidBody`.
+        **options
+            As in `SolidBody`.
+        """
+        return cls(SolidMesh.block(lengths, divisions), materials, **options)
+
+    def at(self, position: str) -> BodyPoint:
+        """Return the point called `position`."""
+        return BodyPoint(self, position)
+
+    def check_position(self, position: str) -> None:
+        """Raise ValueError if no point is called `position`."""
+        choice("position", position, self.point_names)
+
+    def face(self, name: str) -> Face:
+        """Return a named part of its surface: nodes, areas and normals."""
+        return self.mesh.face(name)
+
+    @property
+    def axes(self) -> Array:
+        """World components of its axes, which are x, y and z, shape (3, 3)."""
+        return np.eye(3)
+
+    @property
+    def point_names(self) -> tuple[str, ...]:
+        """Names of its points."""
+        return tuple(self.points)
+
+    @property
+    def face_names(self) -> tuple[str, ...]:
+        """Names of the parts of its surface."""
+        return tuple(self.mesh.faces)
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words."""
+        sides = " x ".join(f"{side:.4g}" for side in self.mesh.size)
+        return f"{sides} m, {len(self.mesh.elements)} {self.mesh.element_kind.words}"
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words, which a mesh does not say."""
+        return ""
+
+    @property
+    def total_mass(self) -> float:
+        """Mass [kg]."""
+        return float(self._reduction.mass.sum())
+
+    @property
+    def shapes(self) -> Array:
+        """Mass-normalised mode shapes at the nodes, residual shapes last, shape (3 nodes, modes)."""
+        return self._reduction.shapes
+
+    def modes(self, held_x: bool = False) -> Modes:
+        """Return the modes; `held_x` is for bodies with a driven end, must be false."""
+        if held_x:
+            raise ArgumentError("held_x", "be False for a SolidBody: it has no driven end", held_x)
+        return self._reduction.modes
+
+    def trace(self, position: str, held_x: bool = False) -> Array:
+        """Return the rows that give the displacement (x, y, z) of a point from the modes, shape (3, modes)."""
+        self.check_position(position)
+        self.modes(held_x)
+        node = self.points[position]
+        return self.shapes[3 * node : 3 * node + 3]
+
+    def modal_coordinates(self, vector: Any) -> Array:
+        """Return ``Phi^T M x`` of displacements or velocities x of all nodes, shape (nodes, 3), as shape (modes,).
+
+        Residual shapes have none: they follow the forces alone.
+        """
+        values = numbers("vector", vector)
+        count = len(self.mesh.nodes)
+        if values.shape not in ((3 * count,), (count, 3)):
+            raise ArgumentError("vector", f"have the shape ({count}, 3)", vector, got=values.shape)
+        check_finite("vector", values)
+        moved = (self._reduction.mass @ values.reshape(count, 3)).ravel()
+        return np.where(self.modes().massless, 0.0, self.shapes.T @ moved)
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and self._digest == getattr(other, "_digest", None)
+
+    def __hash__(self) -> int:
+        return hash(self._digest)
+
+    def __repr__(self) -> str:
+        name = f", name={self.name!r}" if self.name else ""
+        return f"SolidBody({self.dimensions}, points {listed(self.points)}{name})"
+
+    def __getstate__(self) -> dict[str, Any]:
+        # The modes go along: another process need not find them again.
+        return {
+            name: dict(value) if isinstance(value, MappingProxyType) else value for name, value in vars(self).items()
+        }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in state.items():
+            self._set(name, MappingProxyType(value) if isinstance(value, dict) else value)
+        for array in (self._reduction.shapes,) if "_reduction" in state else ():
+            array.flags.writeable = False
+
+    @property
+    def _free(self) -> Array:
+        """Which degrees of freedom are not held, shape (3 nodes,)."""
+        free = np.ones((len(self.mesh.nodes), 3), dtype=bool)
+        for name, directions in self.fixed.items():  # type: ignore[union-attr]
+            for direction in directions:
+                free[self.mesh.nodes_of(name), DIRECTIONS.index(direction)] = False
+        return free.ravel()
+
+    @cached_property
+    def _digest(self) -> bytes:
+        content = hashlib.sha256(self.mesh._digest)
+        for one in fields(self)[1:]:
+            value = getattr(self, one.name)
+            content.update(repr(sorted(value.items()) if isinstance(value, Mapping) else value).encode())
+        return content.digest()
+
+    @cached_property
+    def _reduction(self) -> SolidReduction:
+        return _reduced(self)
+
+    def _set(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, value)
+
+
+def _assembled(body: SolidBody) -> tuple[Any, Any]:
+    mesh = body.mesh
+    materials = _elements_of(body.materials, mesh)
+    return assembled(mesh.element_kind, mesh.nodes, mesh.elements, materials)
+
+
+@lru_cache(maxsize=4)
+@of_ordinary_size("mesh and materials")
+def _reduced(body: SolidBody) -> SolidReduction:
+    """Return the modes of a body; equal bodies share them."""
+    node_mass, stiffness = _assembled(body)
+    mesh, free = body.mesh, body._free
+    mass = scipy.sparse.kron(node_mass, scipy.sparse.eye_array(3), format="csr")
+    uniform = np.tile(np.eye(3), (len(mesh.nodes), 1))
+    pulled = mass @ uniform
+    nodes = np.array(list(body.points.values()), dtype=np.int64)
+    forces = pulled[free]
+    if body.residual_flexibility:
+        at_points = np.zeros((free.size, 3 * nodes.size))
+        at_points[(3 * nodes[:, None] + np.arange(3)).ravel(), np.arange(3 * nodes.size)] = 1.0
+        forces = np.hstack([at_points[free], forces])
+    else:
+        forces = forces[:, :0]
+    own_mass = mass[free][:, free]
+    problem = SparseProblem(
+        own_mass, stiffness[free][:, free], forces, _rigid(mesh, free, own_mass), _order(mesh, node_mass, free)
+    )
+    found = reduce_sparse(problem, body.cutoff)
+    shapes = np.zeros((free.size, found.angular_frequency.size))
+    shapes[free] = found.shapes
+    shapes.flags.writeable = False
+    return SolidReduction(modes_of(found, body.damping, pulled.T @ shapes), shapes, node_mass)
+
+
+def _rigid(mesh: SolidMesh, free: Array, mass: Any) -> Array:
+    """Return the rigid motions that held nodes leave, mass-normalised, shape (free, motions)."""
+    size = float(np.linalg.norm(mesh.size))
+    places = (mesh.nodes - mesh.nodes.mean(axis=0)) / size
+    turns = [np.cross(axis, places).ravel() for axis in np.eye(3)]
+    motions = np.column_stack([np.tile(np.eye(3), (len(places), 1)), *turns])
+    held = motions[~free]
+    if held.size:
+        _, share, ways = scipy.linalg.svd(held, full_matrices=len(held) < 6)
+        share = np.append(share, np.zeros(6 - share.size))
+        motions = motions @ ways[share <= RIGID * max(share[0], 1.0)].T
+    own = motions[free]
+    # As exact as the coordinates: by Cholesky twice.
+    for _ in range(2 if own.shape[1] else 0):
+        factor = np.linalg.cholesky(own.T @ (mass @ own))
+        own = scipy.linalg.solve_triangular(factor, own.T, lower=True).T
+    return own
+
+
+def _order(mesh: SolidMesh, graph: Any, free: Array) -> Array:
+    """Return an order of elimination of the degrees of freedom that are not held."""
+    every = (3 * dissection(graph, mesh.nodes)[:, None] + np.arange(3)).ravel()
+    number = np.cumsum(free) - 1
+    return np.asarray(number[every[free[every]]])
+
+
+def _materials(given: Any) -> Any:
+    """Return one material, or materials by name, after checks of their units."""
+    if isinstance(given, Mapping):
+        if not given:
+            raise ArgumentError("materials", "be one material or hold one", given)
+        for name, material in given.items():
+            _check_material(f"materials[{name!r}]", material)
+        return MappingProxyType(dict(given))
+    _check_material("materials", given)
+    return given
+
+
+def _check_material(word: str, material: Any) -> None:
+    instance(word, material, Material)
+    speed = np.sqrt(material.young / material.density)
+    if speed > FASTEST:
+        raise ArgumentError(
+            word,
+            f"carry waves of at most {at_most(FASTEST / 1000.0)} km/s",
+            material,
+            got=(
+                f"{speed / 1000.0:.4g} km/s from young={material.young:g} and density={material.density:g}: tonnes and "
+                "millimetres? Pa and kg/m³ are meant"
+            ),
+        )
+
+
+def _elements_of(materials: Any, mesh: SolidMesh) -> list[tuple[Material, Array]]:
+    """Return each material with the numbers of its elements, which must cover the mesh once."""
+    if not isinstance(materials, Mapping):
+        return [(materials, np.arange(len(mesh.elements)))]
+    times = np.zeros(len(mesh.elements), dtype=np.int64)
+    found = []
+    for name, material in materials.items():
+        choice("materials", name, tuple(mesh.volumes) or ("none",))
+        times[mesh.volumes[name]] += 1
+        found.append((material, mesh.volumes[name]))
+    for bad, words in ((times == 0, "without a material"), (times > 1, "of two")):
+        if bad.any():
+            others = listed(name for name in mesh.volumes if name not in materials)
+            raise ArgumentError(
+                "materials",
+                "give each element one",
+                got=f"{bad.sum()} of {bad.size} {words}; other groups: {others}",
+            )
+    return found
+
+
+def _points(given: Any, mesh: SolidMesh) -> dict[str, int]:
+    """Return the numbers of nodes by the names of points."""
+    instance("points", given, Mapping)
+    own = {name: int(nodes[0]) for name, nodes in mesh.node_sets.items() if nodes.size == 1}
+    return own | {name: _node(name, where, mesh, own) for name, where in given.items()}
+
+
+def _node(name: Any, where: Any, mesh: SolidMesh, own: Mapping[str, int]) -> int:
+    if not isinstance(name, str) or not name:
+        raise ArgumentError("points", "have names that are text", name)
+    word = f"points[{name!r}]"
+    if isinstance(where, str):
+        return own[choice(word, where, tuple(own) or ("none",))]
+    if isinstance(where, Integral):
+        return count(word, where, low=0, high=len(mesh.nodes) - 1)
+    try:
+        return mesh.node_at(where)
+    except ArgumentError as error:
+        raise error.renamed(word) from None
+
+
+def _fixed(given: Any, mesh: SolidMesh) -> dict[str, str]:
+    """Return the directions in which groups are held, by their names."""
+    if isinstance(given, str) or not isinstance(given, (Sequence, Mapping)):
+        raise ArgumentError("fixed", "be names of groups, or directions by name", given)
+    found = {}
+    for name in given:
+        choice("fixed", name, (*mesh.faces, *mesh.node_sets) or ("none",))
+        directions = given[name] if isinstance(given, Mapping) else DIRECTIONS
+        word = f"fixed[{name!r}]"
+        is_text = isinstance(directions, str) and directions
+        if not is_text or set(directions) - set(DIRECTIONS) or len(set(directions)) < len(directions):
+            raise ArgumentError(word, "be directions of x, y and z, such as 'xz'", directions)
+        found[name] = "".join(sorted(directions))
+    return found

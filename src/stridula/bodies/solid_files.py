@@ -1,0 +1,246 @@
+"""Files of meshes in space, read by meshio, which is imported on first use."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..checks import ArgumentError, at_least, in_one_line, listed
+from ..disk import one_line
+from .solid_kinds import KINDS, ElementKind
+
+LARGEST_FILE = 2 * 1024**3
+FORMATS = {
+    ".msh": "gmsh",
+    ".inp": "abaqus",
+    ".bdf": "nastran",
+    ".nas": "nastran",
+    ".fem": "nastran",
+    ".vtk": "vtk",
+    ".vtu": "vtu",
+}
+# Kinds of cells by how their names begin.
+_SOLID = ("tetra", "hexahedron", "wedge", "pyramid", "polyhedron", "VTK_LAGRANGE_TETRA", "VTK_LAGRANGE_HEXA")
+_SURFACE = ("triangle", "quad")
+_THIN = ("vertex", "line")
+# An array of whole numbers with more different ones names no groups.
+MOST_GROUPS = 1000
+
+
+def read_mesh(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Return what a file of a mesh holds, as arguments of `SolidMesh`.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    ValueError
+        If it is damaged, too large, of another format, or holds no solid elements or several kinds of them.
+    """
+    form = FORMATS.get(Path(path).suffix.lower())
+    if form is None:
+        raise ArgumentError("path", f"end in {', '.join(FORMATS)}", os.fspath(path))
+    prefix = f"cannot read {os.fspath(path)!r}"
+    with one_line(prefix):
+        size = os.stat(path).st_size
+        with open(path, "rb"):
+            pass
+    if size > LARGEST_FILE:
+        raise ValueError(f"{prefix}: {at_least(size / 1024**3, 3)} GiB, at most 2 GiB are read")
+    if not size:
+        raise ValueError(f"{prefix}: the file is empty")
+    held = _read(path, form, prefix)
+    try:
+        return _parts(held, _grouped(held, form, path))
+    except (ArithmeticError, LookupError, TypeError, AttributeError) as error:
+        raise ValueError(f"{prefix}: {in_one_line(error)}") from error
+
+
+def _read(path: str | os.PathLike[str], form: str, prefix: str) -> Any:
+    """Return the mesh of meshio, which tells of what it cannot read by printing and by leaving the program."""
+    import meshio
+
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), np.errstate(all="ignore"):
+            return meshio.read(Path(path), file_format=form)
+    except OSError:
+        raise
+    except MemoryError:
+        raise ValueError(f"{prefix}: it announces more than memory holds") from None
+    except SystemExit:
+        words = " ".join(said.getvalue().split()) or "it is damaged"
+        raise ValueError(f"{prefix}: {words[:160]}") from None
+    except Exception as error:
+        raise ValueError(f"{prefix}: {in_one_line(error)}") from error
+
+
+def _parts(held: Any, groups: dict[str, dict[int, Array]]) -> dict[str, Any]:
+    """Return nodes, elements and named groups, nodes without an element left out."""
+    blocks = [block for block in held.cells if block.type.startswith(_SOLID)]
+    kinds = sorted({block.type for block in blocks})
+    if len(kinds) != 1 or kinds[0] not in KINDS:
+        known = listed(kind.words for kind in KINDS.values())
+        raise ArgumentError("path", f"hold solid elements of one kind ({known})", got=listed(kinds))
+    kind = KINDS[kinds[0]]
+    places = np.asarray(held.points, dtype=float)
+    given = np.concatenate([np.asarray(block.data, dtype=np.int64) for block in blocks])
+    if given.size and (given.min() < 0 or given.max() >= len(places)):
+        raise ArgumentError("path", f"name nodes that it holds, {len(places)} in all", got=int(given.max()))
+    # What lies in two groups may stand in a file twice.
+    _, first, number = np.unique(np.sort(given, axis=1), axis=0, return_index=True, return_inverse=True)
+    rank = np.argsort(np.argsort(first))
+    elements, number = given[np.sort(first)], rank[number.ravel()]
+    used = np.unique(elements)
+    renumbered = np.full(len(places), -1)
+    renumbered[used] = np.arange(used.size)
+    elements = renumbered[elements]
+    surface = _surface(kind, elements)
+    found: dict[str, Any] = {"nodes": places[used], "elements": elements, "kind": kind.name}
+    found["volumes"] = _volumes(held, groups, number)
+    faces, sets = _faces_and_sets(held, groups, renumbered, surface)
+    for name, nodes in getattr(held, "point_sets", {}).items():
+        _add(sets, name, renumbered[np.asarray(nodes, dtype=np.int64)])
+    for name, nodes in sets.items():
+        if name not in faces:
+            _add(faces, name, _faces_in(kind, elements, surface, nodes))
+    found["faces"] = faces
+    found["node_sets"] = sets
+    return found
+
+
+def _volumes(held: Any, groups: dict[str, dict[int, Array]], number: Array) -> dict[str, Array]:
+    """Return the elements of each group of solid elements, after those that stand twice are joined."""
+    start, found = 0, dict[str, Array]()
+    for at, block in enumerate(held.cells):
+        if block.type.startswith(_SOLID):
+            for name, of_block in groups.items():
+                if at in of_block and of_block[at].size:
+                    those = number[start + of_block[at]]
+                    found[name] = np.append(found.get(name, those[:0]), those)
+            start += len(block.data)
+    return found
+
+
+def _faces_and_sets(
+    held: Any, groups: dict[str, dict[int, Array]], renumbered: Array, surface: dict[tuple[int, ...], tuple[int, int]]
+) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Return faces on the surface, and nodes of other faces, of lines and of points, by the name of their group."""
+    faces: dict[str, Array] = {}
+    sets: dict[str, Array] = {}
+    for name, of_block in groups.items():
+        for at, those in of_block.items():
+            block = held.cells[at]
+            nodes = renumbered[np.asarray(block.data, dtype=np.int64)[those]]
+            if block.type.startswith(_SURFACE):
+                corners = 3 if block.type.startswith("triangle") else 4
+                keys = [tuple(sorted(face)) for face in nodes[:, :corners].tolist()]
+                if all(key in surface for key in keys):
+                    pairs = np.array([surface[key] for key in keys], dtype=np.int64).reshape(-1, 2)
+                    faces[name] = np.vstack([faces.get(name, pairs[:0]), pairs])
+                else:
+                    _add(sets, name, nodes.ravel())
+            elif block.type.startswith(_THIN):
+                _add(sets, name, nodes.ravel())
+    return {name: those for name, those in faces.items() if those.size}, sets
+
+
+def _add(groups: dict[str, Array], name: str, those: Array) -> None:
+    """Join numbers to a group; nodes without an element, numbered -1, and empty groups are left out."""
+    those = those[those >= 0] if those.ndim == 1 else those
+    if those.size:
+        groups[name] = np.unique(np.append(groups[name], those) if name in groups else those, axis=0)
+
+
+def _surface(kind: ElementKind, elements: Array) -> dict[tuple[int, ...], tuple[int, int]]:
+    """Return the faces that one element alone has, by their sorted corners: number of the element and of its face."""
+    corners = np.sort(elements[:, np.array(kind.faces)], axis=2).reshape(-1, len(kind.faces[0]))
+    _, first, times = np.unique(corners, axis=0, return_index=True, return_counts=True)
+    alone = first[times == 1]
+    element, side = np.divmod(alone, len(kind.faces))
+    keys = map(tuple, corners[alone].tolist())
+    return dict(zip(keys, zip(element.tolist(), side.tolist(), strict=True), strict=True))
+
+
+def _faces_in(
+    kind: ElementKind, elements: Array, surface: dict[tuple[int, ...], tuple[int, int]], nodes: Array
+) -> Array:
+    """Return the faces on the surface all of whose nodes are in a set."""
+    pairs = np.array(list(surface.values()), dtype=np.int64).reshape(-1, 2)
+    of_face = elements[pairs[:, :1], kind.face_nodes[pairs[:, 1]]]
+    return pairs[np.isin(of_face, nodes).all(axis=1)]
+
+
+def _grouped(held: Any, form: str, path: str | os.PathLike[str]) -> dict[str, dict[int, Array]]:
+    """Return the named groups of cells: numbers in each block by the number of the block, by name."""
+    if form == "gmsh":
+        return _of_gmsh(held)
+    if form == "abaqus":
+        return _of_abaqus(held, path)
+    found: dict[str, dict[int, Array]] = {}
+    for array, of_block in held.cell_data.items():
+        is_property = array == "nastran:ref"
+        for at, values in enumerate(of_block):
+            for value, those in _by_value(values):
+                found.setdefault(str(value) if is_property else f"{array} {value}", {})[at] = those
+    if form in ("vtk", "vtu"):
+        for array, values in held.point_data.items():
+            for value, those in _by_value(values):
+                held.point_sets[f"{array} {value}"] = those
+    return found
+
+
+def _by_value(values: Any) -> Iterator[tuple[int, Array]]:
+    """Yield each whole number in an array and where it stands; nothing of an array of other numbers or of too many."""
+    array = np.asarray(values)
+    if array.ndim != 1 or array.dtype.kind not in "iu":
+        return
+    different = np.unique(array)
+    if different.size <= MOST_GROUPS:
+        for value in different:
+            yield int(value), np.flatnonzero(array == value)
+
+
+def _of_gmsh(held: Any) -> dict[str, dict[int, Array]]:
+    """Return the physical groups; those without a name are called by their number."""
+    names = {(int(dimension), int(tag)): name for name, (tag, dimension) in held.field_data.items()}
+    found: dict[str, dict[int, Array]] = {}
+    for at, tags in enumerate(held.cell_data.get("gmsh:physical", [])):
+        for tag, those in _by_value(tags):
+            if tag:
+                found.setdefault(names.get((held.cells[at].dim, tag), str(tag)), {})[at] = those
+    for name, of_block in held.cell_sets.items():
+        if name in held.field_data and len(of_block) == len(held.cells):
+            for at, those in enumerate(of_block):
+                if those is not None and len(those) and held.cells[at].dim == held.field_data[name][1]:
+                    found.setdefault(name, {})[at] = np.asarray(those, dtype=np.int64)
+    return found
+
+
+def _of_abaqus(held: Any, path: str | os.PathLike[str]) -> dict[str, dict[int, Array]]:
+    """Return the sets of elements; those named at ``*ELEMENT`` are told by its lines."""
+    found: dict[str, dict[int, Array]] = {}
+    with open(path, encoding="latin-1") as file:
+        at_blocks = [_parameters(line) for line in file if line.upper().startswith("*ELEMENT,")]
+    named_there = {parameters.get("ELSET") for parameters in at_blocks}
+    for name, of_block in held.cell_sets.items():
+        whole = len(of_block) == len(held.cells) and all(isinstance(those, np.ndarray) for those in of_block)
+        if whole and name not in named_there:
+            found[name] = {at: np.asarray(those, dtype=np.int64) for at, those in enumerate(of_block) if those.size}
+    if len(at_blocks) == len(held.cells):
+        for at, parameters in enumerate(at_blocks):
+            if "ELSET" in parameters:
+                found.setdefault(parameters["ELSET"], {})[at] = np.arange(len(held.cells[at].data))
+    return found
+
+
+def _parameters(line: str) -> Mapping[str, str]:
+    pairs = (word.partition("=") for word in line.split(",")[1:])
+    return {name.strip().upper(): value.strip() for name, _, value in pairs if value}

@@ -1,0 +1,296 @@
+"""Sparse matrices become mass-normalised modes up to a cutoff, and residual shapes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse.linalg
+from threadpoolctl import threadpool_limits
+
+from ..arrays import Array
+from ..checks import ArgumentError, at_least
+from .damping import check_damping_count, damping_rates
+from .factorisation import Solve, factorised
+from .matrix_files import LARGEST_SIZE
+from .matrix_input import ROUND_OFF
+from .modes import Modes
+from .reduction import RESIDUAL, Reduction
+
+# Up to so many degrees of freedom all modes are found at once, in less time than some of them.
+DENSE = 600
+# Distance of the shift below zero, of the squared cutoff: far enough for digits, near enough for a fast search.
+SHIFT = 0.01
+# Beyond this share of the modes all are found at once in less time, where that can be done.
+DENSE_SHARE = 8
+# Modes that are searched for at most; a thousand take minutes.
+MOST_MODES = 2000
+# Modes that the first search asks for.
+FIRST_SEARCH = 24
+# A Ritz value at this tolerance tells whether a mode was left out.
+COARSE = 1e-2
+# Steps of a search and of the static answers; both end after some ten.
+MOST_STEPS = 200
+
+
+@dataclass(frozen=True)
+class SparseReduction:
+    """Modes of sparse matrices.
+
+    Attributes
+    ----------
+    angular_frequency : ndarray, shape (modes,)
+        Angular frequencies [rad/s], rising; zero of rigid modes, infinite of residual shapes, which come last.
+    shapes : ndarray, shape (n, modes)
+        Mass-normalised shapes; of residual shapes those of unit stiffness.
+    """
+
+    angular_frequency: Array
+    shapes: Array
+
+
+@dataclass(frozen=True)
+class SparseProblem:
+    """Matrices whose modes are asked for.
+
+    Attributes
+    ----------
+    mass, stiffness : scipy sparse, shape (n, n)
+        Mass matrix, positive definite, and stiffness matrix, positive semidefinite.
+    forces : ndarray, shape (n, forces)
+        Forces that the modes left out shall answer statically.
+    rigid : ndarray, shape (n, rigid), optional
+        Motions without stiffness, mass-normalised; found among the modes if left out.
+    order : ndarray, shape (n,), optional
+        Order of elimination.
+    """
+
+    mass: Any
+    stiffness: Any
+    forces: Array
+    rigid: Array | None = None
+    order: Array | None = None
+
+
+def reduce_sparse_body(body: Any) -> Reduction:
+    """Return the modes of a `ReducedBody` of sparse matrices and their shapes."""
+    rows = list(body.points.values()) if body.residual_flexibility else []
+    if body.residual_flexibility and body.translation is not None:
+        rows.append(body.translation @ body.mass)
+    forces = np.concatenate(rows).T if rows else np.zeros((body.mass.shape[0], 0))
+    found = reduce_sparse(SparseProblem(body.mass, body.stiffness, forces), body.cutoff)
+    found.shapes.flags.writeable = False
+    moved = np.zeros((2, found.angular_frequency.size))
+    if body.translation is not None:
+        moved = body.translation @ body.mass @ found.shapes
+    return Reduction(modes_of(found, body.damping, moved), found.shapes)
+
+
+def modes_of(found: SparseReduction, damping: Any, translation: Array) -> Modes:
+    """Return modes with their damping, residual shapes without."""
+    angular = found.angular_frequency
+    massless = np.isinf(angular)
+    check_damping_count(damping, int((~massless).sum()))
+    rates = np.append(damping_rates(damping, angular[~massless]), np.zeros(int(massless.sum())))
+    return Modes(angular, rates, translation)
+
+
+def reduce_sparse(problem: SparseProblem, cutoff: float | None) -> SparseReduction:
+    """Return the modes up to a cutoff [Hz], all without, and the residual shapes of the forces.
+
+    One factorisation of ``K + s M`` serves the search for the modes (shift-invert Lanczos) and the static answers.
+
+    Raises
+    ------
+    ValueError
+        If no mode is left, or if a frequency is zero where no motion is rigid.
+    """
+    # Factors are made of many small blocks, which threads delay; and one thread gives the same bits on every machine.
+    with threadpool_limits(1):
+        return _reduced(problem, cutoff)
+
+
+def _reduced(problem: SparseProblem, cutoff: float | None) -> SparseReduction:
+    size = problem.mass.shape[0]
+    highest = np.inf if cutoff is None else 2.0 * np.pi * cutoff
+    largest = float(np.max(problem.stiffness.diagonal() / problem.mass.diagonal()))
+    solve: Solve | None = None
+    # Below, rounding of the largest frequencies would drown the shift.
+    shift = max(SHIFT * highest**2, 1e3 * ROUND_OFF * largest) if cutoff is not None else 0.0
+    if cutoff is None or size <= DENSE:
+        squared, shapes = _all_modes(problem)
+    else:
+        solve = factorised(problem.stiffness + shift * problem.mass, problem.order)
+        squared, shapes = _modes_up_to(problem, solve, shift, highest)
+    angular, shapes = _with_rigid(problem, squared, shapes, ROUND_OFF * largest)
+    kept = angular <= highest
+    if not kept.any():
+        first = angular[0] / (2.0 * np.pi)
+        raise ArgumentError(
+            "cutoff", f"leave at least one mode (first at {at_least(first)} Hz)", cutoff, got=f"{cutoff!r} Hz"
+        )
+    angular, shapes = angular[kept], shapes[:, kept]
+    if cutoff is None or not problem.forces.size or shapes.shape[1] == size:
+        return SparseReduction(angular, shapes)
+    if solve is None:
+        solve = factorised(problem.stiffness + shift * problem.mass, problem.order)
+    residual = residual_shapes(problem, solve, shapes)
+    angular = np.append(angular, np.full(residual.shape[1], np.inf))
+    return SparseReduction(angular, np.hstack([shapes, residual]))
+
+
+def residual_shapes(problem: SparseProblem, solve: Solve, kept: Array) -> Array:
+    """Return the static answers to the forces that the modes kept do not give, orthonormal in the stiffness.
+
+    ``Psi Psi^T`` is the flexibility of the modes left out wherever these forces act (MacNeal 1971). Rigid modes are
+    among those kept, so a free body answers with the inertia of its rigid motion.
+    """
+    forces = problem.forces
+    moved = problem.mass @ kept
+    sizes = np.sqrt(np.maximum(np.sum(forces * solve(forces), axis=0), 0.0))
+    forces = forces[:, sizes > 0.0] / sizes[sizes > 0.0]
+    answers = _static_answers(problem.stiffness, solve, forces - moved @ (kept.T @ forces), kept, moved)
+    own = np.sqrt(np.maximum(np.sum(answers * (problem.stiffness @ answers), axis=0), 0.0))
+    # Of a force that the modes kept answer, rounding is left.
+    answers = answers[:, own > RESIDUAL] / own[own > RESIDUAL]
+    if not answers.size:
+        return np.zeros((len(kept), 0))
+    basis, factor = _orthonormal_in(problem.stiffness, answers)
+    turned, share, _ = scipy.linalg.svd(factor, full_matrices=False)
+    return np.asarray(basis @ turned[:, share > RESIDUAL * share[0]])
+
+
+def _static_answers(stiffness: Any, solve: Solve, forces: Array, kept: Array, moved: Array) -> Array:
+    """Solve ``K a = f`` for forces beside the modes kept, by conjugate gradients with the shifted factors.
+
+    Beside these modes ``(K + s M)^-1 K`` lies between ``1 / (1 + s / w²)`` and 1, so that a few steps reach round-off.
+    """
+    answers, left = np.zeros_like(forces), forces.copy()
+    way, before = np.zeros_like(forces), np.ones(forces.shape[1])
+    goal = float(np.finfo(float).eps) * np.linalg.norm(forces, axis=0)
+    best = np.full(forces.shape[1], np.inf)
+    for _ in range(MOST_STEPS):
+        guess = solve(left)
+        guess -= kept @ (moved.T @ guess)
+        now = np.sum(left * guess, axis=0)
+        way = guess + way * (now / before)
+        against = stiffness @ way
+        work = np.sum(way * against, axis=0)
+        going = work > 0.0
+        length = np.divide(now, work, out=np.zeros_like(now), where=going)
+        answers += way * length
+        left -= against * length
+        left -= moved @ (kept.T @ left)
+        size, before = np.linalg.norm(left, axis=0), np.where(now > 0.0, now, 1.0)
+        if not going.any() or np.all((size <= goal) | (size >= 0.5 * best)):
+            break
+        best = np.minimum(best, size)
+    answers -= kept @ (moved.T @ answers)
+    return answers
+
+
+def _orthonormal_in(stiffness: Any, vectors: Array) -> tuple[Array, Array]:
+    """Return Q and R with ``Q R = vectors`` and ``Q^T K Q = 1``."""
+    count = vectors.shape[1]
+    basis, stiff = np.zeros_like(vectors), np.zeros_like(vectors)
+    factor = np.zeros((count, count))
+    taken = 0
+    for number in range(count):
+        vector = vectors[:, number].copy()
+        # Once is not enough where vectors are nearly parallel; twice is.
+        for _ in range(2):
+            part = stiff[:, :taken].T @ vector
+            vector -= basis[:, :taken] @ part
+            factor[:taken, number] += part
+        against = stiffness @ vector
+        length = float(np.sqrt(max(vector @ against, 0.0)))
+        if length > ROUND_OFF:
+            basis[:, taken], stiff[:, taken] = vector / length, against / length
+            factor[taken, number] = length
+            taken += 1
+    return basis[:, :taken], factor[:taken]
+
+
+def _all_modes(problem: SparseProblem) -> tuple[Array, Array]:
+    """Return all squared frequencies, rising, and their shapes, without the rigid modes that are given."""
+    squared, shapes = scipy.linalg.eigh(problem.stiffness.toarray(), problem.mass.toarray())
+    rigid = 0 if problem.rigid is None else problem.rigid.shape[1]
+    return squared[rigid:], shapes[:, rigid:]
+
+
+def _modes_up_to(problem: SparseProblem, solve: Solve, shift: float, highest: float) -> tuple[Array, Array]:
+    """Return squared frequencies and shapes of the modes up to an angular frequency, and of some beyond.
+
+    Each search leaves out what is found, until the highest found lies beyond. A last one looks for modes that a
+    search may have passed over, such as one of an equal pair.
+    """
+    size = problem.mass.shape[0]
+    found = np.zeros((size, 0)) if problem.rigid is None else problem.rigid
+    rigid, many = found.shape[1], FIRST_SEARCH
+    while True:
+        if found.shape[1] + many > (size // DENSE_SHARE if size <= LARGEST_SIZE else MOST_MODES):
+            if size <= LARGEST_SIZE:
+                return _all_modes(problem)
+            raise ArgumentError(
+                "cutoff", f"leave at most {MOST_MODES} modes of a mesh", got=f"{highest / (2.0 * np.pi):.6g} Hz"
+            )
+        values, vectors = _search(problem, solve, shift, found, many)
+        found = _beside(problem.mass, np.hstack([found, vectors]), rigid)
+        if values.max() <= highest**2:
+            many *= 2
+            continue
+        nearest, _ = _search(problem, solve, shift, found, 1, COARSE)
+        if nearest[0] + shift > (1.0 + 2.0 * COARSE) * (highest**2 + shift):
+            break
+    vectors = found[:, rigid:]
+    squared, turned = scipy.linalg.eigh(vectors.T @ (problem.stiffness @ vectors))
+    return squared, vectors @ turned
+
+
+def _search(
+    problem: SparseProblem, solve: Solve, shift: float, found: Array, many: int, tolerance: float = 0.0
+) -> tuple[Array, Array]:
+    """Return the lowest squared frequencies beside what is found, and their shapes."""
+    mass, size = problem.mass, problem.mass.shape[0]
+    moved = mass @ found
+
+    def inverse(vector: Array) -> Array:
+        answer = solve(vector - moved @ (found.T @ vector))
+        return answer - found @ (moved.T @ answer)
+
+    operator = scipy.sparse.linalg.LinearOperator((size, size), matvec=inverse, dtype=float)
+    # The same start in each run, so that the same body has the same modes to the last bit.
+    start = np.random.default_rng(found.shape[1]).standard_normal(size)
+    values, vectors = scipy.sparse.linalg.eigsh(
+        problem.stiffness, k=many, M=mass, sigma=-shift, OPinv=operator, v0=inverse(mass @ start), tol=tolerance
+    )
+    return values, vectors
+
+
+def _beside(mass: Any, vectors: Array, exact: int) -> Array:
+    """Return vectors made orthonormal in the mass; the first ones are so already and stay as they are."""
+    first, others = vectors[:, :exact], vectors[:, exact:]
+    # Twice is enough, as above.
+    for _ in range(2):
+        others = others - first @ ((mass @ first).T @ others)
+        factor = np.linalg.cholesky(others.T @ (mass @ others))
+        others = scipy.linalg.solve_triangular(factor, others.T, lower=True).T
+    return np.hstack([first, others])
+
+
+def _with_rigid(problem: SparseProblem, squared: Array, shapes: Array, rounding: float) -> tuple[Array, Array]:
+    """Return angular frequencies and shapes of rigid and elastic modes, rising."""
+    if problem.rigid is None:
+        if squared[0] < -rounding:
+            raise ArgumentError("stiffness", "be positive semidefinite", got=f"a squared frequency of {squared[0]:.6g}")
+        return np.sqrt(np.where(squared <= rounding, 0.0, squared)), shapes
+    if squared.size and squared[0] <= rounding:
+        zero = int(np.sum(squared <= rounding))
+        raise ArgumentError(
+            "mesh", "hold together", got=f"{zero} motions without stiffness: parts that hinge on a node or an edge"
+        )
+    rigid = problem.rigid
+    shapes = shapes - rigid @ ((problem.mass @ rigid).T @ shapes)
+    return np.append(np.zeros(rigid.shape[1]), np.sqrt(squared)), np.hstack([rigid, shapes])

@@ -1,0 +1,270 @@
+"""Meshes read from files written by hand: every format gives the same body."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import stridula as st
+
+STEEL = st.Material(2.1e11, 7800.0, 0.3)
+BLOCK = st.SolidMesh.block((0.1, 0.04, 0.03), (3, 2, 1))
+TIP = (0.1, 0.04, 0.03)
+# Numbers of elements and of faces in gmsh; where its nodes in the middle of edges stand in the order of VTK.
+GMSH = {
+    "tetra": (4, 2, None),
+    "tetra10": (11, 9, [0, 1, 2, 3, 5, 4]),
+    "hexahedron": (5, 3, None),
+    "hexahedron20": (17, 16, [0, 3, 8, 1, 9, 2, 10, 11, 4, 7, 5, 6]),
+}
+ABAQUS = {"tetra": "C3D4", "tetra10": "C3D10", "hexahedron": "C3D8", "hexahedron20": "C3D20R"}
+
+
+def mesh_of(kind):
+    """Return the block in elements of a kind, with faces on the left."""
+    corners = st.SolidMesh(BLOCK.nodes[: BLOCK.elements[:, :8].max() + 1], BLOCK.elements[:, :8], "hexahedron")
+    if kind.startswith("tetra"):
+        cuts = np.array([[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]])
+        corners = st.SolidMesh(corners.nodes, corners.elements[:, cuts].reshape(-1, 4), "tetra")
+    mesh = corners if kind in ("tetra", "hexahedron") else corners.quadratic()
+    sides = mesh.element_kind.face_nodes
+    on_left = (mesh.nodes[mesh.elements[:, sides], 0] == 0.0).all(axis=2)
+    return st.SolidMesh(
+        mesh.nodes, mesh.elements, mesh.kind, {"steel": np.arange(len(mesh.elements))}, {"clamp": np.argwhere(on_left)}
+    )
+
+
+def frequencies(mesh, **options):
+    body = st.SolidBody(mesh, {"steel": STEEL}, fixed=["clamp"], linear=True, cutoff=40e3, **options)
+    return body.modes().frequency[:6]
+
+
+def gmsh_cells(mesh):
+    """Return the connectivity of solids and of the faces on the left, from 1, in the order of gmsh."""
+    _, _, middles = GMSH[mesh.kind]
+    corners = len(mesh.element_kind.corners)
+    order = list(range(corners)) + ([corners + k for k in middles] if middles else [])
+    return mesh.elements[:, order] + 1, mesh.face("clamp").nodes + 1
+
+
+def gmsh_22(mesh):
+    solid, face = gmsh_cells(mesh)
+    solid_type, face_type, _ = GMSH[mesh.kind]
+    tip = mesh.node_at(TIP) + 1
+    cells = [(15, 3, [tip]), *((face_type, 2, row) for row in face), *((solid_type, 1, row) for row in solid)]
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "3"]
+    lines += ['0 3 "tip"', '2 2 "clamp"', '3 1 "steel"', "$EndPhysicalNames", "$Nodes", str(len(mesh.nodes))]
+    lines += [f"{k} {x!r} {y!r} {z!r}" for k, (x, y, z) in enumerate(mesh.nodes.tolist(), 1)]
+    lines += ["$EndNodes", "$Elements", str(len(cells))]
+    lines += [f"{k} {kind} 2 {tag} {tag} {' '.join(map(str, row))}" for k, (kind, tag, row) in enumerate(cells, 1)]
+    return "\n".join([*lines, "$EndElements", ""])
+
+
+def gmsh_41(mesh):
+    solid, face = gmsh_cells(mesh)
+    solid_type, face_type, _ = GMSH[mesh.kind]
+    count, box = len(mesh.nodes), "0 0 0 1 1 1"
+    lines = ["$MeshFormat", "4.1 0 8", "$EndMeshFormat", "$PhysicalNames", "3"]
+    lines += ['0 3 "tip"', '2 2 "clamp"', '3 1 "steel"', "$EndPhysicalNames"]
+    lines += ["$Entities", "1 0 1 1", "1 0.1 0.04 0.03 1 3", f"1 {box} 1 2 0", f"1 {box} 1 1 0", "$EndEntities"]
+    lines += ["$Nodes", f"1 {count} 1 {count}", f"3 1 0 {count}", *map(str, range(1, count + 1))]
+    lines += [f"{x!r} {y!r} {z!r}" for x, y, z in mesh.nodes.tolist()]
+    total = 1 + len(face) + len(solid)
+    lines += ["$EndNodes", "$Elements", f"3 {total} 1 {total}", "0 1 15 1", f"1 {mesh.node_at(TIP) + 1}"]
+    number = 2
+    for head, rows in ((f"2 1 {face_type}", face), (f"3 1 {solid_type}", solid)):
+        lines.append(f"{head} {len(rows)}")
+        for row in rows:
+            lines.append(f"{number} {' '.join(map(str, row))}")
+            number += 1
+    return "\n".join([*lines, "$EndElements", ""])
+
+
+def abaqus(mesh):
+    """Node numbers with gaps, two blocks of elements of one set, a set of nodes for the face."""
+    number = 10 * np.arange(1, len(mesh.nodes) + 1)
+    lines = ["*HEADING", "block", "** a remark", "*NODE"]
+    lines += [f"{n}, {x!r}, {y!r}, {z!r}" for n, (x, y, z) in zip(number, mesh.nodes.tolist(), strict=True)]
+    half = len(mesh.elements) // 2
+    for first, rows in ((1, mesh.elements[:half]), (half + 1, mesh.elements[half:])):
+        lines.append(f"*ELEMENT, TYPE={ABAQUS[mesh.kind]}, ELSET=steel")
+        for label, row in enumerate(rows, first):
+            words = [str(label), *map(str, number[row])]
+            lines += [", ".join(words[:11]) + ("," if len(words) > 11 else "")]
+            lines += [", ".join(words[11:])] if len(words) > 11 else []
+    lines += ["*NSET, NSET=clamp", *map(str, number[np.unique(mesh.face("clamp").nodes)])]
+    lines += ["*NSET, NSET=tip", str(number[mesh.node_at(TIP)])]
+    return "\n".join([*lines, "*STEP", "*END STEP", ""])
+
+
+def nastran(mesh):
+    """Free fields would be shorter; these are the short fields of eight, as most programs write them."""
+    word = "CTETRA" if mesh.kind.startswith("tetra") else "CHEXA"
+    lines = ["SOL 103", "CEND", "BEGIN BULK", "MAT1,1,2.1+11,,.3,7800."]
+    for n, place in enumerate(mesh.nodes.tolist(), 1):
+        lines.append(f"{'GRID':8}{n:8d}{'':8}" + "".join(f"{value:8.5f}" for value in place))
+    order = list(range(mesh.elements.shape[1]))
+    if mesh.kind == "hexahedron20":
+        # Nastran has the upright edges before the upper ones.
+        order = [*range(12), *range(16, 20), *range(12, 16)]
+    for n, row in enumerate(mesh.elements[:, order] + 1, 1):
+        words = [f"{word:8}{n:8d}{7:8d}" + "".join(f"{k:8d}" for k in row[:6])]
+        words += ["+".ljust(8) + "".join(f"{k:8d}" for k in row[at : at + 8]) for at in range(6, len(row), 8)]
+        lines += [line + "+" if line is not words[-1] else line for line in words]
+    return "\n".join([*lines, "ENDDATA", ""])
+
+
+TEXTS = {"gmsh 2.2": (gmsh_22, "msh"), "gmsh 4.1": (gmsh_41, "msh"), "abaqus": (abaqus, "inp")}
+
+
+@pytest.mark.parametrize("form", list(TEXTS))
+@pytest.mark.parametrize("kind", list(GMSH))
+def test_named_groups_and_frequencies_come_back(tmp_path, form, kind):
+    mesh = mesh_of(kind)
+    write, ending = TEXTS[form]
+    path = tmp_path / f"block.{ending}"
+    path.write_text(write(mesh))
+    read = st.SolidMesh.read(path)
+    assert read.kind == kind
+    assert read.volumes["steel"].size == len(mesh.elements)
+    assert read.face("clamp").area.sum() == pytest.approx(0.04 * 0.03, rel=1e-12)
+    np.testing.assert_allclose(read.face("clamp").normal, np.tile([-1.0, 0.0, 0.0], (len(read.faces["clamp"]), 1)))
+    body = st.SolidBody(read, {"steel": STEEL}, fixed=["clamp"], linear=True, cutoff=40e3)
+    assert body.point_names == ("tip",)
+    np.testing.assert_allclose(read.nodes[body.points["tip"]], TIP)
+    np.testing.assert_allclose(body.modes().frequency[:6], frequencies(mesh, points={"tip": TIP})[:6], rtol=1e-9)
+
+
+@pytest.mark.parametrize("kind", list(GMSH))
+def test_nastran_names_elements_by_their_property(tmp_path, kind):
+    """Fields of eight have five decimals, of half edges of 0.015 m and more."""
+    mesh = mesh_of(kind)
+    path = tmp_path / "block.bdf"
+    path.write_text(nastran(mesh))
+    read = st.SolidMesh.read(path)
+    assert read.kind == kind
+    left = read.named("clamp", np.flatnonzero(read.nodes[:, 0] == 0.0))
+    body = st.SolidBody(left, {"7": STEEL}, fixed=["clamp"], linear=True, cutoff=40e3)
+    found, expected = body.modes().frequency[:6], frequencies(mesh)
+    np.testing.assert_allclose(found, expected, rtol=2.0 * 0.5e-5 / 0.015)
+
+
+@pytest.mark.parametrize("ending", ["vtk", "vtu"])
+@pytest.mark.parametrize("kind", [*GMSH, "hexahedron27"])
+def test_vtk_names_groups_by_arrays_of_whole_numbers(tmp_path, ending, kind):
+    meshio = pytest.importorskip("meshio")
+    mesh = mesh_of("hexahedron20" if kind == "hexahedron27" else kind)
+    if kind == "hexahedron27":
+        from tests.physics.test_solid_bodies import of_27_nodes
+
+        whole = of_27_nodes(mesh)
+        faces = np.argwhere((whole.nodes[whole.elements[:, whole.element_kind.face_nodes], 0] == 0.0).all(axis=2))
+        mesh = st.SolidMesh(
+            whole.nodes, whole.elements, kind, {"steel": np.arange(len(whole.elements))}, {"clamp": faces}
+        )
+    path = tmp_path / f"block.{ending}"
+    side = (mesh.nodes[:, 0] == 0.0).astype(np.int64)
+    region = np.full(len(mesh.elements), 3)
+    held = meshio.Mesh(mesh.nodes, [(mesh.kind, mesh.elements)], {"side": side}, {"region": [region]})
+    held.write(path)
+    read = st.SolidMesh.read(path)
+    body = st.SolidBody(read, {"region 3": STEEL}, fixed=["side 1"], linear=True, cutoff=40e3)
+    np.testing.assert_allclose(body.modes().frequency[:6], frequencies(mesh), rtol=1e-9)
+
+
+def test_lengths_are_scaled(tmp_path):
+    path = tmp_path / "block.msh"
+    path.write_text(gmsh_22(mesh_of("hexahedron20")))
+    np.testing.assert_allclose(st.SolidMesh.read(path, scale=0.001).size, [1e-4, 4e-5, 3e-5])
+
+
+def test_elements_of_two_groups_stand_once_and_lonely_nodes_are_left_out(tmp_path):
+    """gmsh 2.2 writes an element once for each of its groups, and points of the drawing that no element has."""
+    mesh = mesh_of("tetra")
+    text = gmsh_22(mesh)
+    count = len(mesh.nodes)
+    head, tail = text.split("$EndNodes")
+    head = head.replace(f"$Nodes\n{count}", f"$Nodes\n{count + 1}") + f"{count + 1} 9.0 9.0 9.0\n"
+    solid = gmsh_cells(mesh)[0][0]
+    total = 1 + len(mesh.faces["clamp"]) + len(mesh.elements)
+    again = f"{total + 1} 4 2 4 1 {' '.join(map(str, solid))}\n"
+    tail = tail.replace(f"$Elements\n{total}", f"$Elements\n{total + 1}").replace(
+        "$EndElements", again + "$EndElements"
+    )
+    path = tmp_path / "block.msh"
+    path.write_text(head + "$EndNodes" + tail)
+    read = st.SolidMesh.read(path)
+    assert (len(read.nodes), len(read.elements)) == (count, len(mesh.elements))
+    assert read.volumes["4"].size == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("block.stl", "solid", "end in"),
+        ("block.msh", "", "is empty"),
+        ("block.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n7\n1 0 0\n", "cannot read"),
+        ("block.inp", "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n", "cannot read"),
+        ("block.inp", "*HEADING\nnothing\n", "got none"),
+        ("block.bdf", "GRID,1\n", "cannot read"),
+        ("block.vtu", "<VTKFile", "cannot read"),
+        ("block.vtk", "no header", "cannot read"),
+    ],
+)
+def test_damaged_files_are_refused_in_one_line(tmp_path, name, text, words):
+    path = tmp_path / name
+    path.write_text(text)
+    with pytest.raises(ValueError, match=words) as caught:
+        st.SolidMesh.read(path)
+    assert "\n" not in str(caught.value)
+
+
+def test_cut_files_are_refused_in_one_line(tmp_path):
+    """Whatever is left of a file: refused, or a mesh in which what is missing was no solid element."""
+    for write, ending in TEXTS.values():
+        text = write(mesh_of("tetra10"))
+        path = tmp_path / f"cut.{ending}"
+        for share in np.linspace(0.05, 0.95, 19):
+            path.write_text(text[: int(share * len(text))])
+            said = one_line_of(path)
+            assert said is None or "\n" not in said
+
+
+@pytest.mark.parametrize("form", [*TEXTS, "nastran"])
+def test_files_with_wrong_characters_are_read_or_refused_in_one_line(tmp_path, form):
+    write, ending = {**TEXTS, "nastran": (nastran, "bdf")}[form]
+    text, path = write(mesh_of("hexahedron20")), tmp_path / f"wrong.{ending}"
+    random = np.random.default_rng(1)
+    said = []
+    for wrong in np.tile([1, 3, 20], 12):
+        letters = np.array(list(text))
+        letters[random.integers(0, letters.size, wrong)] = random.choice(list("0123456789-.,e *$\n"), wrong)
+        path.write_text("".join(letters))
+        said.append(one_line_of(path))
+    assert any(said)
+    assert not any("\n" in line for line in said if line)
+
+
+def one_line_of(path):
+    """Return what is said of a file that is refused, None where it is read."""
+    try:
+        st.SolidMesh.read(path)
+    except (ValueError, OSError) as error:
+        return str(error)
+    return None
+
+
+def test_a_file_that_is_not_there_is_said(tmp_path):
+    with pytest.raises(FileNotFoundError, match="cannot read"):
+        st.SolidMesh.read(tmp_path / "none.msh")
+
+
+def test_other_kinds_and_mixtures_are_refused(tmp_path):
+    nodes = "".join(f"{k}, {x}, {y}, {z}\n" for k, (x, y, z) in enumerate(np.ndindex(2, 2, 2), 1))
+    wedge = "*ELEMENT, TYPE=C3D6\n1, 1, 2, 3, 5, 6, 7\n"
+    tetra = "*ELEMENT, TYPE=C3D4\n2, 1, 2, 3, 5\n"
+    path = tmp_path / "block.inp"
+    for text, got in ((wedge, "wedge"), (tetra + wedge, "tetra, wedge"), ("", "none")):
+        path.write_text("*NODE\n" + nodes + text)
+        with pytest.raises(ValueError, match=got):
+            st.SolidMesh.read(path)
