@@ -19,6 +19,7 @@ _HOME = {
         "Material",
         "MeshProfile",
         "ModalBeam",
+        "ModalBody",
         "ModalPlate",
         "Modes",
         "PointMass",

@@ -248,7 +248,8 @@ class Prescribed:
     velocity : tuple of float and History, or None
         The imposed velocity.
     contacts : tuple
-        For each contact its frame, whether its tip and its track are held, and its rigid track.
+        For each contact its frame, whether its tip and its track are held, its rigid track, and velocities of the
+        surface that it touches.
     turns : bool
         Whether it goes on from other motions.
     """
@@ -261,7 +262,7 @@ class Prescribed:
     @property
     def is_steady(self) -> bool:
         """Whether nothing varies in time."""
-        still = all(track is None or track.is_still for *_, track in self.contacts)
+        still = all((track is None or track.is_still) and not any(moved) for *_, track, moved in self.contacts)
         return (
             still
             and not self.turns
@@ -274,7 +275,7 @@ def _prescribed(system: System, histories: tuple[History, ...]) -> Prescribed:
     contacts = []
     for contact in system.contacts:
         held = system.is_held(contact.tip.body), _touches_held(contact, system)
-        contacts.append((contact.frame.tobytes(), *held, contact.rigid_track))
+        contacts.append((contact.frame.tobytes(), *held, contact.rigid_track, contact.surface_velocities))
     imposed = system.imposed_velocity
     return Prescribed(histories, (imposed.velocity, imposed.history) if imposed else None, tuple(contacts))
 
@@ -471,6 +472,9 @@ def _motion(system: System, imposed: Signal) -> Signal:
                 for pair, tangent_x in enumerate(tangents_x):
                     values[:, number + pair, side] += tangent_x * moved
                 values[:, number, 2] += sign * normal_x * moved
+            for pair, speed in enumerate(contact.surface_velocities):
+                if speed:
+                    values[:, number + pair, 1] += speed * time
             if contact.rigid_track is not None:
                 values[:, number, 1] += contact.rigid_track.travel(time)
                 values[:, number, 2] -= contact.rigid_track.normal_travel(time)

@@ -76,8 +76,29 @@ def check_cut_off_modes(names: Mapping[str, Any], printed: str, folder: Path) ->
     assert (folder / "cut-off-modes.png").read_bytes().startswith(b"\x89PNG")
 
 
+def check_brake_pad(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """More friction lets modes of disc and pad grow; the run's books close, and forces are about those of theory."""
+    growing = re.findall(r"^friction (\S+): .*growing modes \[Hz\]: (.+)$", printed, re.MULTILINE)
+    assert [friction for friction, _ in growing] == ["0.2", "0.4", "0.6"]
+    assert growing[0][1] == "none"
+    assert growing[2][1] != "none"
+    run, system = names["run"], names["system"]
+    assert len(system.contacts) == 15
+    largest = max(float(np.abs(run[term]).max()) for term in ("drive_work", "contact_work", "kinetic_and_elastic"))
+    assert float(np.abs(run.ledger_residual).max()) < 1e-11 * largest
+    assert 0.0 < float(run.friction_loss[-1]) < 1.01 * float(run.drive_work[-1])
+    # Less than 600 N: springs carry some. About equilibrium the pad's mass has given back its momentum on the whole.
+    pressed = float(names["theory"].normal_force.sum())
+    assert 500.0 < pressed < 600.0
+    assert float(run.normal_force.sum("contact").mean()) == pytest.approx(pressed, rel=0.05)
+    again = names["st"].load_scenario(run).simulate()
+    np.testing.assert_array_equal(again.normal_force, run.normal_force)
+    assert (folder / "brake-pad.png").read_bytes().startswith(b"\x89PNG")
+
+
 # One check for every example: it takes the example's names, what it printed and the folder it ran in.
 CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
+    "brake_pad.py": check_brake_pad,
     "cut_off_modes.py": check_cut_off_modes,
     "mass_on_a_belt.py": check_mass_on_a_belt,
     "ten_lines.py": check_ten_lines,

@@ -495,6 +495,80 @@ def test_a_spring_acts_along_any_direction(tmp_path):
     assert st.load_scenario(run).system == system
 
 
+def rubbing(space: bool) -> st.System:
+    """Two masses on springs, the surface of the lower one moving under the upper one; 10 N press them together."""
+
+    def body(mass: float, name: str):
+        if space:
+            return st.RigidBody(mass, name=name)
+        return st.PointMass(mass, name=name)
+
+    upper, lower = body(1.0, "upper"), body(2.0, "lower")
+    moving = {"surface_velocity": (0.6, -0.8) if space else 1.0}
+    contact = st.PointContact(upper.centre, lower.centre, friction=st.Coulomb(0.3), **moving)
+    springs = [
+        st.Spring(one.centre, stiffness=rate, direction=way)
+        for one, rate in ((upper, 100.0), (lower, 300.0))
+        for way in ("xyz" if space else "xy")
+    ]
+    return st.System(contact, [st.Force(upper.centre, y=-10.0)], springs)
+
+
+@pytest.mark.parametrize("space", [False, True])
+def test_a_surface_that_moves_drags_both_bodies_apart(space):
+    """The upper goes with it by mu N / k, the lower the other way; N is 10 N less what the upper's spring carries."""
+    system = rubbing(space)
+    way = np.array([0.6, -0.8]) if space else np.array([1.0])
+    theory = st.sliding_stability(system)
+    # Both go down together: springs of 100 and 300 N/m share 10 N.
+    normal = 10.0 * 300.0 / 400.0
+    assert float(theory.normal_force) == pytest.approx(normal, rel=1e-12)
+    np.testing.assert_allclose(np.ravel(theory.tangential_force), -0.3 * normal * way, rtol=1e-12)
+    np.testing.assert_allclose(np.ravel(theory.slip_velocity), -way, rtol=1e-12)
+    moved = theory.tip_displacement.values[[0, 2] if space else [0]]
+    np.testing.assert_allclose(moved, 0.3 * normal / 100.0 * way, rtol=1e-12)
+    held = theory.track_displacement.values[[0, 2] if space else [0]]
+    np.testing.assert_allclose(held, -0.3 * normal / 300.0 * way, rtol=1e-12)
+    still = st.System(system.contact, [*system.drives, st.InitialEquilibrium()], system.connections)
+    run = st.simulate(still, 0.5, step=1e-3, probes=[])
+    np.testing.assert_allclose(run.normal_force, normal, rtol=1e-9)
+    # The drive gives what friction takes: 1 m/s against mu N.
+    assert float(run.drive_work[-1]) == pytest.approx(0.3 * normal * 0.5, rel=1e-2)
+    assert float(run.friction_loss[-1]) == pytest.approx(0.3 * normal * 0.5, rel=1e-9)
+    assert st.load_scenario(run).system == still
+
+
+def test_a_body_given_by_its_modes_moves_as_the_one_they_are_of():
+    """With residual shapes, in both schemes, to round-off."""
+    system = standing()
+    whole = system.slider
+    modes = whole.modes()
+    held = ~modes.massless
+    body = st.ModalBody(
+        modes.angular_frequency[held],
+        {name: whole.trace(name) for name in whole.points},
+        modes.damping_rate[held],
+        modes.translation,
+        int(modes.massless.sum()),
+        "pillar",
+    )
+    assert body.residual > 0
+    contacts = [
+        st.PointContact(body.at(one.tip.position), one.track, friction=one.friction, gap=one.gap)
+        for one in system.contacts
+    ]
+    push = system.drives[0]
+    loads = [st.Force(body.at("top"), x=push.x, y=push.y, z=push.z, history=push.history), system.drives[1]]
+    springs = [
+        st.Spring(body.at("top"), stiffness=one.stiffness, direction=one.direction) for one in system.connections
+    ]
+    words = {"step": 4e-6, "sample_rate": 2.5e5, "probes": []}
+    known, found = (st.simulate(one, 2e-3, **words) for one in (system, st.System(contacts, loads, springs)))
+    np.testing.assert_array_equal(found.normal_force, known.normal_force)
+    again = st.load_scenario(found).simulate()
+    np.testing.assert_array_equal(again.normal_force, known.normal_force)
+
+
 # Records, restart, scenarios.
 
 
@@ -567,6 +641,17 @@ BAD = {
         ),
         "track must be a RigidTrack or a BodyPoint for a body in space",
     ),
+    "surface of a track": (
+        lambda: st.PointContact(BODY.centre, st.RigidTrack(), surface_velocity=1.0),
+        "surface_velocity must be 0 but against a point of a body",
+    ),
+    "two velocities in the plane": (
+        lambda: st.PointContact(FLAT.centre, st.PointMass(2.0, name="b").centre, surface_velocity=(1.0, 2.0)),
+        "surface_velocity must be one number, or two in space",
+    ),
+    "no modes": (lambda: st.ModalBody([], {"a": np.zeros((2, 0))}), "angular_frequency must be a list of numbers"),
+    "mode below zero": (lambda: st.ModalBody([-1.0], {"a": np.ones((2, 1))}), "angular_frequency must be 0 or above"),
+    "rows of modes": (lambda: st.ModalBody([1.0], {"a": np.ones((2, 2))}), "points.'a'. must have the shape .2, 1."),
     "no direction": (
         lambda: st.Spring(BODY.centre, stiffness=1.0, direction=(0.0, 0.0, 0.0)),
         "direction must be x, y, z or three numbers, not all zero, got .0.0, 0.0, 0.0.",

@@ -4,6 +4,7 @@ from .axisymmetric_body import AxisymmetricBody, Held
 from .damping import Rayleigh, RisingDamping, SampledDamping
 from .finite_element_beam import FiniteElementBeam
 from .modal_beam import ModalBeam
+from .modal_body import ModalBody
 from .modal_plate import Line, ModalPlate
 from .modes import Body, BodyPoint, HasRoot, Modes
 from .paths import Path, Track, Waves
@@ -28,6 +29,7 @@ __all__ = [
     "Material",
     "MeshProfile",
     "ModalBeam",
+    "ModalBody",
     "ModalPlate",
     "Modes",
     "Path",

@@ -261,7 +261,7 @@ class AxisymmetricBody:
 
     def at(self, position: Any) -> BodyPoint:
         """Return the point at a distance r from the axis [m], an angle theta [rad] and a place z along it [m]."""
-        return BodyPoint(self, _triple("position", position))  # type: ignore[arg-type]
+        return BodyPoint(self, _triple("position", position))
 
     def check_position(self, position: Any) -> None:
         """Raise ValueError if `position`, (r, theta, z) in metres and radians, is not in the body."""

@@ -177,8 +177,8 @@ class BodyPoint:
         The body.
     position : float, tuple of float or str
         On beams the distance along the axis from the first end [m]: from the tip of a slider, from the left end of a
-        track. On plates the abscissa along the line, or the distances along length and width [m]. On other bodies the
-        name of the point.
+        track. On plates the abscissa along the line, or the distances along length and width [m]. On bodies of
+        revolution radius, angle and height (r, theta, z) [m, rad, m]. On other bodies the name of the point.
 
     Raises
     ------
@@ -187,7 +187,7 @@ class BodyPoint:
     """
 
     body: Body
-    position: float | tuple[float, float] | str
+    position: float | tuple[float, ...] | str
 
     def __post_init__(self) -> None:
         check = getattr(self.body, "check_position", None)
@@ -197,6 +197,13 @@ class BodyPoint:
             # Numbers of NumPy are not equal or unequal to a pair, but an array of both.
             object.__setattr__(self, "position", self.position.item())
         check(self.position)
+
+    @property
+    def label(self) -> str:
+        """Its name, or the numbers of its position to the last digit."""
+        return (
+            self.position if isinstance(self.position, str) else ", ".join(map(repr, np.ravel(self.position).tolist()))
+        )
 
     @property
     def point_name(self) -> str | None:

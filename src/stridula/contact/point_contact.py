@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import Array
 from ..bodies import BodyPoint, ModalBeam, ModalPlate, Track
 from ..checks import ArgumentError, brief, instance, within
-from ..declared import Angle, Distance, Each, Number, Position, check_declared
+from ..declared import Angle, Distance, Each, Number, OneOrEach, Position, check_declared
 from .coulomb import Coulomb
 from .friction_law import FrictionLaw
 from .laws import LAWS
@@ -55,6 +55,9 @@ class PointContact:
     tangent : sequence of float, optional
         World components of what lies along the first tangent in space; world x, or z where the normal is along x, if
         left out. What it has along the normal is taken off. The second tangent is the first times the normal.
+    surface_velocity : float or sequence of float, optional
+        Velocity at which the surface of a touched point's body moves under the tip [m/s], as that of a disc that turns
+        about its axis while its vibration is seen from where it stands: along the tangent, in space along both.
 
     Notes
     -----
@@ -70,6 +73,7 @@ class PointContact:
     name: str = ""
     normal: Annotated[Sequence[float], Each(Number())] | None = None
     tangent: Annotated[Sequence[float], Each(Number())] | None = None
+    surface_velocity: Annotated[float | Sequence[float], OneOrEach(Number("m/s"))] = 0.0
 
     def __post_init__(self) -> None:
         instance("tip", self.tip, BodyPoint)
@@ -101,6 +105,7 @@ class PointContact:
                 raise ArgumentError(name, "be three numbers, not all zero", given)
             if not self.is_spatial:
                 raise ArgumentError(name, "be left out between bodies in the plane: inclination turns it", given)
+        self._check_surface()
         if self.normal is not None and self.inclination:
             raise ArgumentError("inclination", "be 0 where a normal is given", self.inclination)
         if self.tangent is not None and np.linalg.norm(np.cross(*self.frame[:2])) < 0.5:
@@ -113,6 +118,21 @@ class PointContact:
         elif self.rigid_track is not None and self.rigid_track.lateral_velocity:
             words = "be 0 under a body in the plane"
             raise ArgumentError("track.lateral_velocity", words, self.rigid_track.lateral_velocity)
+
+    def _check_surface(self) -> None:
+        given = np.atleast_1d(self.surface_velocity)
+        if self.touched_point is None and given.any():
+            words = "be 0 but against a point of a body: tracks have velocities of their own"
+            raise ArgumentError("surface_velocity", words, self.surface_velocity)
+        if given.size > (2 if self.is_spatial else 1):
+            words = "be one number, or two in space, one for each tangent"
+            raise ArgumentError("surface_velocity", words, self.surface_velocity)
+
+    @property
+    def surface_velocities(self) -> tuple[float, float]:
+        """Velocities of the touched surface along both tangents [m/s]."""
+        first, *others = np.atleast_1d(self.surface_velocity).tolist()
+        return first, others[0] if others else 0.0
 
     @property
     def is_spatial(self) -> bool:

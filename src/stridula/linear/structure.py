@@ -354,7 +354,9 @@ def _prescribed_rates(contact: PointContact, system: System, now: Array) -> tupl
     held = float(system.is_held(contact.tip.body))
     if contact.touched_point is not None:
         held -= float(system.is_held(contact.touched_point.body))
-    slips, opening = [held * tangent[0] * root for tangent in tangents], held * normal[0] * root
+    slips = [held * tangent[0] * root for tangent in tangents]
+    slips = [slip - speed for slip, speed in zip(slips, contact.surface_velocities, strict=False)]
+    opening = held * normal[0] * root
     if contact.rigid_track is not None:
         speeds = [contact.rigid_track.speed(now)[0], contact.rigid_track.lateral_speed(now)[0]]
         slips = [slip - float(speed) for slip, speed in zip(slips, speeds, strict=False)]

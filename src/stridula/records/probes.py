@@ -39,6 +39,9 @@ class _Motion:
     def keys(self) -> dict[str, Any]:
         """What a scenario says of it, beside quantity and body."""
         place = self.point.position if self.point.point_name is None else self.point.point_name
+        if hasattr(self.point.body, "mesh"):
+            # Kept by its modes.
+            place = self.point.label
         return {"point": place, "direction": self.direction}
 
 
@@ -165,5 +168,5 @@ def _words(point: BodyPoint) -> str:
     if point.point_name is not None:
         return point.point_name
     if isinstance(point.position, tuple):
-        return f"({point.position[0]:.6g}, {point.position[1]:.6g}) m"
+        return f"({', '.join(f'{one:.6g}' for one in point.position)}) m"
     return f"{point.position:.6g} m"

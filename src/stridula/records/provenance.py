@@ -12,8 +12,9 @@ import numpy as np
 import tomli_w
 
 from ..arrays import Array
-from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam
+from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalBody
 from ..bodies.damping import DampingLaw
+from ..connections import ends
 from ..contact import PointContact
 from ..drives import Drive
 from ..histories import Constant
@@ -31,7 +32,8 @@ def scenario_toml(system: System, probes: Sequence[Probe], simulation: dict[str,
     A beam on a beam is a slider, a track and a contact; any other system lists its bodies, contacts and connections.
     Matrices are lists of rows while they are small, text that holds every bit of them beyond.
     """
-    tables = _pair(system) if _is_pair(system) else _general(system)
+    probed = [probe.point for probe in probes if hasattr(probe, "point")]
+    tables = _pair(system) if _is_pair(system) else _general(system, probed)
     tables["drives"] = [_drive(drive, system) for drive in system.drives]
     tables["simulation"] = {**_value(simulation), "probes": [_probe(probe, system) for probe in probes]}
     return toml(tables)
@@ -65,7 +67,7 @@ def _pair(system: System) -> dict[str, Any]:
     }
 
 
-def _general(system: System) -> dict[str, Any]:
+def _general(system: System, probed: Sequence[BodyPoint]) -> dict[str, Any]:
     def place(point: BodyPoint) -> dict[str, Any]:
         return {"body": system.body_name(point.body), "point": _point(point)}
 
@@ -78,7 +80,7 @@ def _general(system: System) -> dict[str, Any]:
         return {"kind": "point", **(place(touched) if touched is not None else {})}
 
     tables: dict[str, Any] = {
-        "bodies": {system.body_name(body): _general_body(body, system) for body in system.bodies},
+        "bodies": {system.body_name(body): _general_body(body, system, probed) for body in system.bodies},
         "contacts": [
             {**_contact(contact), "tip": place(contact.tip), "track": track(contact)} for contact in system.contacts
         ],
@@ -98,7 +100,7 @@ def _general(system: System) -> dict[str, Any]:
 
 def _contact(contact: PointContact) -> dict[str, Any]:
     given = {"at": _value(contact.at), "gap": _value(contact.gap)}
-    for name in ("inclination", "name", "normal", "tangent"):
+    for name in ("inclination", "name", "normal", "tangent", "surface_velocity"):
         if getattr(contact, name):
             given[name] = _value(getattr(contact, name))
     return {**given, "friction": {"law": contact.friction.law, **_plain(contact.friction)}}
@@ -158,12 +160,41 @@ def body_table(body: Any) -> dict[str, Any]:
     return {"kind": body.kind, **_body(body)}
 
 
-def _general_body(body: Any, system: System) -> dict[str, Any]:
+def _general_body(body: Any, system: System, probed: Sequence[BodyPoint]) -> dict[str, Any]:
     """Return the table of a body, without the name where the table's own name says it."""
-    given = body_table(body)
+    given = _modes_table(body, [*_points_in(system), *probed]) if _is_meshed(body) else body_table(body)
     if body.name != _default_name(body, system):
         given.pop("name", None)
     return given
+
+
+def _is_meshed(body: Any) -> bool:
+    """Return whether a body has a mesh, which no table gives: its modes are kept."""
+    return hasattr(body, "mesh")
+
+
+def _modes_table(body: Any, points: Sequence[BodyPoint]) -> dict[str, Any]:
+    """Return the table of a body by its modes, with the points that are used."""
+    modes = body.modes()
+    held = ~modes.massless
+    rows = {point.label: body.trace(point.position) for point in points if point.body == body}
+    return {
+        "kind": ModalBody.kind,
+        "angular_frequency": _value(modes.angular_frequency[held]),
+        "damping_rate": _value(modes.damping_rate[held]),
+        "points": {name: _value(one) for name, one in rows.items()},
+        "translation": _value(modes.translation),
+        "residual": int(modes.massless.sum()),
+        "name": body.name,
+    }
+
+
+def _points_in(system: System) -> list[BodyPoint]:
+    """Return the points of bodies that contacts, connections and drives are at."""
+    found = [contact.tip for contact in system.contacts]
+    found += [contact.touched_point for contact in system.contacts if contact.touched_point is not None]
+    found += [point for connection in system.connections for point in ends(connection)]
+    return found + [drive.push[1] for drive in system.drives if drive.push is not None]
 
 
 def _default_name(body: Any, system: System) -> str:
@@ -184,6 +215,8 @@ def _rows(rows: Array) -> Any:
 
 
 def _point(point: BodyPoint) -> Any:
+    if _is_meshed(point.body):
+        return point.label
     return _value(point.position) if point.point_name is None else point.point_name
 
 

@@ -17,6 +17,7 @@ from ..bodies import (
     Line,
     Material,
     ModalBeam,
+    ModalBody,
     ModalPlate,
     PointMass,
     ReducedBody,
@@ -35,6 +36,7 @@ from ..system import System
 from .errors import ScenarioError
 from .quantities import quantity
 
+OF_SPACE: dict[str, Callable[..., Any]] = {one.kind: one for one in (RigidBody, ModalBody)}
 SHAPES: dict[str, Callable[..., Any]] = {section.shape: section for section in SECTIONS}
 DAMPINGS: dict[str, Callable[..., Any]] = {law.form: law for law in DAMPING_LAWS}
 HISTORIES: dict[str, Callable[..., Any]] = {history.kind: history for history in histories.HISTORIES}
@@ -169,9 +171,9 @@ class Builder:
             with self._within(*path):
                 return PointMass(**table)
             return None
-        if kind == "rigid body":
+        if kind in OF_SPACE:
             with self._within(*path):
-                return RigidBody(**{name: value for name, value in table.items() if value is not None})
+                return OF_SPACE[kind](**{name: value for name, value in table.items() if value is not None})
             return None
         if kind == "reduced":
             return self._reduced(path, table)

@@ -12,7 +12,7 @@ from . import fields as is_
 from .derived import Keys, one_of, table_of
 from .fields import Table
 
-KINDS = "finite-element beam, modal beam, modal plate, point mass, reduced or rigid body"
+KINDS = "finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"
 OWN_NAME = "what it is called in records, the table's own name if left out"
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Line(Table):
 
 class Plate(Table):
     kind: Literal["modal plate"]
-    """finite-element beam, modal beam, modal plate, point mass, reduced or rigid body"""
+    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
     material: Material
     """what the plate is made of"""
     thickness: is_.Length
@@ -72,7 +72,7 @@ class Plate(Table):
 
 class Reduced(Table):
     kind: Literal["reduced"]
-    """finite-element beam, modal beam, modal plate, point mass, reduced or rigid body"""
+    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
     file: str | None = None
     """.npz or .mat file with matrices and points, beside the scenario"""
     mass: is_.Matrix | None = None
@@ -95,13 +95,30 @@ class Reduced(Table):
 
 class Rigid(Table):
     kind: Literal["rigid body"]
-    """finite-element beam, modal beam, modal plate, point mass, reduced or rigid body"""
+    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
     mass: is_.Mass
     """mass [kg]"""
     inertia: is_.Inertia | None = None
     """moments of inertia about x, y and z: one, three or a matrix; without any it does not turn [kg m2]"""
     points: is_.PlaceTable | None = None
     """places of points from the centre along x, y and z by name [m]"""
+    name: str = ""
+    """what it is called in records, the table's own name if left out"""
+
+
+class Modal(Table):
+    kind: Literal["modal body"]
+    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
+    angular_frequency: is_.Vector
+    """angular frequencies of the modes [rad/s]"""
+    points: is_.PointTable
+    """points by name: rows, what each mode moves them by along x, y and z"""
+    damping_rate: is_.Inertia = 0.0
+    """twice the damping ratio times the angular frequency, one for each mode [1/s]"""
+    translation: is_.Translation | None = None
+    """rows that say how an acceleration along x, y and z drives each mode; gravity and initial velocities need it"""
+    residual: int = 0
+    """number of residual shapes, the last columns of the rows"""
     name: str = ""
     """what it is called in records, the table's own name if left out"""
 
@@ -116,4 +133,4 @@ else:
     )
     _exact = table_of(bodies.ModalBeam, "kind", "modal beam", KINDS, title="ModalBody", **_words)
     _mass = table_of(bodies.PointMass, "kind", "point mass", KINDS, after=_named)
-    Body = one_of("kind", [_beam, _exact, Plate, _mass, Reduced, Rigid])
+    Body = one_of("kind", [_beam, _exact, Plate, _mass, Reduced, Rigid, Modal])

@@ -1,0 +1,174 @@
+"""A body given by its modes: those of another program, of a measurement, or of a record."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ..arrays import Array
+from ..checks import ArgumentError, choice, count, instance
+from .matrix_input import check_finite, numbers, rows_of
+from .modes import BodyPoint, Modes
+
+
+@dataclass(frozen=True, eq=False)
+class ModalBody:
+    """A linear body given by mass-normalised modes and what they move its points by.
+
+    Parameters
+    ----------
+    angular_frequency : array_like, shape (modes,)
+        Undamped angular frequencies [rad/s], zero for rigid modes.
+    points : mapping
+        Displacement of each point along world (x, y), or in space (x, y, z), in each mode, by its name [kg^(-1/2)]: the
+        shape is (2, modes) or (3, modes), that of residual shapes, if any, in further columns.
+    damping_rate : float or array_like, shape (modes,), optional
+        Twice the damping ratio times the angular frequency [1/s].
+    translation : array_like, optional
+        ``Phi^T M 1``: how a uniform acceleration along each direction drives each mode [kg^(1/2)], of the shape of a
+        point; gravity and uniform initial velocities need it.
+    residual : int, optional
+        How many of the columns, the last ones, are residual shapes, of unit stiffness and without mass.
+    name : str, optional
+        What it is called in records; tells equal bodies apart.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range or does not fit the others.
+    """
+
+    kind: ClassVar[str] = "modal body"
+    has_positions: ClassVar[bool] = False
+    angular_frequency: Any
+    points: Mapping[str, Any]
+    damping_rate: Any = 0.0
+    translation: Any = None
+    residual: int = 0
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        instance("name", self.name, str)
+        self._set("residual", count("residual", self.residual, low=0))
+        angular = _of_modes("angular_frequency", self.angular_frequency)
+        self._set("angular_frequency", angular)
+        rates = numbers("damping_rate", self.damping_rate)
+        rates = np.full(angular.size, float(rates)) if rates.ndim == 0 else _of_modes("damping_rate", rates)
+        if rates.size != angular.size:
+            raise ArgumentError("damping_rate", f"have one number for each mode, {angular.size}", rates, got=rates.size)
+        self._set("damping_rate", rates)
+        instance("points", self.points, Mapping)
+        if not self.points:
+            raise ArgumentError("points", "have at least one point", self.points, got="none")
+        size, directions, points = angular.size + self.residual, None, {}
+        for name, rows in self.points.items():
+            if not isinstance(name, str) or not name:
+                raise ArgumentError("points", "have names that are text", name)
+            points[name] = rows_of(f"points[{name!r}]", rows, size, directions)
+            points[name].flags.writeable = False
+            directions = len(points[name])
+        self._set("points", MappingProxyType(points))
+        if self.translation is not None:
+            self._set("translation", rows_of("translation", self.translation, size, directions))
+
+    def at(self, position: str) -> BodyPoint:
+        """Return the point called `position`."""
+        return BodyPoint(self, position)
+
+    def check_position(self, position: str) -> None:
+        """Raise ValueError if no point is called `position`."""
+        choice("position", position, tuple(self.points))
+
+    @property
+    def is_spatial(self) -> bool:
+        """Whether it moves along world z, too."""
+        return len(next(iter(self.points.values()))) == 3
+
+    @property
+    def axes(self) -> Array:
+        """World components of its axes, which are those of the world."""
+        return np.eye(3 if self.is_spatial else 2)
+
+    @property
+    def has_translation(self) -> bool:
+        """Whether it is known how a translation moves it."""
+        return self.translation is not None
+
+    @property
+    def point_names(self) -> tuple[str, ...]:
+        """Names of its points."""
+        return tuple(self.points)
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words, which modes do not say."""
+        return ""
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words, which modes do not say."""
+        return ""
+
+    @property
+    def total_mass(self) -> float:
+        """Mass that its modes take part with in a translation [kg], the largest; nan without a translation."""
+        if self.translation is None:
+            return float("nan")
+        return float(np.max(np.sum(np.asarray(self.translation) ** 2, axis=1)))
+
+    def modes(self, held_x: bool = False) -> Modes:
+        """Return the modes, residual shapes last; `held_x` is for bodies with a driven end, must be false."""
+        if held_x:
+            raise ArgumentError("held_x", "be False for a ModalBody: it has no driven end", held_x)
+        return self._modes
+
+    def trace(self, position: str, held_x: bool = False) -> Array:
+        """Return the rows that give the displacement of a point from the modes."""
+        self.check_position(position)
+        self.modes(held_x)
+        return np.asarray(self.points[position])
+
+    @cached_property
+    def _modes(self) -> Modes:
+        further = np.zeros(self.residual)
+        size = self.angular_frequency.size + self.residual
+        moved = np.zeros((len(self.axes), size)) if self.translation is None else np.asarray(self.translation)
+        angular, rates = np.append(self.angular_frequency, further + np.inf), np.append(self.damping_rate, further)
+        return Modes(angular, rates, moved)
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and self._content == other._content
+
+    def __hash__(self) -> int:
+        return hash(self._content)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        given = self.angular_frequency, dict(self.points), self.damping_rate, self.translation, self.residual, self.name
+        return ModalBody, given
+
+    @cached_property
+    def _content(self) -> tuple[Any, ...]:
+        points = tuple((name, rows.tobytes()) for name, rows in sorted(self.points.items()))
+        moved = None if self.translation is None else np.asarray(self.translation).tobytes()
+        return self.angular_frequency.tobytes(), self.damping_rate.tobytes(), points, moved, self.residual, self.name
+
+    def _set(self, name: str, value: Any) -> None:
+        if isinstance(value, np.ndarray):
+            value.flags.writeable = False
+        object.__setattr__(self, name, value)
+
+
+def _of_modes(name: str, value: Any) -> Array:
+    """Return numbers of modes as an array, none below zero."""
+    array = numbers(name, value)
+    if array.ndim != 1 or not array.size:
+        raise ArgumentError(name, "be a list of numbers, one for each mode", value, got=array.shape)
+    check_finite(name, array)
+    if array.min() < 0.0:
+        raise ArgumentError(name, "be 0 or above", value, got=array.min())
+    return array
