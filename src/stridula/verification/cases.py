@@ -14,6 +14,7 @@ from . import (
     radiation,
     sensations,
     sliders,
+    space,
     stability,
     strings,
 )
@@ -30,6 +31,7 @@ CASES: tuple[Case, ...] = (
     *frequencies.CASES,
     *plates.CASES,
     *strings.CASES,
+    *space.CASES,
     *orders.CASES,
     *radiation.CASES,
     *sensations.CASES,

@@ -1,0 +1,110 @@
+"""Friction in two directions: a particle on a slope, and motion across the slip."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import atan, cos, pi, sin, sqrt
+
+import numpy as np
+
+from ..bodies import RigidBody
+from ..connections import Spring
+from ..contact import Coulomb, PointContact, RigidTrack
+from ..drives import Force, Gravity, InitialVelocity
+from ..integration import simulate
+from ..integration.schemes import Scheme
+from ..linear.equilibrium import find_equilibrium
+from ..linear.modes import modes_of
+from ..linear.structure import Structure
+from ..linear.vibration import vibration
+from ..records import Displacement
+from ..system import System
+from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
+
+GRAVITY, FRICTION, THROWN = 9.81, 0.5, 1.0
+
+
+def slope() -> Outcome:
+    """A particle thrown along a slope of friction's own angle: its speed and its speed downhill add up to a constant.
+
+    Friction and weight along the slope are alike in size, so the speed loses what the speed downhill gains. In the end
+    it goes straight down, at half the speed that it was thrown with.
+    """
+    angle, step = atan(FRICTION), 1e-3
+    mass = RigidBody(1.0)
+    weight = Gravity(GRAVITY, direction=(0.0, -cos(angle), -sin(angle)))
+    contact = PointContact(mass.centre, RigidTrack(), friction=Coulomb(FRICTION))
+    system = System(contact, [weight, InitialVelocity(mass, x=THROWN)])
+    # It turns within v / g sin.
+    share = (step * GRAVITY * sin(angle) / THROWN) ** 2
+    curves = [Curve(np.array([0.0, 5.0]), np.full(2, THROWN / 2.0), "half the speed at the start")]
+
+    def rows(scheme: Scheme) -> list[Row]:
+        run = simulate(system, 5.0, scheme=scheme, step=step, sample_rate=1.0 / step, probes=[])
+        along, up = run["slip_velocity"].values.T
+        speed = np.hypot(along, up)
+        curves.append(Curve(run["time"].values, speed, f"speed, {scheme.name}"))
+        whole, reason = speed - up, "second order of the step over the time in which it turns"
+        worst = float(whole[np.abs(whole - THROWN).argmax()])
+        return [
+            Row("speed in the end", THROWN / 2.0, float(speed[-1]), share * THROWN, reason, "m/s", scheme.name),
+            Row("speed and speed downhill, worst", THROWN, worst, 2.0 * share * THROWN, reason, "m/s", scheme.name),
+            Row("velocity across in the end", 0.0, float(along[-1]), 1e-9, "falls exponentially", "m/s", scheme.name),
+        ]
+
+    return Outcome(by_scheme(rows), Sketch("time [s]", "speed [m/s]", curves))
+
+
+def across() -> Outcome:
+    """8 kg on 315 N/m across a slip of 10 m/s under 1 N and mu = 0.5: friction damps it by mu N / (2 v sqrt(k m))."""
+    mass, rate, pressed, speed, periods = 8.0, 315.0, 1.0, 10.0, 30
+    known, own = FRICTION * pressed / (2.0 * speed * sqrt(rate * mass)), sqrt(rate / mass)
+    body = RigidBody(mass)
+    contact = PointContact(body.centre, RigidTrack(velocity=-speed), friction=Coulomb(FRICTION))
+    springs = [Spring(body.centre, stiffness=rate, direction=way) for way in ("x", "z")]
+    system = System(contact, [Force(body.centre, y=-pressed)], springs)
+    structure = Structure(system)
+    found = modes_of(structure, vibration(structure, find_equilibrium(structure, np.zeros(1)))).values
+    theory = float((-found.real / np.abs(found)).max())
+    printed = [
+        Row("damping ratio, linear theory", known, theory, 1e-12, "round-off"),
+        Row("damping ratio as printed", 0.000498012, known, 5e-10, "digits printed by Ansys VM274"),
+    ]
+    per_period = 400
+    step = 2.0 * pi / own / per_period
+    swinging = replace(system, drives=[*system.drives, InitialVelocity(body, z=1e-3)])
+    curves = []
+
+    def rows(scheme: Scheme) -> list[Row]:
+        probes = [Displacement(body.centre, "z")]
+        run = simulate(
+            swinging, periods * per_period * step, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes
+        )
+        swings = np.abs(run["displacement"].values[:, 0]).reshape(periods, per_period).max(axis=1)
+        times = np.arange(periods) * per_period * step
+        curves.append(Curve(times, 1e3 * swings, scheme.name, marks=True))
+        ratio = -float(np.polyfit(times, np.log(swings), 1)[0]) / own
+        # Peaks between samples, and the velocity of three slips that friction is along: both (w h)² / 2 of the whole.
+        tolerance = 2.0 * (own * step) ** 2 * known + 0.5 * (own * step) ** 2 / (periods * own * per_period * step)
+        return [Row("damping ratio, decay", known, ratio, tolerance, "sampling and step, (w h)²", "1", scheme.name)]
+
+    measured = by_scheme(rows)
+    times = np.linspace(0.0, periods * per_period * step, 50)
+    decay = Curve(times, 1e3 * 1e-3 / own * np.exp(-known * own * times), "closed form")
+    return Outcome([*printed, *measured], Sketch("time [s]", "swing across [mm]", [decay, *curves]))
+
+
+CASES = (
+    Case(
+        "particle-on-a-slope",
+        "A particle thrown along a slope of friction's angle",
+        "energy and momentum along the slope, closed form",
+        slope,
+    ),
+    Case(
+        "transverse-damping",
+        "Friction damps motion across the slip",
+        "Ansys VM274 (transverse vibration of a mass on a belt)",
+        across,
+    ),
+)
