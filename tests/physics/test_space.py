@@ -572,6 +572,14 @@ def test_a_body_given_by_its_modes_moves_as_the_one_they_are_of():
 # Records, restart, scenarios.
 
 
+def test_an_ensemble_of_a_system_in_space_starts_from_small_changes():
+    """Landings that come a little later, or a slider that starts a little faster."""
+    for system in (standing(), dragged(0.4, 0.01)):
+        found = st.ensemble(system, 2e-3, {"force": lambda run: float(run.normal_force.sum("contact").mean())}, runs=3)
+        assert np.isfinite(found.force).all()
+        assert 0.0 < float(np.ptp(found.force.values)) < 0.5 * float(found.force_mean)
+
+
 def test_a_run_in_space_goes_on_and_runs_again(tmp_path):
     system = standing()
     words = {"step": 4e-6, "sample_rate": 5e4}

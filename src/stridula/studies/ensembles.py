@@ -221,7 +221,9 @@ def _prescribed(system: System) -> float:
     found = [velocity for drive in system.drives for velocity in drive.velocities] or [0.0]
     for contact in system.contacts:
         if contact.rigid_track is not None:
-            found += [contact.rigid_track.velocity, contact.rigid_track.normal_velocity]
+            track = contact.rigid_track
+            found += [track.velocity, track.normal_velocity, track.lateral_velocity]
+        found += contact.surface_velocities
     return max(abs(velocity) for velocity in found) or 1.0
 
 
@@ -230,14 +232,13 @@ def _push(system: System, velocity: float) -> Drive:
     slider = system.slider
     if not slider.has_translation:
         return State(slider, velocity=(velocity,) * slider.mass.shape[0])
-    held = system.is_held(slider)
-    normal, tangent = system.contacts[0].frame
+    held, translation = system.is_held(slider), slider.modes().translation
+    normal, tangent, *_ = (axis[: len(translation)] for axis in system.contacts[0].frame)
     # Its root's x is prescribed under an imposed velocity: only y is left.
     direction = np.array([0.0, 1.0]) if held else tangent
-    if not held and not np.any(direction @ slider.modes().translation):
+    if not held and not np.any(direction @ translation):
         direction = normal
-    x, y = velocity * direction
-    return InitialVelocity(slider, x=float(x), y=float(y))
+    return InitialVelocity(slider, **dict(zip("xyz", (velocity * direction).tolist(), strict=False)))
 
 
 def _run_all(
