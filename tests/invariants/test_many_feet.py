@@ -23,6 +23,12 @@ def test_all_laws_are_drawn():
     assert {len(drawn(0, number).feet) for number in range(COUNT)} == set(range(1, MOST + 1))
 
 
+@pytest.mark.parametrize("number", [4186, 8566, 9262, 9389])
+def test_feet_that_could_slide_slowly_or_fast_stay_with_one(number):
+    """Weakening laws on feet that answer each other: without that the sweeps change from one to the other for ever."""
+    assert verdict(2, number) == ("solved", set())
+
+
 def test_a_foot_whose_friction_ceases_to_fall_within_a_step_obeys_its_law():
     """The ratio of linear weakening is not expanded beyond its corner, where it would be 6e-7 too low."""
     assert verdict(1, 2167) == ("solved", set())

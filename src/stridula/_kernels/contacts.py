@@ -64,6 +64,18 @@ def start_from_last(contacts, carried, touching, sizes, run, zero):
 
 
 @numba.njit(**OPTIONS)
+def carried_or_found(carried, i, let_go, normal, tangential, run, zero):
+    """Return what contact `i` carries; when it is late, with the forces found last in the place of the last step's.
+
+    A law that weakens has slow and fast slips for the same forces; from the ratio found last it stays with one of them.
+    """
+    status, last_slip, earlier_slip, state, last_normal, last_tangential = carried_by(carried, i, run, zero)
+    late = choose(let_go > 0.0, normal, zero) > 0.0
+    last_normal, last_tangential = choose(late, normal, last_normal), choose(late, tangential, last_tangential)
+    return status, last_slip, earlier_slip, state, last_normal, last_tangential
+
+
+@numba.njit(**OPTIONS)
 def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
     """Solve contacts that may touch in turn, in runs not `done`; return what changed.
 
@@ -113,7 +125,7 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
                 contacts.laws,
                 i * runs + run,
                 held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero),
-                carried_by(carried, i, run, zero),
+                carried_or_found(carried, i, let_go, was_normal, was_tangential, run, zero),
                 let_go,
                 step,
                 zero,
