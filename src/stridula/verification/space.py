@@ -81,7 +81,8 @@ def across() -> Outcome:
             swinging, periods * per_period * step, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes
         )
         swings = np.abs(run["displacement"].values[:, 0]).reshape(periods, per_period).max(axis=1)
-        times = np.arange(periods) * per_period * step
+        # The largest of a period is its first, a quarter of it on.
+        times = (np.arange(periods) + 0.25) * per_period * step
         curves.append(Curve(times, 1e3 * swings, scheme.name, marks=True))
         ratio = -float(np.polyfit(times, np.log(swings), 1)[0]) / own
         # Peaks between samples, and the velocity of three slips that friction is along: both (w h)² / 2 of the whole.
