@@ -155,7 +155,7 @@ def test_vtk_names_groups_by_arrays_of_whole_numbers(tmp_path, ending, kind):
     meshio = pytest.importorskip("meshio")
     mesh = mesh_of("hexahedron20" if kind == "hexahedron27" else kind)
     if kind == "hexahedron27":
-        from tests.physics.test_solid_bodies import of_27_nodes
+        from physics.test_solid_bodies import of_27_nodes
 
         whole = of_27_nodes(mesh)
         faces = np.argwhere((whole.nodes[whole.elements[:, whole.element_kind.face_nodes], 0] == 0.0).all(axis=2))
