@@ -143,6 +143,11 @@ class Assembly:
         return np.array([not one.is_second for one in self.contacts])
 
     @property
+    def contact_numbers(self) -> Array:
+        """Number of the contact that each pair of rows belongs to, shape (pairs,)."""
+        return np.cumsum(self.firsts) - 1
+
+    @property
     def mode_count(self) -> int:
         """Number of modes in all."""
         return int(self.angular_frequency.size)

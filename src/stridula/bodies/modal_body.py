@@ -11,13 +11,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, choice, count, instance
+from ..checks import ArgumentError, count, instance
 from .matrix_input import check_finite, numbers, rows_of
-from .modes import BodyPoint, Modes
+from .modes import Modes
+from .named_points import NamedPoints
 
 
 @dataclass(frozen=True, eq=False)
-class ModalBody:
+class ModalBody(NamedPoints):
     """A linear body given by mass-normalised modes and what they move its points by.
 
     Parameters
@@ -44,7 +45,6 @@ class ModalBody:
     """
 
     kind: ClassVar[str] = "modal body"
-    has_positions: ClassVar[bool] = False
     angular_frequency: Any
     points: Mapping[str, Any]
     damping_rate: Any = 0.0
@@ -76,14 +76,6 @@ class ModalBody:
         if self.translation is not None:
             self._set("translation", rows_of("translation", self.translation, size, directions))
 
-    def at(self, position: str) -> BodyPoint:
-        """Return the point called `position`."""
-        return BodyPoint(self, position)
-
-    def check_position(self, position: str) -> None:
-        """Raise ValueError if no point is called `position`."""
-        choice("position", position, tuple(self.points))
-
     @property
     def is_spatial(self) -> bool:
         """Whether it moves along world z, too."""
@@ -103,16 +95,6 @@ class ModalBody:
     def point_names(self) -> tuple[str, ...]:
         """Names of its points."""
         return tuple(self.points)
-
-    @property
-    def dimensions(self) -> str:
-        """Its size in words, which modes do not say."""
-        return ""
-
-    @property
-    def posture(self) -> str:
-        """How it stands, in words, which modes do not say."""
-        return ""
 
     @property
     def total_mass(self) -> float:

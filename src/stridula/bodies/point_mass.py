@@ -8,17 +8,17 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, choice
+from ..checks import ArgumentError
 from ..declared import Name, Number, check_declared
 from .modes import BodyPoint, Modes
+from .named_points import NamedPoints
 
-POINTS = ("centre",)
 # Below, stiffness over mass overflows.
 SMALLEST_MASS = 1e-100
 
 
 @dataclass(frozen=True)
-class PointMass:
+class PointMass(NamedPoints):
     """A mass that moves freely along world x and y and does not turn.
 
     Parameters
@@ -37,7 +37,6 @@ class PointMass:
     kind: ClassVar[str] = "point mass"
     point_names: ClassVar[tuple[str, ...]] = ("centre",)
     is_spatial: ClassVar[bool] = False
-    has_positions: ClassVar[bool] = False
     has_translation: ClassVar[bool] = True
     mass: Annotated[float, Number("kg", above=0.0)]
     name: Name = ""
@@ -48,27 +47,9 @@ class PointMass:
             raise ArgumentError("mass", f"be at least {SMALLEST_MASS:g}", self.mass)
 
     @property
-    def dimensions(self) -> str:
-        """Its size in words, empty without one."""
-        return ""
-
-    @property
-    def posture(self) -> str:
-        """How it stands, in words."""
-        return ""
-
-    @property
     def centre(self) -> BodyPoint:
         """Its only point."""
         return BodyPoint(self, "centre")
-
-    def at(self, position: str) -> BodyPoint:
-        """Return the point called `position`, which must be "centre"."""
-        return BodyPoint(self, position)
-
-    def check_position(self, position: str) -> None:
-        """Raise ValueError if `position` is not "centre"."""
-        choice("position", position, POINTS)
 
     @property
     def axes(self) -> Array:

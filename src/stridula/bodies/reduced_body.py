@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, choice, instance, positive
+from ..checks import ArgumentError, instance, positive
 from .damping import DampingLaw, Rayleigh, checked_damping
 from .matrix_arguments import from_container, from_matrices
 from .matrix_files import LARGEST_SIZE, POINT, read_container, read_matrices, write_npz
@@ -32,7 +32,8 @@ from .matrix_input import (
     stays_sparse,
     symmetric,
 )
-from .modes import BodyPoint, Modes
+from .modes import Modes
+from .named_points import NamedPoints
 from .ordinary import of_ordinary_size
 from .reduction import Reduction, reduce_body
 from .sparse_reduction import reduce_sparse_body
@@ -41,7 +42,7 @@ FILES = ("path", "mass", "stiffness")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ReducedBody:
+class ReducedBody(NamedPoints):
     """A linear body given by matrices, its mode shapes found from ``K phi = w² M phi``.
 
     A mode is rigid, its frequency exactly zero, if its computed w² is below 64 eps = 1.4e-14 of the largest one, what
@@ -81,7 +82,6 @@ class ReducedBody:
     """
 
     kind: ClassVar[str] = "reduced"
-    has_positions: ClassVar[bool] = False
     mass: Array
     stiffness: Array
     points: Mapping[str, Any]
@@ -239,14 +239,6 @@ class ReducedBody:
         arrays |= {word: getattr(self, word) for word in ("translation", "cutoff") if getattr(self, word) is not None}
         write_npz(path, arrays)
 
-    def at(self, position: str) -> BodyPoint:
-        """Return the point called `position`."""
-        return BodyPoint(self, position)
-
-    def check_position(self, position: str) -> None:
-        """Raise ValueError if no point is called `position`."""
-        choice("position", position, tuple(self.points))
-
     @property
     def is_spatial(self) -> bool:
         """Whether it moves along world z, too."""
@@ -270,16 +262,6 @@ class ReducedBody:
     def point_names(self) -> tuple[str, ...]:
         """Names of its points."""
         return tuple(self.points)
-
-    @property
-    def dimensions(self) -> str:
-        """Its size in words, which matrices do not say."""
-        return ""
-
-    @property
-    def posture(self) -> str:
-        """How it stands, in words, which matrices do not say."""
-        return ""
 
     @property
     def total_mass(self) -> float:

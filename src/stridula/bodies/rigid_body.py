@@ -11,10 +11,11 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, choice, instance
+from ..checks import ArgumentError, instance
 from ..declared import Name, Number, Own, check_declared
 from .matrix_input import check_finite, numbers
 from .modes import BodyPoint, Modes
+from .named_points import NamedPoints
 from .point_mass import SMALLEST_MASS
 
 CENTRE = "centre"
@@ -23,7 +24,7 @@ ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class RigidBody:
+class RigidBody(NamedPoints):
     """A rigid body that moves freely in space, by small rotations; without an inertia it does not turn.
 
     Parameters
@@ -45,7 +46,6 @@ class RigidBody:
     """
 
     kind: ClassVar[str] = "rigid body"
-    has_positions: ClassVar[bool] = False
     has_translation: ClassVar[bool] = True
     is_spatial: ClassVar[bool] = True
     mass: Annotated[float, Number("kg", above=0.0)]
@@ -69,27 +69,9 @@ class RigidBody:
         return (CENTRE, *self.points)
 
     @property
-    def dimensions(self) -> str:
-        """Its size in words, empty without one."""
-        return ""
-
-    @property
-    def posture(self) -> str:
-        """How it stands, in words."""
-        return ""
-
-    @property
     def centre(self) -> BodyPoint:
         """Its centre of mass."""
         return BodyPoint(self, CENTRE)
-
-    def at(self, position: str) -> BodyPoint:
-        """Return the point called `position`."""
-        return BodyPoint(self, position)
-
-    def check_position(self, position: str) -> None:
-        """Raise ValueError if no point is called `position`."""
-        choice("position", position, self.point_names)
 
     @property
     def axes(self) -> Array:

@@ -21,7 +21,8 @@ from .damping import DampingLaw, checked_damping
 from .factorisation import dissection
 from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
 from .matrix_input import check_finite, numbers
-from .modes import BodyPoint, Modes
+from .modes import Modes
+from .named_points import NamedPoints
 from .ordinary import of_ordinary_size
 from .sections import Material
 from .solid_elements import assembled
@@ -55,7 +56,7 @@ class SolidReduction:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SolidBody:
+class SolidBody(NamedPoints):
     """A linear elastic body given by a mesh in space, its modes found on first use.
 
     Its coordinates are those of the world. Rigid motions that `fixed` leaves, six where nothing is fixed, have the
@@ -94,7 +95,6 @@ class SolidBody:
     """
 
     kind: ClassVar[str] = "solid"
-    has_positions: ClassVar[bool] = False
     has_translation: ClassVar[bool] = True
     is_spatial: ClassVar[bool] = True
     mesh: SolidMesh
@@ -185,14 +185,6 @@ class SolidBody:
         """
         return cls(SolidMesh.block(lengths, divisions), materials, **options)
 
-    def at(self, position: str) -> BodyPoint:
-        """Return the point called `position`."""
-        return BodyPoint(self, position)
-
-    def check_position(self, position: str) -> None:
-        """Raise ValueError if no point is called `position`."""
-        choice("position", position, self.point_names)
-
     def face(self, name: str) -> Face:
         """Return a named part of its surface: nodes, areas and normals."""
         return self.mesh.face(name)
@@ -217,11 +209,6 @@ class SolidBody:
         """Its size in words."""
         sides = " x ".join(f"{side:.4g}" for side in self.mesh.size)
         return f"{sides} m, {len(self.mesh.elements)} {self.mesh.element_kind.words}"
-
-    @property
-    def posture(self) -> str:
-        """How it stands, in words, which a mesh does not say."""
-        return ""
 
     @property
     def total_mass(self) -> float:

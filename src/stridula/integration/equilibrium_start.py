@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from ..assembly import Assembly
 from ..linear.starts import start_of
 from ..system import System
@@ -27,5 +25,5 @@ def in_equilibrium(system: System, arrays: Assembly) -> Assembly:
         arrays,
         position=arrays.position + start.position,
         velocity=arrays.velocity + start.velocity,
-        friction_state=start.friction_state[np.cumsum(arrays.firsts) - 1],
+        friction_state=start.friction_state[arrays.contact_numbers],
     )

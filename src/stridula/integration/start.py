@@ -70,16 +70,13 @@ class _Start:
         places = [one.at + shift for one, shift in zip(arrays.contacts, moved.tolist(), strict=True)]
         self.rows = np.array([rows_at(*pair) for pair in zip(arrays.contacts, places, strict=True)])
         terms = _terms(arrays, self.factors @ arrays.loads)
-        self.gaps = np.array([_gap(*pair, arrays, terms) for pair in zip(arrays.contacts, self.rows, strict=True)])
-        self.first = np.flatnonzero(arrays.firsts)[np.cumsum(arrays.firsts) - 1]
-        self.gaps = self.gaps[self.first]
+        gaps = np.array([_gap(*pair, arrays, terms) for pair in zip(arrays.contacts, self.rows, strict=True)])
+        self.first = np.flatnonzero(arrays.firsts)[arrays.contact_numbers]
+        self.gaps = gaps[self.first]
 
     def increment(self, force: Array) -> Array:
         """Return the increment before the start of motion under constant modal forces."""
-        return self._increment(self.arrays.position, self.arrays.velocity, force)
-
-    def _increment(self, position: Array, velocity: Array, force: Array) -> Array:
-        return self.stepping.first_increment(self.step, position, velocity, force)
+        return self.stepping.first_increment(self.step, self.arrays.position, self.arrays.velocity, force)
 
     @cached_property
     def speeds(self) -> Array:
@@ -182,8 +179,10 @@ class _Start:
     def _compliance(self, pushes: Array) -> Array:
         """Return how far rows have moved after the first step under unit forces on them since before the start."""
         still = np.zeros(self.arrays.mode_count)
+        increments = [self.stepping.first_increment(self.step, still, still, push) for push in pushes]
         answers = [
-            self.modes.free(still, self._increment(still, still, push)) + self.modes.mobility(push) for push in pushes
+            self.modes.free(still, first) + self.modes.mobility(push)
+            for push, first in zip(pushes, increments, strict=True)
         ]
         return np.ascontiguousarray(pushes @ np.array(answers).T)
 

@@ -114,7 +114,7 @@ def _check(structure: Structure, at: Equilibrium, status: Sequence[str] | None) 
             if pulled > most + largest:
                 raise ArgumentError(
                     "status",
-                    (f"let {names[k]} slide, which would stick with {pulled:.3g} N of at most {most:.3g} N"),
+                    f"let {names[k]} slide, which would stick with {pulled:.3g} N of at most {most:.3g} N",
                     at.status[k],
                 )
 

@@ -1,0 +1,32 @@
+"""A body whose points have names and no positions between them."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from ..checks import choice
+from .modes import Body, BodyPoint
+
+
+class NamedPoints:
+    """What bodies of named points share; the names are those of `point_names`."""
+
+    has_positions: ClassVar[bool] = False
+
+    def at(self: Body, position: str) -> BodyPoint:
+        """Return the point called `position`."""
+        return BodyPoint(self, position)
+
+    def check_position(self: Body, position: str) -> None:
+        """Raise ValueError if no point is called `position`."""
+        choice("position", position, self.point_names)
+
+    @property
+    def dimensions(self) -> str:
+        """Its size in words, empty without one."""
+        return ""
+
+    @property
+    def posture(self) -> str:
+        """How it stands, in words, empty where there is nothing to say."""
+        return ""
