@@ -13,6 +13,7 @@ from .arrays import Array
 from .bodies import BodyPoint, HasRoot
 from .bodies.modes import Modes
 from .bodies.ordinary import check_coupled_count, of_ordinary_size
+from .bodies.turning import Turning
 from .checks import ArgumentError, brief
 from .connections import ends, unit
 from .contact import PointContact
@@ -78,6 +79,30 @@ class ContactRows:
 
 
 @dataclass(frozen=True)
+class TurningModes:
+    """The modes of a body that turns.
+
+    Attributes
+    ----------
+    turning : Turning
+        How it turns.
+    pairs : ndarray of int, shape (pairs, 2)
+        Numbers of the modes of each pair.
+    """
+
+    turning: Turning
+    pairs: Array
+
+    def turned(self, modal: Array, by: Array) -> Array:
+        """Return what turning pairs by angles [rad], shape (pairs,), adds to numbers of the modes, shape (modes,)."""
+        (first, second), added = self.pairs.T, np.zeros_like(modal)
+        sine, versine = np.sin(by), 2.0 * np.sin(0.5 * by) ** 2
+        added[first] = -versine * modal[first] - sine * modal[second]
+        added[second] = sine * modal[first] - versine * modal[second]
+        return added
+
+
+@dataclass(frozen=True)
 class Assembly:
     """A system as flat arrays, body by body, those whose modes are coupled first.
 
@@ -111,6 +136,8 @@ class Assembly:
         First mode of each body and the one after its last, by the body's name.
     blend : ndarray, shape (joined, joined)
         How the first coordinates make those of joined bodies, whose residual shapes connections hold; empty without.
+    turning : tuple of TurningModes
+        The bodies that turn.
     """
 
     angular_frequency: Array
@@ -129,6 +156,7 @@ class Assembly:
     prescribed: Prescribed
     spans: dict[str, tuple[int, int]]
     blend: Array
+    turning: tuple[TurningModes, ...]
 
     @property
     def all_stiffness(self) -> Array:
@@ -202,6 +230,7 @@ def _assembled(system: System) -> tuple[Assembly, _Layout, list[_Load]]:
         prescribed=_prescribed(system, histories),
         spans={system.body_name(body): layout.spans[body] for body in system.bodies},
         blend=layout.blend,
+        turning=_turning(layout),
     )
     return flat, layout, loads
 
@@ -255,6 +284,8 @@ class Prescribed:
     contacts : tuple
         For each contact its frame, whether its tip and its track are held, its rigid track, and velocities of the
         surface that it touches.
+    turning : tuple of Turning
+        How bodies turn.
     turns : bool
         Whether it goes on from other motions.
     """
@@ -262,6 +293,7 @@ class Prescribed:
     histories: tuple[History, ...]
     velocity: tuple[float, History] | None
     contacts: tuple[Any, ...]
+    turning: tuple[Turning, ...] = ()
     turns: bool = False
 
     @property
@@ -272,6 +304,7 @@ class Prescribed:
             still
             and not self.turns
             and self.velocity is None
+            and all(type(one.history) is Constant for one in self.turning)
             and all(type(history) is Constant for history in self.histories)
         )
 
@@ -280,9 +313,13 @@ def _prescribed(system: System, histories: tuple[History, ...]) -> Prescribed:
     contacts = []
     for contact in system.contacts:
         held = system.is_held(contact.tip.body), _touches_held(contact, system)
-        contacts.append((contact.frame.tobytes(), *held, contact.rigid_track, contact.surface_velocities))
+        passing = [speed for turning, speeds in contact.turning_velocities for speed in (turning.history, *speeds)]
+        moved = (*contact.surface_velocities, *passing)
+        contacts.append((contact.frame.tobytes(), *held, contact.rigid_track, moved))
     imposed = system.imposed_velocity
-    return Prescribed(histories, (imposed.velocity, imposed.history) if imposed else None, tuple(contacts))
+    bodies = [body.modes().turning for body in system.bodies if not system.is_held(body)]
+    turning = tuple(one for one in bodies if one is not None)
+    return Prescribed(histories, (imposed.velocity, imposed.history) if imposed else None, tuple(contacts), turning)
 
 
 def _touches_held(contact: PointContact, system: System) -> bool:
@@ -421,6 +458,15 @@ def without_massless_coupling(stiffness: Array, dissipation: Array, massless: Ar
     return 0.5 * (stiffness + stiffness.T), 0.5 * (dissipation + dissipation.T), blend
 
 
+def _turning(layout: _Layout) -> tuple[TurningModes, ...]:
+    found = []
+    for body in layout.order:
+        turning = layout.modes(body).turning
+        if turning is not None and turning.pairs:
+            found.append(TurningModes(turning, layout.spans[body][0] + np.array(turning.pairs)))
+    return tuple(found)
+
+
 def _uncoupled(stiffness: Array, dissipation: Array) -> bool:
     """Return whether the modes are oscillators on their own after all."""
     return _is_diagonal(stiffness) and _is_diagonal(dissipation)
@@ -480,6 +526,9 @@ def _motion(system: System, imposed: Signal) -> Signal:
             for pair, speed in enumerate(contact.surface_velocities):
                 if speed:
                     values[:, number + pair, 1] += speed * time
+            for turning, speeds in contact.turning_velocities:
+                for pair, speed in enumerate(speeds):
+                    values[:, number + pair, 1] += speed * turning.history.integral(time)
             if contact.rigid_track is not None:
                 values[:, number, 1] += contact.rigid_track.travel(time)
                 values[:, number, 2] -= contact.rigid_track.normal_travel(time)

@@ -51,6 +51,7 @@ class System:
         for number, drive in enumerate(self.drives):
             self._check_body(f"drives[{number}]", drive)
         self._check_imposed()
+        self._check_turning()
         if len(self._of_kind(InitialEquilibrium)) > 1:
             raise ArgumentError(
                 "drives", "hold at most one InitialEquilibrium", self.drives, got=len(self._of_kind(InitialEquilibrium))
@@ -158,6 +159,13 @@ class System:
                         self.body_name(other),
                         got=f"{self.body_name(other)!r} without",
                     )
+
+    def _check_turning(self) -> None:
+        for number, connection in enumerate(self.connections):
+            for point in ends(connection):
+                if getattr(point.body, "turning", None):
+                    name = self.body_name(point.body)
+                    raise ArgumentError(f"connections[{number}]", "leave a body that turns", got=f"one to {name}")
 
     def _check_imposed(self) -> None:
         imposed = self._of_kind(ImposedVelocity)

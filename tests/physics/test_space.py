@@ -32,8 +32,11 @@ LAWS = [
 # One contact: forces by brute force.
 
 
-def reference(gap, slip, w, mu):
-    """Forces of one closed contact under Coulomb's law, its direction of sliding by bisection on a fine grid."""
+def reference(gap, slip, w, mu, before=(0.0, 0.0)):
+    """Forces of one closed contact under Coulomb's law, its direction of sliding by bisection on a fine grid.
+
+    It is that of the slip and a share of those `before`.
+    """
     held = np.linalg.solve(w, -np.array([gap, *slip]))
     if held[0] >= 0.0 and hypot(*held[1:]) <= mu * held[0]:
         return held[0], -held[1:]
@@ -41,7 +44,7 @@ def reference(gap, slip, w, mu):
     def slide(angle):
         u = np.array([cos(angle), sin(angle)])
         normal = -gap / (w[0, 0] - mu * w[0, 1:] @ u)
-        velocity = slip + w[1:, 0] * normal - mu * normal * w[1:, 1:] @ u
+        velocity = slip + np.asarray(before) + w[1:, 0] * normal - mu * normal * w[1:, 1:] @ u
         return normal, u, velocity
 
     def across(angle):

@@ -19,6 +19,7 @@ from .recording import begin_sample, height_of, keep_probes_at, record_contact, 
 from .several import keep_many, touch_many
 from .single import keep_one, touch_one
 from .trying import complete_one, gap_of
+from .turning import credit_turning, turn_bodies
 from .vectors import LANES
 
 
@@ -60,7 +61,7 @@ def march(zero, run, runs, parts):
     of these runs, `runs` how many columns there are.
     """
     sizes, timing, signals = parts.sizes, parts.timing, parts.imposed.signals
-    single = sizes.contacts == 1 and sizes.coupled == 0
+    single = sizes.contacts == 1 and sizes.coupled == 0 and parts.turning.spans.shape[0] == 0
     begin(parts, run, zero)
     ended, completed = zero, zero
     touch, free, w = (zero, zero, zero, zero), (zero, zero, zero), (zero, zero, zero, zero)
@@ -74,6 +75,7 @@ def march(zero, run, runs, parts):
                 free, w, touch, leaves, why = touch_one(parts, n, loop, ended, run, runs, zero)
                 sine = 2 - sine
             else:
+                turn_bodies(parts, n, run, runs, zero)
                 leaves, why = touch_many(parts, n, ended, run, runs, zero)
             if anywhere(leaves > 0.5):
                 ended, completed = leave(ended, completed, leaves, why, sample, parts.state, run, zero)
@@ -88,6 +90,7 @@ def march(zero, run, runs, parts):
                     credit(parts.state.energies, done[0], done[1], done[2] * advance, run, zero)
             else:
                 keep_many(parts, n, run, runs, zero)
+                credit_turning(parts, run, zero)
             if not pending:
                 keep_probes_at(parts, n, run, runs, zero)
             n += 1

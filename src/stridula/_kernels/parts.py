@@ -112,20 +112,50 @@ class Carried(NamedTuple):
 
 
 class Imposed(NamedTuple):
-    """Amplitudes of the loads and what else is imposed; motions of contacts, a step more at both ends; or one row."""
+    """What is imposed, a row a step, or one row.
+
+    Attributes
+    ----------
+    signals, motion : ndarray
+        Amplitudes of the loads and what else is imposed; motions of contacts, from a step before to one after.
+    angles : ndarray
+        Angles by which bodies turn in each step [rad], from the step before on.
+    """
 
     signals: np.ndarray
     motion: np.ndarray
+    angles: np.ndarray
+
+
+class Turning(NamedTuple):
+    """Bodies that turn: see `turning`.
+
+    Attributes
+    ----------
+    rows : ndarray, shape (blocks, rows, lanes)
+        Turns of the pairs in each block.
+    spans : ndarray of int, shape (bodies, 2)
+        Blocks of each body.
+    turned, contacts : ndarray, a column a run
+        Angles of each body in the step that the turns are of and in the last; what turning does to each contact.
+    """
+
+    rows: np.ndarray
+    spans: np.ndarray
+    turned: np.ndarray
+    contacts: np.ndarray
 
 
 class Probes(NamedTuple):
-    """Kinds of probes, blocks they see, shares of signals and contact forces, values at the last step."""
+    """Kinds of probes, blocks they see, shares of signals and contact forces; values at the last step, and what turning
+    adds to the last change and to the next."""
 
     kinds: np.ndarray
     spans: np.ndarray
     direct: np.ndarray
     shares: np.ndarray
     last: np.ndarray
+    passing: np.ndarray
 
 
 class Records(NamedTuple):
@@ -145,6 +175,7 @@ class Parts(NamedTuple):
     modes: Modes
     paths: Paths
     contacts: Contacts
+    turning: Turning
     state: Carried
     imposed: Imposed
     probes: Probes

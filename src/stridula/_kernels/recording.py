@@ -20,17 +20,18 @@ def remember_probes(rows, first, kinds, spans, last, run, zero):
 @numba.njit(**OPTIONS)
 def keep_probes(rows, first, probes, imposed, now, count, n, run, runs, raw, zero):
     """Put the values of the probes at step `n`, which is complete, into a row of `raw`."""
-    kinds, spans, direct, shares, last = probes
+    kinds, spans, direct, shares, last, passing = probes
     signals = imposed.signals
     for p in range(kinds.size):
         seen = Q if kinds[p] == at.DISPLACEMENT else D
         found = product(rows, first + p, seen, spans[p, 0], spans[p, 1], run, zero)
         value = held(last, p, run, zero)
         hold(last, p, run, found)
+        passed, passes = held(passing, 2 * p, run, zero), held(passing, 2 * p + 1, run, zero)
         if kinds[p] == at.VELOCITY:
-            value = found + value
+            value = (found + passes) + (value + passed)
         elif kinds[p] == at.ACCELERATION:
-            value = found - value
+            value = (found + passes) - (value + passed)
         for i in range(count):
             here, share = i * at.IN_STEP, 2 * (p * count + i)
             value += held(shares, share, run, zero) * held(now, here + at.NORMAL_NOW, run, zero)

@@ -15,6 +15,7 @@ from .rigid_body import RigidBody
 from .sections import Circle, Material, Rectangle, Section
 from .solid_body import SolidBody
 from .solid_mesh import SolidMesh
+from .turning import Turning
 
 __all__ = [
     "AxisymmetricBody",
@@ -46,5 +47,6 @@ __all__ = [
     "SolidBody",
     "SolidMesh",
     "Track",
+    "Turning",
     "Waves",
 ]

@@ -1,10 +1,10 @@
-"""A body of revolution at rest: a disc, a wheel, a bell or a glass by Fourier finite elements on its profile."""
+"""A body of revolution: a disc, a wheel, a bell or a glass by Fourier finite elements on its profile."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -12,12 +12,14 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, brief, choice, count, finite, instance, listed, positive
+from ..histories import HISTORIES, Constant, History
 from .damping import DampingLaw, checked_damping, damping_rates
 from .modes import BodyPoint, Modes, hashed_once
 from .ordinary import NotOrdinary, of_ordinary_size
 from .profile_mesh import ProfileMesh
 from .profiles import PROFILES, Profile
 from .sections import Material
+from .turning import Turning
 
 if TYPE_CHECKING:
     from .fourier_elements import FourierElements
@@ -35,6 +37,8 @@ SURFACE_WAVES = 0.75
 LEAST_POISSON, MOST_POISSON = -0.99, 0.499
 # Squares of masses and stiffnesses [kg, N/m] can be held.
 LARGEST = 1e100
+# Share of a turn that rounding leaves to a body that moves straight on.
+STRAIGHT = 1e-6
 # A free ring of order n bends like a beam of a length of n - 1 waves and more.
 ORDERS_MORE = 2
 
@@ -87,7 +91,7 @@ class Held:
 @hashed_once
 @dataclass(frozen=True)
 class AxisymmetricBody:
-    """A body of revolution, at rest, by Fourier finite elements on its profile.
+    """A body of revolution, at rest or turning about its axis, by Fourier finite elements on its profile.
 
     Round the axis its displacement goes as ``u_r = U cos n theta``, ``u_theta = V sin n theta``,
     ``u_z = W cos n theta``, or as that turned by a quarter of a wave, with U, V and W on the profile in quadratic
@@ -117,6 +121,11 @@ class AxisymmetricBody:
         Direction of its axis of revolution in the world, of any length.
     origin : tuple of float, optional
         The point of the world on its axis where z is 0 [m].
+    turning : float, optional
+        Angular velocity about the axis, counter-clockwise seen from where the axis points to [rad/s]. Points stay where
+        they are in space, the material passes them.
+    turning_history : Constant, Ramp, Harmonic or Sampled, optional
+        How the angular velocity goes in time, a factor on it.
     name : str, optional
         What it is called in records; tells equal bodies apart.
 
@@ -124,7 +133,12 @@ class AxisymmetricBody:
     ------
     ValueError
         If an argument is out of its range, if a region has no material, or if nothing is where it is held; from
-        `modes` on, if no mode lies below the cutoff.
+        `modes` on, if no mode lies below the cutoff, or if it turns and nothing keeps its axis where it is.
+
+    Notes
+    -----
+    A body turns slowly: waves are carried round and Coriolis forces act, both of first order in the angular velocity;
+    stiffening and softening by rotation, of second order, are left out.
     """
 
     kind: ClassVar[str] = "axisymmetric"
@@ -141,6 +155,8 @@ class AxisymmetricBody:
     residual_at: Any = ()
     axis: tuple[float, float, float] = Z
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    turning: float = 0.0
+    turning_history: History = field(default_factory=Constant)
     name: str = ""
 
     def __post_init__(self) -> None:
@@ -161,6 +177,8 @@ class AxisymmetricBody:
             raise ArgumentError("axis", "be a direction, of a length above 0", self.axis)
         object.__setattr__(self, "axis", tuple(one / length + 0.0 for one in axis))
         object.__setattr__(self, "origin", origin)
+        object.__setattr__(self, "turning", finite("turning", self.turning))
+        instance("turning_history", self.turning_history, HISTORIES)
         instance("name", self.name, str)
         object.__setattr__(self, "residual_at", _places(self.residual_at))
         # From here on it has a hash: all fields are as they stay.
@@ -188,7 +206,8 @@ class AxisymmetricBody:
     @property
     def posture(self) -> str:
         """How it stands, in words."""
-        return f"axis along ({', '.join(f'{one:.4g}' for one in self.axis)})"
+        turns = f", turns at {self.turning:.4g} rad/s" if self.turning else ""
+        return f"axis along ({', '.join(f'{one:.4g}' for one in self.axis)}){turns}"
 
     @property
     def axes(self) -> Array:
@@ -258,6 +277,11 @@ class AxisymmetricBody:
         r, theta, z = self._position(position)
         radial, _, axial = self._directions(theta)
         return np.asarray(self.origin + r * radial + z * axial)
+
+    def turning_velocity(self, position: Any) -> Array:
+        """Return the velocity of the material at a point (r, theta, z) by turning alone [m/s], shape (3,)."""
+        r, theta, _ = self._position(position)
+        return np.asarray(self.turning * r * self._directions(theta)[1])
 
     def at(self, position: Any) -> BodyPoint:
         """Return the point at a distance r from the axis [m], an angle theta [rad] and a place z along it [m]."""
@@ -365,16 +389,19 @@ def _families(body: AxisymmetricBody) -> tuple[FourierElements, list[Family]]:
 @lru_cache(maxsize=16)
 def _solution(body: AxisymmetricBody) -> _Solution:
     # How it is damped and stands has no share in its shapes.
-    elements, found = _families(replace(body, damping=0.0, axis=Z, origin=(0.0, 0.0, 0.0), name=""))
+    elements, found = _families(
+        replace(body, damping=0.0, axis=Z, origin=(0.0, 0.0, 0.0), turning=0.0, turning_history=Constant(), name="")
+    )
     rows = [
         (squared, one.kind.order, one.kind.sides[0], index, number)
         for number, one in enumerate(found)
         for index, squared in enumerate(one.squared)
     ]
     rows.sort()
-    numbers, columns, translation, squares = [], [], [], []
+    numbers, columns, translation, squares, lags = [], [], [], [], []
     for column, (squared, order, _, index, number) in enumerate(rows):
         family = found[number]
+        lags.append(_lag(elements, family, index))
         for side in family.kind.sides:
             numbers.append((order, index, side))
             columns.append(column)
@@ -384,7 +411,8 @@ def _solution(body: AxisymmetricBody) -> _Solution:
     angular = np.sqrt(squares)
     rates = np.zeros(angular.size)
     rates[np.isfinite(angular)] = damping_rates(body.damping, angular[np.isfinite(angular)])
-    modes = Modes(angular, rates, np.array(translation).T)
+    turning = _turning(body, np.array(numbers), angular, np.array(lags)[columns]) if body.turning else None
+    modes = Modes(angular, rates, np.array(translation).T, turning=turning)
     solution = _Solution(elements, modes, np.array(numbers), np.array(columns), shapes)
     for array in (modes.angular_frequency, modes.translation, solution.numbers, shapes):
         array.flags.writeable = False
@@ -402,6 +430,26 @@ def _translation(body: AxisymmetricBody, elements: FourierElements, family: Fami
     if family.kind.order == 1:
         return np.asarray(math.pi * (elements.mass @ (u - v)).sum() * body.frame[side])
     return np.zeros(3)
+
+
+def _lag(elements: FourierElements, family: Family, index: int) -> float:
+    """Return by how many radians the waves of a mode lag behind the material for each radian that this turns [1].
+
+    Coriolis forces ``-2 W z x u'`` couple the two modes of a pair by ``2 W g``, ``g = -2 pi integral rho U V r dr dz``.
+    """
+    u, v, _ = family.shapes[:, :, index]
+    return float(-2.0 * math.pi * (u @ (elements.mass @ v))) if family.kind.order else 0.0
+
+
+def _turning(body: AxisymmetricBody, numbers: Array, angular: Array, lags: Array) -> Turning:
+    """Return how the pairs of modes are carried round; the sine of each comes right after its cosine."""
+    first = np.flatnonzero((numbers[:, 0] > 0) & (numbers[:, 2] == 0))
+    order = numbers[first, 0].astype(float)
+    lag = np.where(np.isinf(angular[first]), 0.0, lags[first])
+    if (np.abs(order - lag)[angular[first] == 0.0] > STRAIGHT).any():
+        raise ArgumentError("turning", "be 0 unless something keeps the body from tilting", body.turning)
+    pairs = np.stack([first, first + 1], axis=1).tolist()
+    return Turning(body.turning, pairs, order.tolist(), (order - lag).tolist(), body.turning_history)
 
 
 def _materials(given: Any, regions: tuple[str, ...]) -> Material | tuple[tuple[str, Material], ...]:

@@ -11,10 +11,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, count, instance
+from ..checks import ArgumentError, choice, count, instance
 from .matrix_input import check_finite, numbers, rows_of
 from .modes import Modes
 from .named_points import NamedPoints
+from .turning import Turning
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +38,11 @@ class ModalBody(NamedPoints):
         How many of the columns, the last ones, are residual shapes, of unit stiffness and without mass.
     name : str, optional
         What it is called in records; tells equal bodies apart.
+    turning : Turning, optional
+        How the modes are carried round by a body that turns; they are seen from where it stands.
+    velocities : mapping, optional
+        World components (x, y, z) of the velocity at which its material passes a point [m/s], by the point's name, for
+        bodies that turn.
 
     Raises
     ------
@@ -51,6 +57,8 @@ class ModalBody(NamedPoints):
     translation: Any = None
     residual: int = 0
     name: str = ""
+    turning: Turning | None = None
+    velocities: Mapping[str, Any] | None = None
 
     def __post_init__(self) -> None:
         instance("name", self.name, str)
@@ -75,6 +83,25 @@ class ModalBody(NamedPoints):
         self._set("points", MappingProxyType(points))
         if self.translation is not None:
             self._set("translation", rows_of("translation", self.translation, size, directions))
+        self._check_turning(size)
+
+    def _check_turning(self, size: int) -> None:
+        if self.turning is not None:
+            instance("turning", self.turning, Turning)
+            if max((number for pair in self.turning.pairs for number in pair), default=0) >= size:
+                raise ArgumentError("turning.pairs", f"be numbers of modes, below {size}", self.turning.pairs)
+        given_velocities = {} if self.velocities is None else self.velocities
+        instance("velocities", given_velocities, Mapping)
+        velocities = {}
+        for name, given in given_velocities.items():
+            choice("velocities", name, self.point_names)
+            velocity = numbers(f"velocities[{name!r}]", given)
+            if velocity.shape != (3,) or self.turning is None:
+                raise ArgumentError(f"velocities[{name!r}]", "be three numbers, of a body with turning", given)
+            check_finite(f"velocities[{name!r}]", velocity)
+            velocity.flags.writeable = False
+            velocities[name] = velocity
+        self._set("velocities", MappingProxyType(velocities))
 
     @property
     def is_spatial(self) -> bool:
@@ -115,13 +142,17 @@ class ModalBody(NamedPoints):
         self.modes(held_x)
         return np.asarray(self.points[position])
 
+    def turning_velocity(self, position: str) -> Array:
+        """Return the velocity at which the material of a body that turns passes a point [m/s], shape (3,)."""
+        return np.asarray((self.velocities or {}).get(position, np.zeros(3)))
+
     @cached_property
     def _modes(self) -> Modes:
         further = np.zeros(self.residual)
         size = self.angular_frequency.size + self.residual
         moved = np.zeros((len(self.axes), size)) if self.translation is None else np.asarray(self.translation)
         angular, rates = np.append(self.angular_frequency, further + np.inf), np.append(self.damping_rate, further)
-        return Modes(angular, rates, moved)
+        return Modes(angular, rates, moved, turning=self.turning)
 
     def __eq__(self, other: object) -> bool:
         return type(other) is type(self) and self._content == other._content
@@ -130,14 +161,16 @@ class ModalBody(NamedPoints):
         return hash(self._content)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        given = self.angular_frequency, dict(self.points), self.damping_rate, self.translation, self.residual, self.name
-        return ModalBody, given
+        given = self.angular_frequency, dict(self.points), self.damping_rate, self.translation, self.residual
+        return ModalBody, (*given, self.name, self.turning, dict(self.velocities or {}))
 
     @cached_property
     def _content(self) -> tuple[Any, ...]:
         points = tuple((name, rows.tobytes()) for name, rows in sorted(self.points.items()))
         moved = None if self.translation is None else np.asarray(self.translation).tobytes()
-        return self.angular_frequency.tobytes(), self.damping_rate.tobytes(), points, moved, self.residual, self.name
+        passed = tuple((name, velocity.tobytes()) for name, velocity in sorted((self.velocities or {}).items()))
+        modes = self.angular_frequency.tobytes(), self.damping_rate.tobytes()
+        return *modes, points, moved, self.residual, self.turning, passed, self.name
 
     def _set(self, name: str, value: Any) -> None:
         if isinstance(value, np.ndarray):

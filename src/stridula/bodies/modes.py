@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol, TypeVar, runtime_checkable
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError
+
+if TYPE_CHECKING:
+    from .turning import Turning
 
 
 @dataclass(frozen=True)
@@ -29,12 +32,15 @@ class Modes:
         ``Phi^T M 1``: how a uniform acceleration along world x, y and, in space, z drives each mode [kg^(1/2)].
     damping_matrix : ndarray, shape (modes, modes), optional
         Modal damping matrix ``Phi^T C Phi`` [1/s] where it is not diagonal; `damping_rate` is its diagonal then.
+    turning : Turning, optional
+        How the modes are carried round by a body that turns.
     """
 
     angular_frequency: Array
     damping_rate: Array
     translation: Array
     damping_matrix: Array | None = None
+    turning: Turning | None = None
 
     @property
     def count(self) -> int:
@@ -212,3 +218,9 @@ class BodyPoint:
             return self.position
         named = ((name, getattr(self.body, name).position) for name in self.body.point_names)
         return next((name for name, position in named if position == self.position), None)
+
+    @property
+    def turning_velocity(self) -> Array:
+        """World components of the velocity at which the material of a body that turns passes it [m/s], shape (3,)."""
+        found = getattr(self.body, "turning_velocity", None)
+        return np.zeros(3) if found is None else np.asarray(found(self.position))

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies import BodyPoint, ModalBeam, ModalPlate, Track
+from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, instance, within
 from ..declared import Angle, Distance, Each, Number, OneOrEach, Position, check_declared
 from .coulomb import Coulomb
@@ -22,6 +23,8 @@ from .rigid_track import RigidTrack
 ALONG_AN_AXIS = 1e-15
 # Component along x from which a normal in space counts as along it.
 ALONG_X = 0.9
+# Share along the normal, of the velocity of a surface that turns, that rounding leaves.
+ALONG_SURFACE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -106,6 +109,7 @@ class PointContact:
             if not self.is_spatial:
                 raise ArgumentError(name, "be left out between bodies in the plane: inclination turns it", given)
         self._check_surface()
+        self._check_turning()
         if self.normal is not None and self.inclination:
             raise ArgumentError("inclination", "be 0 where a normal is given", self.inclination)
         if self.tangent is not None and np.linalg.norm(np.cross(*self.frame[:2])) < 0.5:
@@ -118,6 +122,17 @@ class PointContact:
         elif self.rigid_track is not None and self.rigid_track.lateral_velocity:
             words = "be 0 under a body in the plane"
             raise ArgumentError("track.lateral_velocity", words, self.rigid_track.lateral_velocity)
+
+    def _check_turning(self) -> None:
+        for name, point in (("tip", self.tip), ("track", self.touched_point)):
+            if point is None or not point.turning_velocity.any():
+                continue
+            if name == "track" and np.any(self.surface_velocity):
+                raise ArgumentError("surface_velocity", "be 0 against a body that turns", self.surface_velocity)
+            speed = float(np.linalg.norm(point.turning_velocity))
+            if abs(float(self.frame[0] @ point.turning_velocity)) > ALONG_SURFACE * speed:
+                words = f"be square to the velocity at which the body of the {name} turns"
+                raise ArgumentError("normal", words, self.normal)
 
     def _check_surface(self) -> None:
         given = np.atleast_1d(self.surface_velocity)
@@ -133,6 +148,17 @@ class PointContact:
         """Velocities of the touched surface along both tangents [m/s]."""
         first, *others = np.atleast_1d(self.surface_velocity).tolist()
         return first, others[0] if others else 0.0
+
+    @property
+    def turning_velocities(self) -> tuple[tuple[Turning, Array], ...]:
+        """Of each body that turns, how, and how fast it moves the track against the tip along the tangents [m/s]."""
+        found = []
+        for point, sign in ((self.tip, -1.0), (self.touched_point, 1.0)):
+            if point is not None and point.turning_velocity.any():
+                turning = point.body.modes().turning
+                assert turning is not None
+                found.append((turning, sign * self.frame[1:] @ point.turning_velocity[: len(self.frame)]))
+        return tuple(found)
 
     @property
     def is_spatial(self) -> bool:

@@ -12,10 +12,13 @@ from .._kernels import layout as at
 from ..arrays import Array
 from ..assembly import Assembly, ContactRows
 from ..bodies.paths import Path
-from ..checks import ArgumentError
+from ..checks import ArgumentError, at_most
 from ..contact import FrictionLaw
 from .schemes import Scheme
 from .stepping import Stepping
+
+# Phase by which waves may turn in a step [rad].
+MOST_TURNED = 0.5
 
 
 @dataclass(frozen=True)
@@ -131,6 +134,22 @@ class PathModes:
     path: Path
     normal: slice
     tangential: slice
+
+
+@dataclass(frozen=True)
+class TurningBlocks:
+    """The modes of a body that turns.
+
+    Attributes
+    ----------
+    pairs : ndarray of int, shape (pairs, 2)
+        Numbers of the modes of each pair.
+    turns : ndarray, shape (2, pairs)
+        Radians by which each pair, and the material, turns for one of the body.
+    """
+
+    pairs: Array
+    turns: Array
 
 
 @dataclass(frozen=True)
@@ -250,11 +269,14 @@ class Blocks:
         The contacts.
     probes : ProbeBlocks
         The probes.
+    turning : tuple of TurningBlocks
+        The bodies that turn.
     """
 
     modes: Recurrence
     contacts: ContactBlocks
     probes: ProbeBlocks
+    turning: tuple[TurningBlocks, ...] = ()
 
     @cached_property
     def used(self) -> tuple[int, ...]:
@@ -266,4 +288,12 @@ class Blocks:
 def blocks_of(arrays: Assembly, scheme: Scheme, step: float) -> Blocks:
     """Return a system under a scheme as the march reads it."""
     modes = recurrence(arrays, scheme, step)
-    return Blocks(modes, contact_blocks(arrays, modes), probe_blocks(arrays, step))
+    for one in arrays.turning:
+        fastest = abs(one.turning.velocity) * max(one.turning.order)
+        if fastest * step > MOST_TURNED:
+            words = (
+                f"be at most {at_most(MOST_TURNED / fastest)} s: the waves of a body turn by at most {MOST_TURNED} rad"
+            )
+            raise ArgumentError("step", words, step)
+    turning = tuple(TurningBlocks(one.pairs, np.array([one.turning.drag, one.turning.order])) for one in arrays.turning)
+    return Blocks(modes, contact_blocks(arrays, modes), probe_blocks(arrays, step), turning)

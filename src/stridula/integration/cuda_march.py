@@ -63,7 +63,8 @@ class CudaMarch(March):
 
         super().__init__(blocks, states, step, ratio, solve)
         self.cuda, self.threads_per_block = cuda, threads_per_block
-        self.there = [self._moved(part) for part in (self.modes, self.paths, self.contacts, self.carried, self.probes)]
+        parts = self.modes, self.paths, self.contacts, self.turning, self.carried, self.probes
+        self.there = [self._moved(part) for part in parts]
 
     def _moved(self, part: Any) -> Any:
         """Return a tuple of arrays on the card."""
@@ -80,7 +81,7 @@ class CudaMarch(March):
     @property
     def states(self) -> list[State]:
         """Where each run is."""
-        modes, _, _, carried, _ = self.there
+        modes, _, _, _, carried, _ = self.there
         self.modes = self.modes._replace(rows=modes.rows.copy_to_host())
         self.carried = type(carried)(*(array.copy_to_host() for array in carried))
         return super().states
@@ -103,8 +104,8 @@ class CudaMarch(March):
         from .._kernels.cuda import march_each
 
         imposed, filled = self._moved(imposed), self._moved(records)
-        modes, paths, contacts, carried, probes = self.there
-        parts = Parts(self.layout.sizes, self.timing, modes, paths, contacts, carried, imposed, probes, filled)
+        modes, paths, contacts, turning, carried, probes = self.there
+        parts = Parts(self.layout.sizes, self.timing, modes, paths, contacts, turning, carried, imposed, probes, filled)
         grid = -(-self.runs // self.threads_per_block)
         march_each[grid, self.threads_per_block](self.runs, parts)
         for array, output in zip(filled, records, strict=True):

@@ -13,8 +13,9 @@ import numpy as np
 from .._kernels import layout as at
 from .._kernels.block_rows import CONTACTS
 from .._kernels.march import march_one_by_one, march_run, march_runs
-from .._kernels.parts import Carried, Contacts, Modes, Parts, Paths, Probes, Records, Timing
+from .._kernels.parts import Carried, Contacts, Modes, Parts, Paths, Probes, Records, Timing, Turning
 from .._kernels.parts import Imposed as ImposedOnRuns
+from .._kernels.turning import OF_CONTACT
 from .._kernels.vectors import LANES
 from ..arrays import Array
 from ..assembly import Assembly
@@ -33,6 +34,7 @@ from .packing import (
     rows_of,
     scale_of,
     side_by_side,
+    turns_of,
     waves_of,
 )
 
@@ -50,10 +52,13 @@ class Imposed:
         Amplitude of each load, then the imposed displacement, velocity and acceleration.
     motion : ndarray, shape (steps + 2, contacts, motions)
         Motions imposed on each contact, from the step before to the one after.
+    angles : ndarray, shape (steps + 1, bodies)
+        Angles by which bodies turn in each step [rad], from the step before on.
     """
 
     signals: Array
     motion: Array
+    angles: Array
 
 
 def imposed_on(arrays: Assembly, used: Sequence[int], first: int, steps: int, step: float) -> Imposed:
@@ -62,7 +67,8 @@ def imposed_on(arrays: Assembly, used: Sequence[int], first: int, steps: int, st
     signals = np.zeros((steps, len(arrays.signals)))
     for j in used:
         signals[:, j] = arrays.signals[j](times[1:-1], step)
-    return Imposed(signals, arrays.motion(times, step))
+    angles = [one.turning.angles(times, step) for one in arrays.turning]
+    return Imposed(signals, arrays.motion(times, step), np.array(angles).reshape(len(angles), steps + 1).T)
 
 
 class Impositions:
@@ -89,7 +95,7 @@ class Impositions:
     @cached_property
     def _steady(self) -> Imposed:
         imposed = imposed_on(self.arrays, self.used, 0, 1, self.step)
-        return Imposed(imposed.signals, imposed.motion[:1])
+        return Imposed(imposed.signals, imposed.motion[:1], imposed.angles[:1])
 
 
 @dataclass(frozen=True)
@@ -160,6 +166,12 @@ class March:
         )
         self.paths = self._paths(width)
         self.contacts = self._contacts([one.contacts for one in blocks], width)
+        self.turning = Turning(
+            turns_of(self.layout, [one.turning for one in blocks], width),
+            self.layout.turning,
+            columns(aligned(2 * len(first.turning), runs)),
+            columns(aligned(OF_CONTACT * self.contact_count if first.turning else 0, runs)),
+        )
         carried = columns(side_by_side([state.carried.reshape(-1) for state in states]))
         energies = columns(side_by_side([state.energies for state in states]))
         self.carried = Carried(carried, carried.copy(), energies)
@@ -208,6 +220,7 @@ class March:
             side_by_side([one.direct[:, self.used] for one in probes]),
             columns(side_by_side([one.contact.reshape(-1) for one in probes])),
             columns(aligned(self.probe_count, self.runs)),
+            columns(aligned(2 * self.probe_count, self.runs)),
         )
 
     @property
@@ -254,7 +267,10 @@ class March:
             signals = [one[:1] for one in signals]
         if not any(one.any() for one in motions):
             motions = [one[:1] for one in motions]
-        given = ImposedOnRuns(_beside(signals), _beside(motions))
+        angles = _each(lambda one: one.angles, imposed)
+        if all((one == one[0]).all() for one in angles):
+            angles = [one[:1] for one in angles]
+        given = ImposedOnRuns(_beside(signals), _beside(motions), _beside(angles))
         self._march(given, Records(energies, record, raw, stops))
         energies, record = energies.reshape(samples, -1, runs), record.reshape(samples, self.contact_count, -1, runs)
         raw = raw.reshape(steps, -1, runs)
@@ -265,7 +281,7 @@ class March:
 
     def _march(self, imposed: ImposedOnRuns, records: Records) -> None:
         """March through a chunk and fill `records`."""
-        parts = self.modes, self.paths, self.contacts, self.carried, imposed, self.probes, records
+        parts = self.modes, self.paths, self.contacts, self.turning, self.carried, imposed, self.probes, records
         self.kernel(Parts(self.layout.sizes, self.timing, *parts))
 
 

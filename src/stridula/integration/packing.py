@@ -11,12 +11,13 @@ from numba.core import config
 from .._kernels import layout as at
 from .._kernels.block_rows import AMPLITUDE, COMPLIANCE, CONTACTS, NUMBER, WAVE_ROWS
 from .._kernels.parts import Sizes
+from .._kernels.turning import DRAG, TURN_ROWS
 from .._kernels.vectors import LANES
 from .._kernels.waves import WAVE_SET
 from ..arrays import Array
 from ..bodies.paths import Waves
 from ..records.state import State
-from .blocks import Blocks, ContactBlocks, PathModes, Recurrence
+from .blocks import Blocks, ContactBlocks, PathModes, Recurrence, TurningBlocks
 
 # Whether numba has been told to compile nothing.
 PLAIN = bool(config.DISABLE_JIT)  # type: ignore[attr-defined]
@@ -42,6 +43,8 @@ class Layout:
         First block of the path of each contact, -1 for none.
     sets, pairs, numbers : ndarray
         Waves of each contact; sums and differences among them; multiples of the angles, a row a block of waves.
+    turning : ndarray of int, shape (bodies, 2)
+        First block of the pairs of each body that turns, and the one after the last.
     """
 
     sizes: Sizes
@@ -54,6 +57,7 @@ class Layout:
     sets: Array
     pairs: Array
     numbers: Array
+    turning: Array
 
     @property
     def coupled_places(self) -> Array:
@@ -65,7 +69,7 @@ class Layout:
 def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
     """Return where the numbers of runs of the same kind lie, `per_block` of each in a block."""
     contacts, modes = runs[0].contacts, runs[0].modes
-    places = _Places(contacts, modes.coupled, modes.block.shape[1], per_block)
+    places = _Places(contacts, modes.coupled, modes.block.shape[1], per_block, runs[0].turning)
     seen = np.any([one.contacts.rows.any(axis=1) for one in runs], axis=0)
     spans: list[tuple[int, ...]] = []
     first_span = [0]
@@ -102,6 +106,7 @@ def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
         sets,
         pairs,
         numbers,
+        np.array(places.turning, dtype=np.int64).reshape(-1, 2),
     )
 
 
@@ -118,14 +123,18 @@ def _runs_of(numbers: Array) -> Iterator[tuple[int, int]]:
 
 
 class _Places:
-    """Blocks filled one after the other: coupled modes, then the others; those of a path after these, wave by wave."""
+    """Blocks filled one after the other: coupled modes, then the others; then pairs that turn, in two blocks in turns;
+    those of a path last, wave by wave."""
 
-    def __init__(self, contacts: ContactBlocks, coupled: int, count: int, per_block: int) -> None:
+    def __init__(
+        self, contacts: ContactBlocks, coupled: int, count: int, per_block: int, bodies: Sequence[TurningBlocks]
+    ) -> None:
         self.per_block, self.blocks = per_block, 0
         self.block, self.lane = np.zeros((2, count), dtype=np.int64)
         self.path_spans: dict[int, list[tuple[int, ...]]] = {}
         self.pairs: dict[int, dict[tuple[int, int], int]] = {}
         self.waves: list[int] = []
+        self.bodies, self.turning = bodies, list[tuple[int, int]]()
         paths = {_key(along): along for along in contacts.paths if along is not None}
         self._fill(0, coupled, paths)
         self.coupled = self.blocks
@@ -134,12 +143,19 @@ class _Places:
 
     def _fill(self, begin: int, end: int, paths: dict[int, PathModes]) -> None:
         inside = [along for along in paths.values() if begin <= along.normal.start < end]
+        turning = [one.pairs for one in self.bodies if begin <= one.pairs.min() < end]
         others = np.setdiff1d(
-            np.arange(begin, end), [k for along in inside for k in range(along.normal.start, along.tangential.stop)]
+            np.arange(begin, end),
+            [
+                *(k for along in inside for k in range(along.normal.start, along.tangential.stop)),
+                *(k for one in turning for k in one.ravel()),
+            ],
         )
         self.block[others] = self.blocks + np.arange(others.size) // self.per_block
         self.lane[others] = np.arange(others.size) % self.per_block
         self.plain = self._take(-(-others.size // self.per_block), 0)
+        for one in turning:
+            self.plain = self._take_pairs(one)
         for along in inside:
             pairs = self.pairs[_key(along)] = {}
             first, along_count = first_multiple(along), along_blocks(along, self.per_block)
@@ -157,6 +173,15 @@ class _Places:
     def _take(self, blocks: int, wave: int) -> int:
         self.blocks += blocks
         self.waves += [wave] * blocks
+        return self.blocks
+
+    def _take_pairs(self, modes: Array) -> int:
+        """Put pairs of modes, shape (pairs, 2), into blocks in turns and return the block after the last."""
+        first, number = self.blocks, np.arange(len(modes))
+        for side in (0, 1):
+            self.block[modes[:, side]] = first + 2 * (number // self.per_block) + side
+            self.lane[modes[:, side]] = number % self.per_block
+        self.turning.append((first, self._take(2 * -(-len(modes) // self.per_block), 0)))
         return self.blocks
 
     def _take_group(
@@ -318,6 +343,16 @@ def compliance_in_blocks(compliances: Sequence[Array], sizes: Sizes, width: int)
     for run, compliance in enumerate(compliances):
         for first in (COMPLIANCE, COMPLIANCE + size):
             out[block[:, None], first + np.arange(size)[None, :], (lane + run)[:, None]] = compliance
+    return out
+
+
+def turns_of(where: Layout, bodies: Sequence[Sequence[TurningBlocks]], width: int) -> Array:
+    """Return how far the pairs of bodies of each run turn, and room for the turns, shape (blocks, rows, width)."""
+    blocks = where.sizes.blocks if len(where.turning) else 0
+    out = aligned(blocks, TURN_ROWS * width).reshape(blocks, TURN_ROWS, width)
+    for run, own in enumerate(bodies):
+        for one in own:
+            out[where.block[one.pairs[:, 0]], DRAG : DRAG + 2, where.lane[one.pairs[:, 0]] + run] = one.turns.T
     return out
 
 

@@ -73,10 +73,17 @@ class _Start:
         gaps = np.array([_gap(*pair, arrays, terms) for pair in zip(arrays.contacts, self.rows, strict=True)])
         self.first = np.flatnonzero(arrays.firsts)[arrays.contact_numbers]
         self.gaps = gaps[self.first]
+        self.velocity = arrays.velocity.copy()
+        for one in arrays.turning:
+            # Increments are those of pairs that are carried round.
+            rate = float(one.turning.rate(times[1:2])[0]) * np.array(one.turning.drag)
+            first, second = one.pairs.T
+            self.velocity[first] += rate * arrays.position[second]
+            self.velocity[second] -= rate * arrays.position[first]
 
     def increment(self, force: Array) -> Array:
         """Return the increment before the start of motion under constant modal forces."""
-        return self.stepping.first_increment(self.step, self.arrays.position, self.arrays.velocity, force)
+        return self.stepping.first_increment(self.step, self.arrays.position, self.velocity, force)
 
     @cached_property
     def speeds(self) -> Array:
@@ -145,7 +152,10 @@ class _Start:
 
     def forces(self, closed: Array, first: Array, carried: Array, solve: GaussSeidel) -> Array:
         """Return the normal and the tangential force of closed contacts, shape (closed, 2)."""
-        gap, slip = self._at_first_step(self.modes.free(self.arrays.position, first) + self.factors @ self.modes.loads)
+        around, beyond = self._turned(self.arrays.position)
+        free = self.modes.free(self.arrays.position + around, first + self._turned(first)[0])
+        gap, slip = self._at_first_step(free + self.factors @ self.modes.loads)
+        gap, slip = gap + self.rows[:, 0] @ around, slip + self.rows[:, 1] @ beyond
         compliance = self._compliance(self.pushes(closed))
         codes, laws = self.contacts.codes[closed], self.contacts.laws[closed]
         ratios = self._known_ratios(carried)[closed]
@@ -163,6 +173,15 @@ class _Start:
         forces = forces_of(gap[closed], slip[closed], compliance, (codes, laws), carried[closed], self.step, solve)
         forces[:, 1] = np.where(np.isfinite(ratios), ratios * forces[:, 0], forces[:, 1])
         return forces
+
+    def _turned(self, modal: Array) -> tuple[Array, Array]:
+        """Return what turning adds to numbers of the modes in the first step, and what of it the material does not."""
+        around, passed = np.zeros((2, modal.size))
+        for one in self.arrays.turning:
+            angle = float(one.turning.angles(np.array([0.0, self.step]), self.step)[0])
+            around += one.turned(modal, angle * np.array(one.turning.drag))
+            passed += one.turned(modal, angle * np.array(one.turning.order))
+        return around, around - passed
 
     def _at_first_step(self, increments: Array) -> tuple[Array, Array]:
         """Return gaps and slips after the first step, without contact force, where the tips are then."""

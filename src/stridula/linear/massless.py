@@ -91,5 +91,7 @@ def _first_order(motion: Vibration, split: _Split) -> tuple[Array, Array]:
     pulls = split.with_mass.T @ (pulls + motion.stiffness @ split.light @ followed)
     first[velocities] = -np.linalg.solve(mass, pulls)
     first[own, velocities] = motion.from_velocity @ heavy
+    first[own, :elastic] = motion.from_displacement @ heavy[:, rigid:]
     first[own, own] = np.diag(motion.state)
+    first[own] += motion.from_displacement @ split.light @ followed
     return first, followed

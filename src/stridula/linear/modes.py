@@ -51,7 +51,7 @@ def round_off(structure: Structure) -> float:
 
 def _moving_stiffness(structure: Structure) -> Array:
     """Return the stiffness of each mode that has a mass [1/s²]."""
-    return np.diag(structure.stiffness)[structure.mass > 0.0]
+    return np.maximum(np.diag(structure.stiffness)[structure.mass > 0.0], 0.0)
 
 
 def _chosen(structure: Structure, motion: Vibration, modes: int | None, near: float) -> Exponents:

@@ -72,7 +72,9 @@ class Structure:
     lines : list of ContactLine
         One for each contact.
     stiffness, damping : ndarray, shape (modes, modes)
-        Stiffness [1/s²] and damping matrix [1/s].
+        Stiffness [1/s²] and damping matrix [1/s]; of bodies that turn with what is carried round and Coriolis forces.
+    passing : ndarray, shape (modes, modes)
+        Velocities of the material for unit displacements where bodies turn [1/s], beyond those of the modes.
     mass : ndarray, shape (modes,)
         Modal masses: 1, but 0 of residual shapes.
     rigid : ndarray, shape (modes, motions)
@@ -106,12 +108,28 @@ class Structure:
         self.damping[:size, :size] = arrays.dissipation
         self.mass = np.where(arrays.massless, 0.0, 1.0)
         self.rigid = _rigid_motions(self)
+        self.passing = self._turn(now)
         factors = np.array([signal(now, 1e-6)[0] for signal in arrays.signals[: len(arrays.loads)]])
         self.load = factors @ arrays.loads
         moved = arrays.motion(np.array([settled]), 1e-6)[0, arrays.firsts, 2]
         self.gaps = moved + [contact.gap for contact in system.contacts]
         if time is None:
             self._check_steady()
+
+    def _turn(self, now: Array) -> Array:
+        """Let bodies turn at the velocities of a time, and return how fast their material passes.
+
+        With a momentum ``p = q' + G q`` of each pair, ``p' + G p + damping p + stiffness q = f``.
+        """
+        passing, carried = np.zeros((2, self.mode_count, self.mode_count))
+        for one in self.arrays.turning:
+            rate, (first, second) = float(one.turning.rate(now)[0]), one.pairs.T
+            for matrix, factor in ((passing, one.turning.order), (carried, one.turning.drag)):
+                matrix[first, second], matrix[second, first] = rate * np.array(factor), -rate * np.array(factor)
+        carried *= self.mass
+        self.stiffness = self.stiffness + carried @ carried + self.damping @ carried
+        self.damping = self.damping + 2.0 * carried
+        return passing
 
     @property
     def mode_count(self) -> int:
@@ -266,6 +284,9 @@ def settled_time(system: System) -> float:
     for number, drive in enumerate(system.drives):
         if hasattr(drive, "history"):
             histories.append((f"drives[{number}]", drive.history))
+    for body in system.bodies:
+        if getattr(body, "turning_history", None) is not None:
+            histories.append((f"the turning of {system.body_name(body)}", body.turning_history))
     for name, contact in zip(system.contact_names, system.contacts, strict=True):
         if contact.rigid_track is not None:
             histories += [(f"the track of {name}", history) for history in _varying(contact.rigid_track, name)]
@@ -356,6 +377,9 @@ def _prescribed_rates(contact: PointContact, system: System, now: Array) -> tupl
         held -= float(system.is_held(contact.touched_point.body))
     slips = [held * tangent[0] * root for tangent in tangents]
     slips = [slip - speed for slip, speed in zip(slips, contact.surface_velocities, strict=False)]
+    for turning, passing in contact.turning_velocities:
+        factor = float(turning.history.factor(now)[0])
+        slips = [slip - factor * speed for slip, speed in zip(slips, passing.tolist(), strict=True)]
     opening = held * normal[0] * root
     if contact.rigid_track is not None:
         speeds = [contact.rigid_track.speed(now)[0], contact.rigid_track.lateral_speed(now)[0]]

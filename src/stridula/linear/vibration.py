@@ -13,9 +13,10 @@ import scipy.sparse
 import scipy.sparse.linalg
 
 from ..arrays import Array
+from ..checks import ArgumentError
 from ..contact.linearised import Linearised
 from .equilibrium import Equilibrium, held_rows
-from .structure import SLIDING, Structure
+from .structure import SLIDING, STICKING, Structure
 
 # Relative imaginary part that rounding gives to a real exponent.
 ROUND_OFF = 1e-9
@@ -29,7 +30,8 @@ class Vibration:
 
     ::
 
-        mass q'' + damping q' + stiffness q + by_state z = pushes^T m,    held q = 0,    z' = from_velocity q' + state z
+        mass q'' + damping q' + stiffness q + by_state z = pushes^T m,    held q = 0,
+        z' = from_velocity q' + from_displacement q + state z
 
     Attributes
     ----------
@@ -39,7 +41,7 @@ class Vibration:
         With what friction and the shift of contact points add.
     held, pushes : ndarray, shape (constraints, modes)
         Rows that contacts hold, and how the forces that hold them act.
-    by_state, from_velocity : ndarray, shape (modes, states), (states, modes)
+    by_state, from_velocity, from_displacement : ndarray, shape (modes, states), (states, modes) twice
         How states act, and how motion moves them.
     state : ndarray, shape (states,)
         How each moves itself [1/s].
@@ -55,6 +57,7 @@ class Vibration:
     pushes: Array
     by_state: Array
     from_velocity: Array
+    from_displacement: Array
     state: Array
     free: Array
 
@@ -66,7 +69,7 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
     gap changes with its slope, and the contact forces act on other points of it.
     """
     stiffness, damping = structure.stiffness.copy(), structure.damping.copy()
-    share = equilibrium.sense * equilibrium.ratio
+    share, passing = equilibrium.sense * equilibrium.ratio, structure.passing
     held, pushes, closed, stuck = held_rows(structure, equilibrium.status, share)
     held, answers = held.copy(), []
     for row, k in enumerate(closed):
@@ -77,19 +80,27 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
             stiffness += np.outer(normal * line.normal_slope - tangential * line.tangent_slope, line.along)
         slip = line.tangent - (line.tangent_slope @ shape) * line.along
         if k in stuck:
+            if (slip @ passing).any():
+                name = structure.system.contact_names[k]
+                raise ArgumentError(
+                    "status", f"not let {name} stick to a body that turns: it is carried away", STICKING
+                )
             held[len(closed) + stuck.index(k)] = slip
         law = structure.system.contacts[k].friction
         if equilibrium.slip_velocity[k] and equilibrium.status[k] == SLIDING:
             # Across the slip friction turns with it.
             turning = equilibrium.ratio[k] * normal / abs(float(equilibrium.slip_velocity[k]))
             damping += turning * np.outer(line.across, line.across)
+            stiffness += turning * np.outer(line.across, line.across @ passing)
         if equilibrium.slip_velocity[k] and law.depends_on_speed:
             near = law.linearised_at(abs(float(equilibrium.slip_velocity[k])))
             damping += normal * near.slope * np.outer(line.tangent, slip)
+            stiffness += normal * near.slope * np.outer(line.tangent, slip @ passing)
             answers.append((near, equilibrium.sense[k], normal, line.tangent, slip))
     by_state, from_velocity, state = _states(answers, structure)
     free = structure.free_motions(held)
-    return Vibration(structure.mass, stiffness, damping, held, pushes, by_state, from_velocity, state, free)
+    moved = from_velocity, from_velocity @ passing
+    return Vibration(structure.mass, stiffness, damping, held, pushes, by_state, *moved, state, free)
 
 
 def _states(
@@ -156,6 +167,7 @@ def _first_order(motion: Vibration) -> tuple[Array, Array]:
     first[velocities, velocities] = -answer @ motion.damping @ basis
     first[velocities, own] = -answer @ motion.by_state
     first[own, velocities] = motion.from_velocity @ basis
+    first[own, :elastic] = motion.from_displacement @ basis[:, rigid:]
     first[own, own] = np.diag(motion.state)
     return basis, first
 
@@ -170,6 +182,7 @@ def nearest_exponents(motion: Vibration, count: int, shift: complex) -> Exponent
     stiffness = motion.stiffness - (motion.stiffness @ motion.free) @ motion.free.T
     inner = 1.0 / (motion.state - shift)
     moving = motion.damping - motion.by_state @ (inner[:, None] * motion.from_velocity)
+    stiffness = stiffness - motion.by_state @ (inner[:, None] * motion.from_displacement)
     solve = _bordered(stiffness + shift * moving + shift**2 * np.diag(motion.mass), motion)
 
     def still(place: Array) -> Array:
@@ -180,7 +193,8 @@ def nearest_exponents(motion: Vibration, count: int, shift: complex) -> Exponent
         right = -motion.mass * (speed + shift * place) - moving @ place - motion.by_state @ (inner * own)
         moved = solve(right)
         velocity = place + shift * moved
-        return np.concatenate([still(moved), velocity, inner * (own - motion.from_velocity @ velocity)])
+        driven = motion.from_velocity @ velocity + motion.from_displacement @ moved
+        return np.concatenate([still(moved), velocity, inner * (own - driven)])
 
     size = 2 * modes + states
     operator = scipy.sparse.linalg.LinearOperator((size, size), matvec=inverse, dtype=complex)

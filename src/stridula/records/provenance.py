@@ -14,6 +14,7 @@ import tomli_w
 from ..arrays import Array
 from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalBody
 from ..bodies.damping import DampingLaw
+from ..bodies.turning import Turning
 from ..connections import ends
 from ..contact import PointContact
 from ..drives import Drive
@@ -185,8 +186,20 @@ def _modes_table(body: Any, points: Sequence[BodyPoint]) -> dict[str, Any]:
         "points": {name: _value(one) for name, one in rows.items()},
         "translation": _value(modes.translation),
         "residual": int(modes.massless.sum()),
+        **_turning(modes.turning, {point.label: point for point in points if point.body == body}),
         "name": body.name,
     }
+
+
+def _turning(turning: Turning | None, points: dict[str, BodyPoint]) -> dict[str, Any]:
+    """Return how a body turns and how fast it passes its points, nothing if it does not."""
+    if turning is None:
+        return {}
+    table = _plain(turning, "history")
+    if turning.history.kind != Constant.kind:
+        table["history"] = _history(turning.history)
+    velocities = {name: _value(point.turning_velocity) for name, point in points.items()}
+    return {"turning": table, "velocities": velocities}
 
 
 def _points_in(system: System) -> list[BodyPoint]:

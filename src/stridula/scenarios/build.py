@@ -26,6 +26,7 @@ from ..bodies import (
 from ..bodies.damping import DAMPING_LAWS
 from ..bodies.ordinary import NotOrdinary
 from ..bodies.sections import SECTIONS
+from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, listed, suggestion
 from ..contact import LAWS, PointContact, RigidTrack
 from ..disk import is_there
@@ -171,6 +172,8 @@ class Builder:
             with self._within(*path):
                 return PointMass(**table)
             return None
+        if table.get("turning") is not None:
+            table["turning"] = self._turning((*path, "turning"), dict(table["turning"]))
         if kind in OF_SPACE:
             with self._within(*path):
                 return OF_SPACE[kind](**{name: value for name, value in table.items() if value is not None})
@@ -300,6 +303,14 @@ class Builder:
             self.problems.append(f"{self.words((*path, 'body'))} must be a finite-element beam, whose root is driven")
             return None
         return body.root
+
+    def _turning(self, path: Place, table: Tables) -> Turning | None:
+        history = table.pop("history", None)
+        with self._within(*path):
+            if history is not None:
+                table["history"] = self._history((*path, "history"), history)
+            return Turning(**table)
+        return None
 
     def _history(self, path: Place, table: Tables) -> Any:
         values = {name: value for name, value in table.items() if name != "kind"}

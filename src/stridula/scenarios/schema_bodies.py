@@ -11,6 +11,7 @@ from ..bodies.sections import SECTIONS
 from . import fields as is_
 from .derived import Keys, one_of, table_of
 from .fields import Table
+from .schema_drives import History
 
 KINDS = "finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"
 OWN_NAME = "what it is called in records, the table's own name if left out"
@@ -106,6 +107,19 @@ class Rigid(Table):
     """what it is called in records, the table's own name if left out"""
 
 
+class Turning(Table):
+    velocity: is_.AngularVelocity
+    """angular velocity about the axis [rad/s]"""
+    pairs: is_.Rows
+    """numbers of the two modes of each pair"""
+    order: is_.Vector
+    """number of waves round the axis of each pair"""
+    drag: is_.Vector
+    """phase by which the waves of each pair turn for one radian of the body"""
+    history: History | None = None
+    """factor on the velocity over time, constant if left out"""
+
+
 class Modal(Table):
     kind: Literal["modal body"]
     """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
@@ -119,6 +133,10 @@ class Modal(Table):
     """rows that say how an acceleration along x, y and z drives each mode; gravity and initial velocities need it"""
     residual: int = 0
     """number of residual shapes, the last columns of the rows"""
+    turning: Turning | None = None
+    """how the modes are carried round by a body that turns"""
+    velocities: is_.PlaceTable | None = None
+    """velocities of the material of a body that turns along x, y and z, by the name of the point [m/s]"""
     name: str = ""
     """what it is called in records, the table's own name if left out"""
 

@@ -17,6 +17,7 @@ from . import (
     space,
     stability,
     strings,
+    turning,
 )
 from .case import Case
 
@@ -32,6 +33,7 @@ CASES: tuple[Case, ...] = (
     *plates.CASES,
     *strings.CASES,
     *space.CASES,
+    *turning.CASES,
     *orders.CASES,
     *radiation.CASES,
     *sensations.CASES,

@@ -1,0 +1,174 @@
+"""Bodies that turn: before each step pairs of modes are carried round, and what passes contacts, loads and probes.
+
+The cosine modes of as many pairs as a block has room for lie in one block, their sines in the next. A pair turns by its
+drag times the angle of the body in a step, the material by its order times that angle. Angles are small: a turn ``A``
+comes as ``A - 1``, so that nothing is lost in the difference.
+"""
+
+import numba
+
+from . import layout as at
+from .block_rows import CONTACTS, INCREMENT, POSITION, PUSH, D, Q
+from .bookkeeping import add
+from .lanes import anywhere, fused, held, hold, load, magnitude, read, store
+from .modes import OPTIONS, PASTED, product
+
+# Of a block: drag and order; one less the cosine, and the sine, of the turn of the pairs in this step and in the last,
+# and of that of the material in both.
+DRAG, ORDER, VERSINE, SINE, LAST_VERSINE, LAST_SINE, PASSED_VERSINE, PASSED_SINE, MET_VERSINE, MET_SINE = range(10)
+TURN_ROWS = 10
+# Of a body that turns: its first block and the one after the last.
+BEGIN, END = range(2)
+# Of a contact in a step: half the rise of the gap in the last two steps, and half the advance of the slip, that turning
+# gives beyond what the modes move by.
+RISE, ADVANCE = range(2)
+OF_CONTACT = 2
+
+
+@numba.njit(**OPTIONS)
+def small_turn(angle):
+    """Return one less the cosine, and the sine, of an angle up to half a radian, by their series."""
+    z = angle * angle
+    s = 1.0 - z / 156.0 * (1.0 - z / 210.0)
+    s = 1.0 - z / 20.0 * (1.0 - z / 42.0 * (1.0 - z / 72.0 * (1.0 - z / 110.0 * s)))
+    v = 1.0 - z / 90.0 * (1.0 - z / 132.0 * (1.0 - z / 182.0))
+    v = 0.5 * z * (1.0 - z / 12.0 * (1.0 - z / 30.0 * (1.0 - z / 56.0 * v)))
+    return v, angle * (1.0 - z / 6.0 * s)
+
+
+@numba.njit(**OPTIONS)
+def set_turns(turns, begin, end, angle, last, run):
+    """Put the turns of a body's pairs and of its material by an angle in this step and another one in the last."""
+    for k in range(begin, end, 2):
+        drag, order = load(turns, k, DRAG, run), load(turns, k, ORDER, run)
+        for factor, by, row in (
+            (drag, angle, VERSINE),
+            (drag, last, LAST_VERSINE),
+            (order, angle, PASSED_VERSINE),
+            (order, last, MET_VERSINE),
+        ):
+            versine, sine = small_turn(factor * by)
+            store(turns, k, row, run, versine)
+            store(turns, k, row + 1, run, sine)
+
+
+@numba.njit(**OPTIONS)
+def carry_round(rows, turns, begin, end, run):
+    """Carry pairs round; put half the rise, half the advance, and the passing of the material for units of the modes.
+
+    With turns ``A`` of this step, ``L`` of the last, those of the material ``R`` and ``S``, and ``x = q - d``:
+    ``[(A - 1) + (1 - L^-1)] x / 2``, ``[(A - R) q + (1 - S L^-1) x - (A - 1) d] / 2`` and ``(R - 1) q``.
+    """
+    for k in range(begin, end, 2):
+        v, s = load(turns, k, VERSINE, run), load(turns, k, SINE, run)
+        lv, ls = load(turns, k, LAST_VERSINE, run), load(turns, k, LAST_SINE, run)
+        rv, rs = load(turns, k, PASSED_VERSINE, run), load(turns, k, PASSED_SINE, run)
+        mv, ms = load(turns, k, MET_VERSINE, run), load(turns, k, MET_SINE, run)
+        # S L^-1 turns by the sine and cosine of the difference.
+        bv, bs = mv + lv - fused(mv, lv, ms * ls), ms - ls - fused(ms, lv, -mv * ls)
+        q, p, d, e = load(rows, k, Q, run), load(rows, k + 1, Q, run), load(rows, k, D, run), load(rows, k + 1, D, run)
+        x, y = q - d, p - e
+        along, across = -fused(v, d, s * e), fused(s, d, -v * e)
+        store(rows, k, POSITION, run, 0.5 * fused(lv - v, x, -(s + ls) * y))
+        store(rows, k + 1, POSITION, run, 0.5 * fused(s + ls, x, (lv - v) * y))
+        first = fused(rv - v, q, (rs - s) * p) + fused(bv, x, bs * y)
+        second = fused(rv - v, p, -(rs - s) * q) + fused(bv, y, -bs * x)
+        store(rows, k, INCREMENT, run, 0.5 * (first - along))
+        store(rows, k + 1, INCREMENT, run, 0.5 * (second - across))
+        store(rows, k, PUSH, run, -fused(rv, q, rs * p))
+        store(rows, k + 1, PUSH, run, fused(rs, q, -rv * p))
+        store(rows, k, Q, run, q - fused(v, q, s * p))
+        store(rows, k + 1, Q, run, p + fused(s, q, -v * p))
+        store(rows, k, D, run, d + along)
+        store(rows, k + 1, D, run, e + across)
+
+
+@numba.njit(**OPTIONS)
+def look_ahead(rows, turns, begin, end, run):
+    """Put how turning alone has moved pairs in the last step and does in this, and what that adds to work of loads.
+
+    ``(1 - L^-1) x``, ``(A - 1) q`` and ``(A - 1) (q - d / 2)``.
+    """
+    for k in range(begin, end, 2):
+        v, s = load(turns, k, VERSINE, run), load(turns, k, SINE, run)
+        lv, ls = load(turns, k, LAST_VERSINE, run), load(turns, k, LAST_SINE, run)
+        q, p, d, e = load(rows, k, Q, run), load(rows, k + 1, Q, run), load(rows, k, D, run), load(rows, k + 1, D, run)
+        x, y = q - d, p - e
+        store(rows, k, POSITION, run, fused(lv, x, -ls * y))
+        store(rows, k + 1, POSITION, run, fused(ls, x, lv * y))
+        store(rows, k, INCREMENT, run, -fused(v, q, s * p))
+        store(rows, k + 1, INCREMENT, run, fused(s, q, -v * p))
+        half, other = q - 0.5 * d, p - 0.5 * e
+        store(rows, k, PUSH, run, -fused(v, half, s * other))
+        store(rows, k + 1, PUSH, run, fused(s, half, -v * other))
+
+
+@numba.njit(**PASTED)
+def turn_loads_and_probes(parts, begin, end, run, zero):
+    """Take off the work of loads what turning alone would add, and keep for the probes what it adds."""
+    sizes, rows, probes = parts.sizes, parts.modes.rows, parts.probes
+    first = CONTACTS + 2 * sizes.contacts + sizes.loads
+    for j in range(sizes.loads):
+        add(parts.modes.given, j, run, product(rows, first + j, PUSH, begin, end, run, zero), zero)
+    first += sizes.loads
+    for p in range(probes.kinds.size):
+        if probes.kinds[p] != at.DISPLACEMENT and begin < probes.spans[p, 1] and probes.spans[p, 0] < end:
+            hold(probes.passing, 2 * p, run, product(rows, first + p, POSITION, begin, end, run, zero))
+            hold(probes.passing, 2 * p + 1, run, product(rows, first + p, INCREMENT, begin, end, run, zero))
+
+
+@numba.njit(**PASTED)
+def turn_contacts(parts, begin, end, first_body, run, zero):
+    """Keep what turning does to the contacts; their anchors are carried along with the material."""
+    rows, carried, of_contacts = parts.modes.rows, parts.state.carried, parts.turning.contacts
+    for i in range(parts.sizes.contacts):
+        row, here, base = CONTACTS + 2 * i, i * OF_CONTACT, i * at.CARRIED
+        rise = product(rows, row, POSITION, begin, end, run, zero)
+        advance = product(rows, row + 1, INCREMENT, begin, end, run, zero)
+        passed = product(rows, row + 1, PUSH, begin, end, run, zero)
+        if not first_body:
+            rise += held(of_contacts, here + RISE, run, zero)
+            advance += held(of_contacts, here + ADVANCE, run, zero)
+        hold(of_contacts, here + RISE, run, rise)
+        hold(of_contacts, here + ADVANCE, run, advance)
+        add(carried, base + at.MATERIAL, run, passed, zero)
+        add(carried, base + at.ANCHOR, run, passed, zero)
+        add(parts.contacts.sums, i * at.SUMS + at.FIRST_MATERIAL, run, passed, zero)
+
+
+@numba.njit(**PASTED)
+def turn_bodies(parts, n, run, runs, zero):
+    """Carry the pairs of all bodies that turn round by their angles in step `n`."""
+    turning, angles = parts.turning, parts.imposed.angles
+    if turning.spans.shape[0] == 0:
+        return
+    for b in range(turning.spans.shape[0]):
+        begin, end, column = turning.spans[b, BEGIN], turning.spans[b, END], b * runs + run
+        now = n + 1 if angles.shape[0] > 1 else 0
+        angle, last = read(angles, now, column, zero), read(angles, n if angles.shape[0] > 1 else 0, column, zero)
+        changed = magnitude(angle - held(turning.turned, 2 * b, run, zero))
+        changed += magnitude(last - held(turning.turned, 2 * b + 1, run, zero))
+        if anywhere(changed > 0.0):
+            set_turns(turning.rows, begin, end, angle, last, run)
+            hold(turning.turned, 2 * b, run, angle)
+            hold(turning.turned, 2 * b + 1, run, last)
+        if parts.sizes.loads or parts.probes.kinds.size:
+            look_ahead(parts.modes.rows, turning.rows, begin, end, run)
+            turn_loads_and_probes(parts, begin, end, run, zero)
+        carry_round(parts.modes.rows, turning.rows, begin, end, run)
+        turn_contacts(parts, begin, end, b == 0, run, zero)
+
+
+@numba.njit(**PASTED)
+def credit_turning(parts, run, zero):
+    """Credit what turning gives through the forces of the contacts in this step."""
+    now, of_contacts, energies = parts.contacts.now, parts.turning.contacts, parts.state.energies
+    if parts.turning.spans.shape[0] == 0:
+        return
+    for i in range(parts.sizes.contacts):
+        normal = held(now, i * at.IN_STEP + at.NORMAL_NOW, run, zero)
+        tangential = held(now, i * at.IN_STEP + at.TANGENTIAL_NOW, run, zero)
+        driven = tangential * held(of_contacts, i * OF_CONTACT + ADVANCE, run, zero)
+        driven -= normal * held(of_contacts, i * OF_CONTACT + RISE, run, zero)
+        add(energies, at.CONTACT_WORK, run, -driven, zero)
+        add(energies, at.DRIVE_WORK, run, driven, zero)
