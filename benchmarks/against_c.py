@@ -59,7 +59,7 @@ class Pair:
     def ours(self) -> tuple[Callable[[], None], Callable[[], Result]]:
         """Return the march of the package, and what it gives."""
         march = March([self.blocks], [deepcopy(self.state)], self.step, RATIO)
-        imposed = Imposed(np.array([[1.0, 0.0, 0.0, 0.0]]), np.zeros((1, 1, at.MOTIONS)))
+        imposed = Imposed(np.array([[1.0, 0.0, 0.0, 0.0]]), np.zeros((1, 1, at.MOTIONS)), np.zeros((1, 0)))
         chunks = []
 
         def run() -> None:

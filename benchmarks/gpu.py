@@ -92,7 +92,7 @@ def cases(frictions: Iterable[float], angles: Iterable[float], step: float) -> I
         blocks = blocks_of(arrays, scheme, step)
         state = state_at_start(arrays, scheme, step, blocks, st.GaussSeidel())
         whole = imposed_on(arrays, blocks.used, 0, 1, step)
-        imposed = Imposed(whole.signals[:1], whole.motion[:1])
+        imposed = Imposed(whole.signals[:1], whole.motion[:1], whole.angles[:1])
         for friction in frictions:
             laws = blocks.contacts.laws.copy()
             laws[0, 0] = friction

@@ -168,7 +168,7 @@ def case_of(system: st.System, step: float, steps: int = 1) -> Case:
     arrays = assemble(system, [])
     blocks = blocks_of(arrays, SCHEME, step)
     whole = imposed_on(arrays, blocks.used, 0, steps, step)
-    imposed = Imposed(whole.signals, whole.motion[:1]) if steps == 1 else whole
+    imposed = Imposed(whole.signals, whole.motion[:1], whole.angles[:1]) if steps == 1 else whole
     return Case(blocks, state_at_start(arrays, SCHEME, step, blocks, st.GaussSeidel()), imposed)
 
 
