@@ -11,10 +11,11 @@ import xarray as xr
 
 from ..checks import ArgumentError
 from ..scenarios.read import read_tables
+from ..studies.computed import SweepProgress, Watcher
 from ..studies.machines import client_of
 from ..studies.measures import asked_for
 from ..studies.points import Grid
-from ..studies.sweeps import SweepProgress, Watcher, sweep
+from ..studies.sweeps import sweep
 from ..studies.swept import failures, usual_failure
 from .bars import bar
 from .exits import FAILED, INTERRUPTED, Stopped

@@ -10,7 +10,7 @@ _HOME = {
     "Grid": "points",
     "LatinHypercube": "points",
     "Range": "points",
-    "SweepProgress": "sweeps",
+    "SweepProgress": "computed",
     "Target": "calibration",
     "agreement": "verdicts",
     "calibrate": "calibration",
