@@ -20,6 +20,7 @@ _HOME = {
     "root_loci": "loci",
     "sensitivity": "sobol",
     "share_of": "ensembles",
+    "squeal_survey": "surveys",
     "sweep": "sweeps",
 }
 __all__ = [*_HOME]

@@ -19,7 +19,7 @@ from ..checks import ArgumentError, count
 from .machines import on_machines
 from .parts import Parts
 from .processes import Helpers
-from .task import Outcome, Work, one_thread_each
+from .task import Outcome, Stopped, Work, one_thread_each
 
 
 @dataclass(frozen=True)
@@ -149,10 +149,6 @@ def computed(
     return whole
 
 
-class _Stopped(Exception):
-    """A part that was stopped because the study was."""
-
-
 def _here(
     work: Work, parts: Mapping[int, Sequence[Sequence[Any]]], workers: int | None
 ) -> Generator[tuple[int, list[Outcome]]]:
@@ -168,7 +164,7 @@ def _here(
 
     def watch() -> None:
         if stop.is_set():
-            raise _Stopped
+            raise Stopped
 
     pool, helpers = ThreadPoolExecutor(threads), Helpers(work, len(parts), threads)
     try:

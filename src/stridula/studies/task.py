@@ -21,6 +21,10 @@ NOT_BUILT, NOT_STARTED, NOT_SIMULATED, NOT_MEASURED = "not built", "not started"
 Outcome = dict[str, Any]
 
 
+class Stopped(Exception):
+    """A part that was stopped because its study was."""
+
+
 class Work(Protocol):
     """What is done at each point of a study; it goes to other processes and machines as it is."""
 
@@ -132,10 +136,10 @@ def _alike(scenarios: dict[int, Scenario], options: Callable[[Scenario], dict[st
 
 @contextmanager
 def failing(outcome: Outcome, ended: str) -> Iterator[None]:
-    """Keep what fails as the outcome of a point. Memory that runs out says nothing about it."""
+    """Keep what fails as the outcome of a point. Memory that runs out, or a stop, says nothing about it."""
     try:
         yield
-    except MemoryError:
+    except (MemoryError, Stopped):
         raise
     except Exception as error:
         outcome["ended"], outcome["message"] = ended, message_of(error)
