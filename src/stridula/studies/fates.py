@@ -26,6 +26,8 @@ from .tones_of_modes import Tone, tones_of
 LIVES, JOINS, CHANGES, DIES = "lives", "joins", "changes", "dies"
 NOT_REACHED, LEFT, FAILED = "not reached", "off the track", "failed"
 FATES = (LIVES, JOINS, CHANGES, DIES, NOT_REACHED, LEFT, FAILED)
+# Those that end in a vibration.
+VIBRATES = (LIVES, JOINS, CHANGES)
 # Periods of the mode in the window over which a limit cycle is measured, and its shortest length [s].
 PERIODS, SHORTEST_WINDOW = 100.0, 0.1
 # Times 1 / growth in which a limit cycle settles once contacts open, stick or slip.

@@ -66,12 +66,11 @@ class SurveyTask:
         """Put into an outcome what linear theory has, and what comes of its modes."""
         system, start = without_start(scenario.system, self.options.velocity)
         kind, status = equilibrium_at_start(system, start)
-        outcome["values"] = {"equilibrium": kind, "unstable_modes": 0.0, "modes": []}
+        outcome["values"] = {"equilibrium": kind, "modes": []}
         if kind == JAMMED or SLIDING not in status:
             # Nothing else feeds a vibration.
             outcome["ended"] = kind
-            if kind == JAMMED:
-                del outcome["values"]["unstable_modes"]
+            outcome["values"] |= {} if kind == JAMMED else {"unstable_modes": 0.0}
             return
         start = replace(start, status=status)
         rest = modes_at_rest(system, start)

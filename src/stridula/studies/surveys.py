@@ -33,7 +33,7 @@ def squeal_survey(
     duration: float | str | None = None,
     longest: float | str = 1.0,
     amplitude: float = 1e-3,
-    resolution: float = 0.05,
+    resolution: float = 0.1,
     highest: float | str | None = None,
     velocity: float | Sequence[float] | None = None,
     sample_rate: float | str | None = None,

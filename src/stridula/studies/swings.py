@@ -15,8 +15,8 @@ LINEAR = 0.05
 FOREIGN = 1e-3
 # Swing of other modes that rounding starts.
 ROUNDING = 1e-12
-# Periods from which growth can be told, and samples of a period that are compared.
-FEWEST_PERIODS, SAMPLES_OF_A_PERIOD = 1.0, 7.0
+# Periods, and times over which a mode grows by e, from which growth can be told; samples of a period that are compared.
+FEWEST_PERIODS, LEAST_GROWTH, SAMPLES_OF_A_PERIOD = 1.0, 0.5, 7.0
 # Share of the motion that one mode leaves unexplained, from which there is no one mode to measure.
 UNEXPLAINED = 0.1
 
@@ -93,7 +93,8 @@ def growth_in_time(run: xr.Dataset, still: xr.Dataset, rest: ModesAtRest, number
     away = (relative(run, rest)[:samples] - relative(still, rest)[:samples])[1:]
     period = 2.0 * np.pi / max(abs(known.imag), abs(known.real))
     every = max(1, round(period / SAMPLES_OF_A_PERIOD / interval))
-    if samples * interval < FEWEST_PERIODS * period or period < 3.0 * interval:
+    length = samples * interval
+    if length < max(FEWEST_PERIODS * period, LEAST_GROWTH / known.real) or period < 3.0 * interval:
         return complex(np.nan, np.nan)
     # As large at the end as at the start: each stretch of time weighs as much.
     shrunk = np.exp(-known.real * interval * np.arange(len(away) - 2 * every))[:, None]
