@@ -1,4 +1,4 @@
-"""What many runs say: ensembles, sweeps and maps, root loci, calibration, sensitivity."""
+"""What many runs say: ensembles, sweeps and maps, squeal surveys, root loci, calibration, sensitivity."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ _HOME = {
     "sensitivity": "sobol",
     "share_of": "ensembles",
     "squeal_survey": "surveys",
+    "survey_table": "tables",
     "sweep": "sweeps",
 }
 __all__ = [*_HOME]
