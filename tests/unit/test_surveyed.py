@@ -106,6 +106,8 @@ def test_a_table_has_a_row_for_each_mode_and_for_points_without():
     assert [row["mode"] for row in rows] == ["", "", "0", "0", "1", "0", ""]
     assert (rows[4]["friction"], rows[4]["load"], rows[4]["frequency"]) == ("0.2", "2.0", "3000.0")
     assert rows[-1]["message"] == "no"
+    with pytest.raises(ValueError, match="found must be a survey, got variables"):
+        survey_table(a_survey().drop_vars("fate"))
 
 
 def test_a_map_has_tones_by_colour_and_what_is_quiet_beside_them():

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..checks import instance
+from ..checks import ArgumentError, instance, listed
 from .surveyed import NUMBERS, OF_POINTS, WORDS
 
 COLUMNS = (*(name for name in OF_POINTS if name != "message"), "mode", *NUMBERS, *WORDS, "tone_frequency", "message")
@@ -24,8 +24,15 @@ def survey_table(found: xr.Dataset) -> str:
     ----------
     found : xarray.Dataset
         What `squeal_survey` returned.
+
+    Raises
+    ------
+    ValueError
+        If it is anything else.
     """
     instance("found", found, xr.Dataset)
+    if any(name not in found for name in (*OF_POINTS, *NUMBERS, *WORDS, "mode", "tone_frequency")):
+        raise ArgumentError("found", "be a survey", found, got=f"variables {listed(map(str, found))}")
     dims, keys = found["verdict"].dims, [str(name) for name in found.coords if name not in ("mode", "tone", "point")]
     lines = io.StringIO()
     writer = csv.writer(lines, lineterminator="\n")
