@@ -92,6 +92,7 @@ FIGURES = (
     "friction",
     "root_loci",
     "regime_map",
+    "squeal_map",
     "spectrogram",
     "spectrum",
     "directivity",

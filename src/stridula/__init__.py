@@ -85,6 +85,7 @@ _HOME = {
         "ensemble",
         "root_loci",
         "sensitivity",
+        "squeal_survey",
         "sweep",
     ),
 }

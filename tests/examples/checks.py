@@ -93,6 +93,13 @@ def check_sound(names: Mapping[str, Any], printed: str) -> None:
     assert dict(names["heard"].sizes) == {"time": 48_000, "listener": 2}
 
 
+def check_surveys(names: Mapping[str, Any], printed: str) -> None:
+    """The mode grows in time as theory says, but for the way that the contact point travels meanwhile."""
+    this = names["this"]
+    assert float(this.seen_growth_rate) == pytest.approx(float(this.growth_rate), rel=0.03)
+    assert names["found"].verdict.sel(friction=0.6, angle=-60.0) == "stable"
+
+
 # One number at least where it says more than that it runs.
 CHECKS: dict[str, Callable[[Mapping[str, Any], str], None]] = {
     "README.md": check_readme,
@@ -101,8 +108,10 @@ CHECKS: dict[str, Callable[[Mapping[str, Any], str], None]] = {
     "scenarios.rst": check_scenarios,
     "sound.rst": check_sound,
     "start.rst": check_start,
+    "surveys.rst": check_surveys,
 }
 WRITTEN = {
     "hearing.rst": {"ears.wav", "spectrogram.png", "spectrum.png", "squeal.gif"},
     "maps.rst": {"map.png", "root-loci.png"},
+    "surveys.rst": {"survey.nc", "survey.png"},
 }

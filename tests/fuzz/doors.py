@@ -37,6 +37,7 @@ SLOW = {"animate", "loudness", "loudness_over_time", "roughness", "sharpness"}
 FEW = {
     "sensitivity": {"samples": 2, "resamples": 1, "duration": 1e-3},
     "sweep": {"duration": 1e-3},
+    "squeal_survey": {"duration": 1e-3},
     "ensemble": {"runs": 2},
     "calibrate": {"population": 5, "generations": 1, "duration": 1e-3},
 }

@@ -187,6 +187,86 @@ def sweep(
 
 
 @app.command()
+def survey(
+    name: NameOrFile,
+    out: Annotated[str, typer.Option("--out", "-o", metavar="FILE", help="Write modes and fates, as NetCDF.")],
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=START:STOP:COUNT", help="Vary a value, ends included, or KEY=A,B,C; may be repeated."
+        ),
+    ] = None,
+    sample: Annotated[
+        int | None, typer.Option(metavar="N", help="Spread N points over the ranges KEY=START:STOP, a Latin hypercube.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(metavar="S", help="Seed of --sample; default: 0.")] = None,
+    points: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE.csv", help="Read the points from a table: a row of keys, then one point in each row."
+        ),
+    ] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point; may be repeated."),
+    ] = None,
+    duration: Annotated[
+        str | None, typer.Option(metavar="S", help="Time of each run; default: from the growth rate.")
+    ] = None,
+    longest: Annotated[str, typer.Option(metavar="S", help="Longest time of a run, without --duration.")] = "1 s",
+    amplitude: Annotated[
+        float, typer.Option(metavar="X", help="Start of a mode over where a contact would open, stop or slip.")
+    ] = 1e-3,
+    highest: Annotated[
+        str | None, typer.Option(metavar="HZ", help="Count modes above this frequency, but do not follow them.")
+    ] = None,
+    velocity: Annotated[
+        str | None,
+        typer.Option(
+            metavar="M/S", help="Slip velocity where nothing prescribes it; one for each contact, with commas."
+        ),
+    ] = None,
+    plot: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw the map of what squeals over two keys.")
+    ] = None,
+    table: Annotated[
+        str | None, typer.Option(metavar="FILE.csv", help="Write a row for each mode of each point.")
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(metavar="N", help="Points computed at a time; default: one on each processor.")
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Compute on other machines, by a dask scheduler, tcp://host:port."),
+    ] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="Confirm more than 10 000 points.")] = False,
+) -> None:
+    """Find the modes of sliding that grow over parameters and follow each in time; resumes after an interruption."""
+    with _importing():
+        from .points import points_of
+        from .stability import velocities
+        from .surveying import survey_scenario
+
+    chosen = points_of(vary or [], sample, seed, points, yes)
+    lines = survey_scenario(
+        name,
+        chosen,
+        out,
+        plot,
+        table,
+        scheduler,
+        overrides=_pairs(set_ or []),
+        duration=duration,
+        longest=longest,
+        amplitude=amplitude,
+        highest=highest,
+        velocity=velocities(velocity),
+        workers=workers,
+    )
+    print(lines)
+
+
+@app.command()
 def stability(
     name: NameOrFile,
     set_: Annotated[

@@ -8,11 +8,10 @@ from typing import Any
 
 import xarray as xr
 
+from ..acoustics.heard_system import heard, track_of
 from ..acoustics.listeners import FARTHEST
 from ..acoustics.panels import panel_of
-from ..acoustics.radiate import radiate
 from ..acoustics.wav import NORMALISED, RATES, SUBTYPES, write_wav
-from ..bodies import ModalBeam, ModalPlate
 from ..checks import ArgumentError, at_most, suggestion
 from ..records.changes import played
 from ..records.files import load
@@ -57,7 +56,7 @@ def sound_of_record(
     places: Any = [place_of(text) for text in listeners] or None
     record = load(name)
     scenario = _played(record)
-    pressure = _heard(record, scenario.system, places, baffled)
+    pressure = heard(record, scenario.system, places, baffled)
     figure = None if plot is None else _figure(pressure, record, scenario.title or Path(name).stem)
     if wav is not None:
         print(_written(wav, pressure, options))
@@ -78,7 +77,7 @@ def _played(record: xr.Dataset) -> Scenario:
 
 def write_sound(record: xr.Dataset, system: Any, wav: str) -> str:
     """Write what two ears a metre above the track hear of a record, and return what was written and how loud it is."""
-    pressure = _heard(record, system, None, True)
+    pressure = heard(record, system, None, True)
     words = [str(write_wav(wav, pressure)), loudest(pressure), pressure.attrs["notes"]]
     return "\n".join(word for word in words if word)
 
@@ -89,37 +88,9 @@ def check_ending(wav: str) -> None:
         raise ArgumentError("--wav", "end in .wav", wav)
 
 
-def track_of(system: Any) -> ModalBeam | ModalPlate:
-    """Return the first track of a system that can be heard.
-
-    Raises
-    ------
-    ValueError
-        If there is no beam and no plate among its tracks.
-    """
-    tracks = [contact.track for contact in system.contacts]
-    for track in tracks:
-        if isinstance(track, (ModalBeam, ModalPlate)):
-            return track
-    raise ArgumentError("track", "be a modal beam or a modal plate to be heard", got=f"a {type(tracks[0]).__name__}")
-
-
 def check_baffled(system: Any) -> None:
     """Raise ValueError if no track of a system can be heard in a baffle."""
     panel_of(track_of(system))
-
-
-def _heard(record: xr.Dataset, system: Any, places: Any, baffled: bool) -> xr.DataArray:
-    """Return the sound of the first track that can be heard, under the contacts that press on it."""
-    track = track_of(system)
-    on_it = [number for number, contact in enumerate(system.contacts) if contact.track == track]
-    several = "contact" in record.dims
-    pressure = radiate(record.isel(contact=on_it) if several else record, track, places, baffled=baffled)
-    if several and len(on_it) < record.sizes["contact"]:
-        others = record.sizes["contact"] - len(on_it)
-        notes = [pressure.attrs["notes"], f"{others} of {record.sizes['contact']} contacts press on other tracks"]
-        pressure.attrs["notes"] = "; ".join(note for note in notes if note)
-    return pressure
 
 
 def _written(wav: str, pressure: xr.DataArray, options: dict[str, Any]) -> str:

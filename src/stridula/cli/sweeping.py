@@ -11,10 +11,11 @@ import xarray as xr
 
 from ..checks import ArgumentError
 from ..scenarios.read import read_tables
+from ..studies.computed import SweepProgress, Watcher
 from ..studies.machines import client_of
 from ..studies.measures import asked_for
 from ..studies.points import Grid
-from ..studies.sweeps import SweepProgress, Watcher, sweep
+from ..studies.sweeps import sweep
 from ..studies.swept import failures, usual_failure
 from .bars import bar
 from .exits import FAILED, INTERRUPTED, Stopped
@@ -50,6 +51,61 @@ def sweep_scenario(
     if plot is not None:
         _check_plot(points, [measure.name for measure in asked.measures])
     title = str(read_tables(name).get("title", name))
+    with computing(title, out, scheduler) as machinery:
+        found = sweep(
+            name,
+            points,
+            list(measures),
+            overrides=overrides,
+            duration=duration,
+            out=out,
+            workers=workers,
+            **machinery,
+        )
+    if plot is not None:
+        _draw(found, plot)
+    if "regime" in found:
+        print_agreement(found)
+    return closing(found, out)
+
+
+def _check_plot(points: Points, measures: Sequence[str]) -> None:
+    check_two_keys(points)
+    if "regime" not in measures:
+        raise ArgumentError("--plot", "go with --measure regime, which it shows", got=", ".join(measures))
+
+
+def check_two_keys(points: Points) -> None:
+    """Raise ValueError unless points can be drawn as a map."""
+    if not isinstance(points, Grid) or len(points.values) != 2 or min(map(len, points.values.values())) < 2:
+        raise ArgumentError("--plot", "go with a grid of two keys of at least 2 values each, given by --vary twice")
+
+
+def _draw(found: xr.Dataset, path: str) -> None:
+    from ..plot import regime_map, save
+
+    save(regime_map(found), path)
+
+
+def closing(found: xr.Dataset, out: str) -> str:
+    """Return the closing lines of a study in points: how many are done, and the most frequent message."""
+    messages = failures(found)
+    points, failed = found["message"].size, len(messages)
+    if not failed:
+        return f"{points} points: {points} done; written to {out}"
+    counts = f"{points} points: {points - failed} done, {failed} failed (messages in 'message' of {out})"
+    return f"{usual_failure(messages)}\n{counts}"
+
+
+@contextmanager
+def computing(title: str, out: str, scheduler: str | None) -> Iterator[dict[str, Any]]:
+    """Give what computes the points of a study, ``client`` and ``watchers``, and say where it may go on if it stops.
+
+    Raises
+    ------
+    Stopped
+        On Ctrl-C, or if other machines fail; finished parts are kept.
+    """
     reached = SweepProgress(0, 0, 0.0)
 
     def follow(progress: SweepProgress) -> None:
@@ -58,17 +114,7 @@ def sweep_scenario(
 
     try:
         with _client(scheduler) as client, points_done(title) as watch:
-            found = sweep(
-                name,
-                points,
-                list(measures),
-                overrides=overrides,
-                duration=duration,
-                out=out,
-                workers=workers,
-                client=client,
-                watchers=[follow, watch],
-            )
+            yield {"client": client, "watchers": [follow, watch]}
     except KeyboardInterrupt:
         if not reached.done:
             raise Stopped(
@@ -79,33 +125,6 @@ def sweep_scenario(
     except RuntimeError as error:
         # What other machines raise; points that fail are no errors.
         raise Stopped(f"{error} in {out}.parts", FAILED) from None
-    if plot is not None:
-        _draw(found, plot)
-    if "regime" in found:
-        print_agreement(found)
-    return _closing(found, out)
-
-
-def _check_plot(points: Points, measures: Sequence[str]) -> None:
-    if not isinstance(points, Grid) or len(points.values) != 2 or min(map(len, points.values.values())) < 2:
-        raise ArgumentError("--plot", "go with a grid of two keys of at least 2 values each, given by --vary twice")
-    if "regime" not in measures:
-        raise ArgumentError("--plot", "go with --measure regime, which it shows", got=", ".join(measures))
-
-
-def _draw(found: xr.Dataset, path: str) -> None:
-    from ..plot import regime_map, save
-
-    save(regime_map(found), path)
-
-
-def _closing(found: xr.Dataset, out: str) -> str:
-    messages = failures(found)
-    points, failed = found["message"].size, len(messages)
-    if not failed:
-        return f"{points} points: {points} done; written to {out}"
-    counts = f"{points} points: {points - failed} done, {failed} failed (messages in 'message' of {out})"
-    return f"{usual_failure(messages)}\n{counts}"
 
 
 @contextmanager

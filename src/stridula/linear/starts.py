@@ -59,10 +59,7 @@ def start_of(system: System, asked: InitialEquilibrium) -> Start:
     ValueError
         If there is no such equilibrium or no such mode.
     """
-    whole = Structure(system, 0.0)
-    status = given_status(asked.status, system)
-    structure, at = _settled(whole, given_velocity(asked.velocity, whole, status), status)
-    _check(structure, at, status)
+    whole, structure, at = at_rest(system, asked)
     moves = structure.sliding(at.status, at.slip_velocity)
     along = np.array([line.along for line in structure.lines])
     slides = np.array([one != STICKING for one in at.status])
@@ -77,6 +74,21 @@ def start_of(system: System, asked: InitialEquilibrium) -> Start:
     slips = at.slip_velocity.tolist()
     friction_state = [_state(*one) for one in zip(laws, slips, states.tolist(), strict=True)]
     return Start(_closed(whole, at.status, position), velocity, np.array(friction_state))
+
+
+def at_rest(system: System, asked: InitialEquilibrium) -> tuple[Structure, Structure, Equilibrium]:
+    """Return a system about its start, the same with its contact points where it comes to rest, and how it rests.
+
+    Raises
+    ------
+    ValueError
+        If there is no such equilibrium.
+    """
+    whole = Structure(system, 0.0)
+    status = given_status(asked.status, system)
+    structure, at = _settled(whole, given_velocity(asked.velocity, whole, status), status)
+    _check(structure, at, status)
+    return whole, structure, at
 
 
 def _settled(whole: Structure, velocity: Array, status: Sequence[str] | None) -> tuple[Structure, Equilibrium]:
@@ -125,10 +137,8 @@ def _mode(structure: Structure, at: Equilibrium, asked: InitialEquilibrium) -> t
     found = modes_of(structure, motion)
     number = _number(found.values, asked.mode, round_off(structure))
     exponent, shape = complex(found.values[number]), found.shapes[:, number]
-    points = np.array([line.points for line in structure.lines])
-    moved = (points @ shape).ravel()
-    largest = moved[np.abs(moved).argmax()]
-    if np.abs(largest) <= UNMOVED * np.linalg.norm(points, axis=-1).max():
+    largest = largest_displacement(structure, shape)
+    if not largest:
         raise ArgumentError("mode", "be one that moves a contact point", got=f"{number}, which moves none")
     shape = shape * (asked.amplitude * np.exp(1.0j * asked.phase) / largest)
     states = np.zeros(len(structure.lines), dtype=complex)
@@ -136,6 +146,14 @@ def _mode(structure: Structure, at: Equilibrium, asked: InitialEquilibrium) -> t
     rates = motion.from_velocity @ (exponent * shape)
     states[[k for k in known if at.slip_velocity[k]]] = rates / (exponent - motion.state)
     return shape, exponent, states
+
+
+def largest_displacement(structure: Structure, shape: Array) -> complex:
+    """Return the displacement of the contact point that moves most in a mode [m], 0 if none moves."""
+    points = np.array([line.points for line in structure.lines])
+    moved = (points @ shape).ravel()
+    largest = complex(moved[np.abs(moved).argmax()])
+    return largest if abs(largest) > UNMOVED * np.linalg.norm(points, axis=-1).max() else 0.0j
 
 
 def _number(exponents: Array, mode: int | str | None, least: float) -> int:

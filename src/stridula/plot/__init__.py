@@ -19,6 +19,7 @@ _HOME = {
     "save": "files",
     "spectrogram": "spectrograms",
     "spectrum": "spectra",
+    "squeal_map": "squeals",
     "timeline": "timelines",
 }
 __all__ = list(_HOME)

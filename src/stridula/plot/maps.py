@@ -47,17 +47,17 @@ def regime_map(found: xr.Dataset) -> Figure:
         shape = dict(found["regime"].sizes) if "regime" in found else "none"
         raise ArgumentError("found", "have the regime over two parameters of at least 2 values each", found, got=shape)
     across, along = (str(name) for name in found["regime"].dims)
-    found = _in_order(_in_order(found, across), along)
+    found = in_order(in_order(found, across), along)
     figure = Figure(figsize=(8.0, 6.0), layout="constrained", dpi=120)
     axes = figure.subplots()
     codes = _codes(found["regime"].values)
     colours = [*REGIME_COLOURS.values(), FAILED_COLOUR]
     norm = BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours))
-    x, y = _places(found, across), _places(found, along)
-    axes.pcolormesh(_edges(x), _edges(y), codes.T, cmap=ListedColormap(colours), norm=norm, rasterized=True)
+    x, y = places_of(found, across), places_of(found, along)
+    axes.pcolormesh(edges(x), edges(y), codes.T, cmap=ListedColormap(colours), norm=norm, rasterized=True)
     lines = _draw_linear(axes, found, x, y)
-    _name_axis(axes, found, across, "x")
-    _name_axis(axes, found, along, "y")
+    name_axis(axes, found, across, "x")
+    name_axis(axes, found, along, "y")
     axes.set_title(str(found.attrs.get("title", "")), fontsize=11)
     patches = [
         Patch(facecolor=colour, edgecolor="0.5", linewidth=0.5, label=f"{word} ({np.count_nonzero(codes == k)})")
@@ -68,7 +68,7 @@ def regime_map(found: xr.Dataset) -> Figure:
     return figure
 
 
-def _in_order(found: xr.Dataset, key: str) -> xr.Dataset:
+def in_order(found: xr.Dataset, key: str) -> xr.Dataset:
     """Return a sweep with the numbers of a key rising, each once."""
     if not _is_number(found, key):
         return found
@@ -79,12 +79,12 @@ def _is_number(found: xr.Dataset, key: str) -> bool:
     return found[key].dtype.kind in "fiu"
 
 
-def _places(found: xr.Dataset, key: str) -> Array:
+def places_of(found: xr.Dataset, key: str) -> Array:
     """Return where the values of a key lie on their axis: numbers where they are, words one beside another."""
     return found[key].values.astype(float) if _is_number(found, key) else np.arange(found.sizes[key], dtype=float)
 
 
-def _edges(places: Array) -> Array:
+def edges(places: Array) -> Array:
     """Return the bounds of cells about their places: halfway between them, the outer ones as far on the other side."""
     if places.size == 1:
         return np.array([places[0] - 0.5, places[0] + 0.5])
@@ -110,21 +110,21 @@ def _draw_linear(axes: Axes, found: xr.Dataset, x: Array, y: Array) -> list[Line
     if grows.any():
         words = "linear theory: bound of growth" if not grows.all() else "linear theory: a mode grows everywhere"
         # Where sliding ends, growth does, too: that bound is another.
-        handles.append(_draw_bound(axes, np.where(slides, grows, np.nan), x, y, "-", words))
+        handles.append(draw_bound(axes, np.where(slides, grows, np.nan), x, y, "-", words))
         drawn = _draw_growth(axes, np.where(grows, found["growth_rate"].values, np.nan), x, y)
         handles += [Line2D([], [], color="black", linewidth=0.7, label="its growth rate")] if drawn else []
     if slides.any() and not slides.all():
         words = "linear theory: bound of steady sliding"
-        handles.append(_draw_bound(axes, slides.astype(float), x, y, "--", words))
+        handles.append(draw_bound(axes, slides.astype(float), x, y, "--", words))
     return handles
 
 
-def _draw_bound(axes: Axes, inside: Array, x: Array, y: Array, style: str, words: str) -> Line2D:
+def draw_bound(axes: Axes, inside: Array, x: Array, y: Array, style: str, words: str) -> Line2D:
     """Draw the sides of cells that part those inside, 1, from the others, 0, and return the handle of the legend."""
     look: dict[str, Any] = {"linewidth": 2.2 if style == "-" else 1.4, "linestyle": style}
     if np.nanmin(inside) < np.nanmax(inside):
         # Each cell with its own corners: the level between two of them lies on the side that they share.
-        across, along = (np.repeat(_edges(places), 2)[1:-1] for places in (x, y))
+        across, along = (np.repeat(edges(places), 2)[1:-1] for places in (x, y))
         cells = np.repeat(np.repeat(inside, 2, axis=0), 2, axis=1)
         widths, styles = look.values()
         axes.contour(across, along, cells.T, levels=[0.5], colors="black", linewidths=widths, linestyles=styles)
@@ -147,7 +147,7 @@ def _round_levels(rates: Array) -> list[float]:
     return sorted({float(f"{rate:.1g}") for rate in np.percentile(rates, PERCENTILES)})
 
 
-def _name_axis(axes: Axes, found: xr.Dataset, key: str, name: str) -> None:
+def name_axis(axes: Axes, found: xr.Dataset, key: str, name: str) -> None:
     units = str(found[key].attrs.get("units", ""))
     axis = axes.xaxis if name == "x" else axes.yaxis
     axis.set_label_text(f"{key} [{units}]" if units and units != "1" else key)

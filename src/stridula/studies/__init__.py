@@ -1,4 +1,4 @@
-"""What many runs say: ensembles, sweeps and maps, root loci, calibration, sensitivity."""
+"""What many runs say: ensembles, sweeps and maps, squeal surveys, root loci, calibration, sensitivity."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _HOME = {
     "Grid": "points",
     "LatinHypercube": "points",
     "Range": "points",
-    "SweepProgress": "sweeps",
+    "SweepProgress": "computed",
     "Target": "calibration",
     "agreement": "verdicts",
     "calibrate": "calibration",
@@ -20,6 +20,8 @@ _HOME = {
     "root_loci": "loci",
     "sensitivity": "sobol",
     "share_of": "ensembles",
+    "squeal_survey": "surveys",
+    "survey_table": "tables",
     "sweep": "sweeps",
 }
 __all__ = [*_HOME]

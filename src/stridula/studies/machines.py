@@ -1,4 +1,4 @@
-"""Parts of a sweep on other machines, by dask.distributed."""
+"""Parts of a study on other machines, by dask.distributed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from ..checks import ArgumentError
 from ..version import __version__
 from .measures import message_of
-from .task import Outcome, Task, use_one_thread
+from .task import Outcome, Work, use_one_thread
 
 Points = Sequence[Sequence[Any]]
 # A machine that is gone leaves the client waiting no longer than this [s].
@@ -38,14 +38,14 @@ def client_of(address: str) -> Any:
         raise ArgumentError("scheduler", "answer", address, got=f"{address!r}: {message_of(error)}") from None
 
 
-def on_machines(client: Any, task: Task, parts: Mapping[int, Points]) -> Generator[tuple[int, list[Outcome]]]:
+def on_machines(client: Any, task: Work, parts: Mapping[int, Points]) -> Generator[tuple[int, list[Outcome]]]:
     """Go through the parts as they are done, with what came of their points.
 
     Parameters
     ----------
     client : distributed.Client
         Where they are computed.
-    task : Task
+    task : Work
         What is done at each point.
     parts : mapping
         Points of each part.
@@ -73,7 +73,7 @@ def on_machines(client: Any, task: Task, parts: Mapping[int, Points]) -> Generat
             client.cancel([future for future in futures if not future.done()])
 
 
-def _outcomes(task: Task, points: Points, version: str) -> list[Outcome]:
+def _outcomes(task: Work, points: Points, version: str) -> list[Outcome]:
     """Return what came of a part, on another machine."""
     if version != __version__:
         raise RuntimeError(f"stridula must be {version} there, too, got {__version__}")

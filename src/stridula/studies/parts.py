@@ -1,4 +1,4 @@
-"""Parts of a sweep on disk: each whole or not there, so that a sweep goes on where it was."""
+"""Parts of a study on disk: each whole or not there, so that a study goes on where it was."""
 
 from __future__ import annotations
 
@@ -14,85 +14,88 @@ from ..disk import check_writable, one_line, write
 from ..records.files import is_record, load, save
 from .task import Outcome
 
-# What is kept beside the parts: what they are parts of.
-SWEEP = "sweep.json"
-
 
 class Parts:
-    """The file of a sweep, and the folder beside it with the parts that are done.
+    """The file of a study, and the folder beside it with the parts that are done.
 
-    Two processes on one sweep write the same parts: the later one replaces a file by an equal one.
+    Two processes on one study write the same parts: the later one replaces a file by an equal one.
 
     Parameters
     ----------
     out : str or Path
         The file; the folder has its name and ``.parts``.
     identity : dict of str
-        What makes the sweep: its scenario, what was asked of it, the version.
+        What makes the study: its scenario, what was asked of it, the version.
+    study : str, optional
+        What kind it is, in a word: the attribute that says what was asked of it.
 
     Raises
     ------
     OSError
         If the file cannot be written.
     ValueError
-        If the file or the folder is there and is not of this sweep; nothing is touched.
+        If the file or the folder is there and is not of this study; nothing is touched.
     """
 
-    def __init__(self, out: str | Path, identity: dict[str, str]) -> None:
+    def __init__(self, out: str | Path, identity: dict[str, str], study: str = "sweep") -> None:
+        self.study = study
         self.out, self.folder, self.identity = Path(out), Path(f"{out}.parts"), identity
         check_writable(out)
         self.finished = self._finished()
         self._check_folder()
 
     def _finished(self) -> xr.Dataset | None:
-        """Return the sweep if its file is complete, None if there is none."""
+        """Return the study if its file is complete, None if there is none."""
         if not self.out.exists():
             return None
         if not self.out.is_file() or not is_record(self.out):
             raise ArgumentError(
-                "out", "be a new file or that of this sweep", str(self.out), got=f"{str(self.out)!r}, another file"
+                "out",
+                f"be a new file or that of this {self.study}",
+                str(self.out),
+                got=f"{str(self.out)!r}, another file",
             )
         found = load(self.out)
         if {name: found.attrs.get(name) for name in self.identity} != self.identity:
             raise ArgumentError(
                 "out",
-                "be a new file or that of this sweep",
+                f"be a new file or that of this {self.study}",
                 str(self.out),
                 got=f"{str(self.out)!r}{self._why(found.attrs)}",
             )
         return found
 
     def _check_folder(self) -> None:
-        """Raise ValueError if the folder is there and is not of this sweep."""
+        """Raise ValueError if the folder is there and is not of this study."""
         if not self.folder.exists():
             return
         if not self.folder.is_dir():
-            raise ArgumentError(f"{str(self.folder)!r}", "be left for the parts of the sweep", got="a file")
+            raise ArgumentError(f"{str(self.folder)!r}", f"be left for the parts of the {self.study}", got="a file")
         known = self._identity_on_disk()
         if known is None and all(path.name.startswith(".stridula-") for path in self.folder.iterdir()):
-            # Stopped before it knew of which sweep.
+            # Stopped before it knew of which study.
             return
         if known != self.identity:
             raise ArgumentError(
-                f"{str(self.folder)!r}", "hold parts of this sweep", got=f"others{self._why(known or {})}"
+                f"{str(self.folder)!r}", f"hold parts of this {self.study}", got=f"others{self._why(known or {})}"
             )
 
     def _identity_on_disk(self) -> dict[str, str] | None:
         try:
-            found = json.loads((self.folder / SWEEP).read_bytes())
+            found = json.loads(self._description.read_bytes())
         except (OSError, ValueError):
             return None
         return found if isinstance(found, dict) else None
 
     def _why(self, other: dict[str, Any]) -> str:
-        """Return in words in what another sweep differs."""
+        """Return in words in what another study differs."""
         words = {
             "scenario": "another scenario",
             "function": "another function",
-            "sweep": "other points or options",
+            self.study: "other points or options",
             "stridula_version": "another version",
         }
-        if "sweep" not in other:
+        if self.study not in other:
             return ", another file"
         differing = [word for name, word in words.items() if name in other and other[name] != self.identity.get(name)]
         return f", of {' and '.join(differing)}" if differing else ""
@@ -120,7 +123,7 @@ class Parts:
         write(self._path(number), _json(outcomes))
 
     def finish(self, found: xr.Dataset) -> None:
-        """Write the whole sweep and remove the parts.
+        """Write the whole study and remove the parts.
 
         Raises
         ------
@@ -138,16 +141,21 @@ class Parts:
             path.unlink(missing_ok=True)
         for path in self.folder.glob(".stridula-*"):
             path.unlink(missing_ok=True)
-        # Last, so that a folder with parts always says of which sweep they are.
-        (self.folder / SWEEP).unlink(missing_ok=True)
+        # Last, so that a folder with parts always says of which study they are.
+        self._description.unlink(missing_ok=True)
         with suppress(OSError):
             self.folder.rmdir()
 
     def _open(self) -> None:
         with one_line(f"cannot write {str(self.folder)!r}"):
             self.folder.mkdir(exist_ok=True)
-        if not (self.folder / SWEEP).exists():
-            write(self.folder / SWEEP, _json(self.identity))
+        if not self._description.exists():
+            write(self._description, _json(self.identity))
+
+    @property
+    def _description(self) -> Path:
+        """What is kept beside the parts: what they are parts of."""
+        return self.folder / f"{self.study}.json"
 
     def _path(self, number: int) -> Path:
         return self.folder / f"{number:06d}.json"

@@ -1,4 +1,4 @@
-"""The process of a sweep: a task, then points of part after part; what came of each."""
+"""The process of a study: a task, then points of part after part; what came of each."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def main() -> None:
             answers.write(pickle.dumps(found))
             answers.flush()
     except (EOFError, BrokenPipeError):
-        # The sweep is over, or its process is gone: what is left unwritten would only be complained of.
+        # The study is over, or its process is gone: what is left unwritten would only be complained of.
         os._exit(0)
 
 

@@ -1,4 +1,4 @@
-"""Parts of a sweep in processes of this machine, where threads would wait for the interpreter and not for the march."""
+"""Parts of a study in processes of this machine, where threads would wait for the interpreter and not for the march."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
 
-from .task import Outcome, Task
+from .task import Outcome, Work
 
 # Time that must be lost in waiting, ahead, before processes are begun [s]: what it takes to begin one.
 COST = 2.0
@@ -26,7 +26,7 @@ class Helpers:
 
     Parameters
     ----------
-    task : Task
+    task : Work
         What is done at each point.
     parts : int
         How many parts there are.
@@ -34,7 +34,7 @@ class Helpers:
         How many of them are computed at a time; one thread goes on in this process.
     """
 
-    def __init__(self, task: Task, parts: int, threads: int) -> None:
+    def __init__(self, task: Work, parts: int, threads: int) -> None:
         self.task, self.parts, self.threads, self.done = task, parts, threads, 0
         self.began, self.spent, self.decided = time.perf_counter(), time.process_time(), threads < 2
         self.lock, self.all, self.idle = threading.Lock(), list[Helper](), list[Helper]()
@@ -139,7 +139,7 @@ class Helper:
             self.end()
             return None
         if found is None:
-            raise MemoryError("out of memory in a process of the sweep")
+            raise MemoryError("out of memory in a process of the study")
         return found
 
     def end(self) -> None:
@@ -153,7 +153,7 @@ class Helper:
                 pipe.close()
 
 
-def portable(task: Task) -> bytes | None:
+def portable(task: Work) -> bytes | None:
     """Return a task as another process reads it, None if it holds functions that no other process can import."""
     try:
         asked = pickle.dumps(task)

@@ -261,7 +261,13 @@ def _mismatch(function: SystemOf, names: Sequence[str]) -> str | None:
     return None
 
 
-def varying(scenario: Any, fixed: Mapping[str, Any], timing: Mapping[str, Any], layout: Layout) -> Varying:
+def varying(
+    scenario: Any,
+    fixed: Mapping[str, Any],
+    timing: Mapping[str, Any],
+    layout: Layout,
+    highest_rate: float = SAMPLE_RATE,
+) -> Varying:
     """Return what a study runs, checked.
 
     Parameters
@@ -274,6 +280,8 @@ def varying(scenario: Any, fixed: Mapping[str, Any], timing: Mapping[str, Any], 
         ``duration`` and ``sample_rate``, where they are given.
     layout : Layout
         The points.
+    highest_rate : float, optional
+        Samples per second recorded at most [Hz], where neither the scenario nor the study says more.
 
     Raises
     ------
@@ -282,10 +290,12 @@ def varying(scenario: Any, fixed: Mapping[str, Any], timing: Mapping[str, Any], 
     ValueError
         If a function takes other parameters, or makes nothing of the first and of the last point.
     """
-    return (_of_function if callable(scenario) else _of_scenario)(scenario, fixed, timing, layout)
+    return (_of_function if callable(scenario) else _of_scenario)(scenario, fixed, timing, layout, highest_rate)
 
 
-def _of_scenario(scenario: Any, fixed: Mapping[str, Any], timing: Mapping[str, Any], layout: Layout) -> Varying:
+def _of_scenario(
+    scenario: Any, fixed: Mapping[str, Any], timing: Mapping[str, Any], layout: Layout, highest_rate: float
+) -> Varying:
     """Return the scenario that all points share, the keys that are varied, and their values at each point."""
     given = {**fixed, **{f"simulation.{name}": value for name, value in timing.items()}}
     tables, places, problems = located(read_tables(scenario), given)
@@ -303,7 +313,7 @@ def _of_scenario(scenario: Any, fixed: Mapping[str, Any], timing: Mapping[str, A
     values = list(zip(*columns, strict=True))
     has_own_rate = ("simulation", "sample_rate") in [*places.values(), *(key.path for key in keys)]
     tables = _usable(tables, keys, values)
-    source = OfTables(tables, tuple(key.path for key in keys), math.inf if has_own_rate else SAMPLE_RATE)
+    source = OfTables(tables, tuple(key.path for key in keys), math.inf if has_own_rate else highest_rate)
     return Varying(source, keys, values, {"title": str(tables.get("title", "")), "scenario": toml(tables)})
 
 
@@ -324,7 +334,9 @@ def _usable(tables: dict[str, Any], keys: Sequence[Varied], values: Sequence[Seq
     raise errors[0]
 
 
-def _of_function(function: SystemOf, fixed: Mapping[str, Any], timing: Mapping[str, Any], layout: Layout) -> Varying:
+def _of_function(
+    function: SystemOf, fixed: Mapping[str, Any], timing: Mapping[str, Any], layout: Layout, highest_rate: float
+) -> Varying:
     """Return a function that makes something of the first or of the last point, and the points."""
     twin = next((name for name in layout.keys if name in fixed), None)
     if twin is not None:
@@ -333,7 +345,7 @@ def _of_function(function: SystemOf, fixed: Mapping[str, Any], timing: Mapping[s
     columns = list(zip(*layout.values, strict=True))
     keys = [_key(name, column) for name, column in zip(layout.keys, columns, strict=True)]
     units = {key.key: key.unit for key in keys}
-    source = OfFunction(function, units, in_si(fixed), timing_in_si(timing))
+    source = OfFunction(function, units, in_si(fixed), timing_in_si(timing), highest_rate)
     errors = []
     for given in (layout.values[0], layout.values[-1]):
         try:

@@ -3,55 +3,23 @@
 from __future__ import annotations
 
 import json
-import os
-import threading
-import time
-from collections.abc import Callable, Generator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
-from contextlib import closing
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
-from ..checks import ArgumentError, by_key, count
-from ..scenarios.varied import Varied
+from ..checks import by_key
 from ..version import __version__
-from .machines import on_machines
+from .computed import Plan, Watcher, check_options, computed
 from .measures import asked_for
-from .parts import Parts
-from .points import Grid, LatinHypercube, Layout, laid_out, plain_python
-from .processes import Helpers
+from .points import Grid, LatinHypercube, laid_out, plain_python
 from .sources import SystemOf, varying
 from .swept import check_names, swept
-from .task import Outcome, Task, one_thread_each
+from .task import Outcome, Task
 
 # Points that are computed in one go, whoever computes them: they share a time step, and runs march side by side.
 POINTS_OF_A_PART = 64
-
-
-@dataclass(frozen=True)
-class SweepProgress:
-    """How far a sweep has come.
-
-    Attributes
-    ----------
-    done : int
-        Points that are done, those of an earlier start among them.
-    points : int
-        Points in all.
-    wall_time : float
-        Time since this start [s].
-    """
-
-    done: int
-    points: int
-    wall_time: float
-
-
-Watcher = Callable[[SweepProgress], None]
 
 
 def sweep(
@@ -129,66 +97,9 @@ def sweep(
     RuntimeError
         If a part fails on other machines; finished parts are kept.
     """
-    began = time.perf_counter()
-    if workers is not None:
-        count("workers", workers)
-    if not isinstance(watchers, Sequence):
-        raise ArgumentError("watchers", "be a list of callables", watchers)
-    if client is not None and not callable(getattr(client, "submit", None)):
-        raise ArgumentError("client", "be a client of dask.distributed", client)
+    check_options(workers, client, watchers)
     plan = _planned(scenario, points, measures, by_key("overrides", overrides), duration, sample_rate, probes)
-    store = None if out is None else Parts(out, plan.identity)
-    if store is not None and store.finished is not None:
-        store.clear()
-        return store.finished
-    done = {} if store is None else store.done({number: len(part) for number, part in plan.parts.items()})
-    left = {number: part for number, part in plan.parts.items() if number not in done}
-
-    def report() -> None:
-        reached = sum(map(len, done.values()))
-        for watch in watchers:
-            watch(SweepProgress(reached, len(plan.values), time.perf_counter() - began))
-
-    if done:
-        report()
-    with one_thread_each():
-        computed = _here(plan.task, left, workers) if client is None else on_machines(client, plan.task, left)
-        with closing(computed):
-            for number, outcomes in computed:
-                if store is not None:
-                    store.keep(number, outcomes)
-                done[number] = outcomes
-                report()
-    found = plan.dataset([outcome for number in plan.parts for outcome in done[number]])
-    if store is not None:
-        store.finish(found)
-    return found
-
-
-@dataclass(frozen=True)
-class _Plan:
-    """A sweep before it starts: what is done at each point, the points, and what the result says of them."""
-
-    task: Task
-    layout: Layout
-    keys: list[Varied]
-    values: list[tuple[Any, ...]]
-    attributes: dict[str, str]
-
-    @property
-    def identity(self) -> dict[str, str]:
-        """What tells this sweep from others."""
-        return {name: value for name, value in self.attributes.items() if name != "title"}
-
-    @cached_property
-    def parts(self) -> dict[int, list[tuple[Any, ...]]]:
-        """Values of the points of each part."""
-        starts = range(0, len(self.values), POINTS_OF_A_PART)
-        return {number: self.values[first : first + POINTS_OF_A_PART] for number, first in enumerate(starts)}
-
-    def dataset(self, outcomes: Sequence[Outcome]) -> xr.Dataset:
-        """Return what came of the points."""
-        return swept(self.layout, self.keys, self.values, self.task.asked.columns, outcomes, self.attributes)
+    return computed(plan, out, workers, client, watchers)
 
 
 def _planned(
@@ -199,7 +110,7 @@ def _planned(
     duration: Any,
     sample_rate: Any,
     probes: bool | None,
-) -> _Plan:
+) -> Plan:
     """Return a sweep from the arguments of `sweep`, checked."""
     asked = asked_for(measures)
     layout = laid_out(points)
@@ -215,36 +126,9 @@ def _planned(
         "stridula_version": __version__,
         "sweep": json.dumps(wanted, ensure_ascii=False, default=str),
     }
-    return _Plan(Task(found.source, asked, with_probes), layout, found.keys, found.values, attributes)
 
+    def labelled(outcomes: Sequence[Outcome]) -> xr.Dataset:
+        return swept(layout, found.keys, found.values, asked.columns, outcomes, attributes)
 
-class _Stopped(Exception):
-    """A part that was stopped because the sweep was."""
-
-
-def _here(
-    task: Task, parts: Mapping[int, Sequence[Sequence[Any]]], workers: int | None
-) -> Generator[tuple[int, list[Outcome]]]:
-    """Go through the parts as they are done on this machine, with what came of their points.
-
-    Threads compute them, and processes from when on that takes less time.
-    """
-    if not parts:
-        return
-    processors = workers or os.cpu_count() or 1
-    threads = min(processors, len(parts))
-    stop = threading.Event()
-
-    def watch() -> None:
-        if stop.is_set():
-            raise _Stopped
-
-    pool, helpers = ThreadPoolExecutor(threads), Helpers(task, len(parts), threads)
-    try:
-        futures = {pool.submit(helpers.outcomes, part, processors // threads, watch): n for n, part in parts.items()}
-        for future in as_completed(futures):
-            yield futures[future], future.result()
-    finally:
-        stop.set()
-        helpers.close()
-        pool.shutdown(wait=False, cancel_futures=True)
+    task = Task(found.source, asked, with_probes)
+    return Plan("sweep", task, found.values, POINTS_OF_A_PART, attributes, labelled)

@@ -85,10 +85,11 @@ def swept(
             data[column.name] = (dimensions, laid(numbers, float), words)
     for name, meaning in (("ended", "how the run of the point ended"), ("message", "what failed, empty where good")):
         data[name] = (dimensions, laid((outcome[name] for outcome in outcomes), object), {"long_name": meaning})
-    return xr.Dataset(data, _coordinates(layout, keys, values), attributes)
+    return xr.Dataset(data, coordinates(layout, keys, values), attributes)
 
 
-def _coordinates(layout: Layout, keys: Sequence[Varied], values: Sequence[Sequence[Any]]) -> dict[str, Any]:
+def coordinates(layout: Layout, keys: Sequence[Varied], values: Sequence[Sequence[Any]]) -> dict[str, Any]:
+    """Return the coordinates of points: what was varied, and the number of the point where they fill no grid."""
     columns = list(zip(*values, strict=True))
     if not layout.is_grid:
         points = {POINT: (POINT, np.arange(len(values)), {"long_name": "number of the point"})}

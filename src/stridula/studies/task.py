@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import xarray as xr
 from threadpoolctl import threadpool_limits
@@ -19,6 +19,19 @@ from .sources import Source
 NOT_BUILT, NOT_STARTED, NOT_SIMULATED, NOT_MEASURED = "not built", "not started", "not simulated", "not measured"
 # What came of a point: its values by name, how it ended, and the message of what failed, in plain numbers and texts.
 Outcome = dict[str, Any]
+
+
+class Stopped(Exception):
+    """A part that was stopped because its study was."""
+
+
+class Work(Protocol):
+    """What is done at each point of a study; it goes to other processes and machines as it is."""
+
+    def outcomes(
+        self, points: Sequence[Sequence[Any]], workers: int = 1, watch: Callable[[], None] = lambda: None
+    ) -> list[Outcome]:
+        """Return what came of some points; the same points give the same to the last bit."""
 
 
 @dataclass(frozen=True)
@@ -58,11 +71,11 @@ class Task:
         for number, values in enumerate(points):
             watch()
             outcomes.append({"ended": NOT_SIMULATED, "message": "", "values": {}})
-            with _failing(outcomes[-1], NOT_BUILT):
+            with failing(outcomes[-1], NOT_BUILT):
                 scenarios[number] = self.source.scenario(values)
         for number, scenario in scenarios.items():
             watch()
-            with _failing(outcomes[number], NOT_MEASURED):
+            with failing(outcomes[number], NOT_MEASURED):
                 outcomes[number]["values"] |= self.asked.of_system(scenario.system)
         if self.asked.needs_record:
             for numbers in _alike(scenarios, self._options):
@@ -89,7 +102,7 @@ class Task:
         def measured(record: xr.Dataset | PlainRecord) -> Outcome:
             found: Outcome = {"ended": record.attrs["ended"], "message": record.attrs.get("message", ""), "values": {}}
             if not found["message"]:
-                with _failing(found, NOT_MEASURED):
+                with failing(found, NOT_MEASURED):
                     found["values"] = self.asked.of_record(record)
             return found
 
@@ -122,11 +135,11 @@ def _alike(scenarios: dict[int, Scenario], options: Callable[[Scenario], dict[st
 
 
 @contextmanager
-def _failing(outcome: Outcome, ended: str) -> Iterator[None]:
-    """Keep what fails as the outcome of a point. Memory that runs out says nothing about it."""
+def failing(outcome: Outcome, ended: str) -> Iterator[None]:
+    """Keep what fails as the outcome of a point. Memory that runs out, or a stop, says nothing about it."""
     try:
         yield
-    except MemoryError:
+    except (MemoryError, Stopped):
         raise
     except Exception as error:
         outcome["ended"], outcome["message"] = ended, message_of(error)

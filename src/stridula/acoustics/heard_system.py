@@ -1,0 +1,56 @@
+"""The sound of a record of a whole system: of the first of its tracks that can be heard."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import xarray as xr
+
+from ..bodies import ModalBeam, ModalPlate
+from ..checks import ArgumentError
+from .radiate import radiate
+
+
+def track_of(system: Any) -> ModalBeam | ModalPlate:
+    """Return the first track of a system that can be heard.
+
+    Raises
+    ------
+    ValueError
+        If there is no beam and no plate among its tracks.
+    """
+    tracks = [contact.track for contact in system.contacts]
+    for track in tracks:
+        if isinstance(track, (ModalBeam, ModalPlate)):
+            return track
+    raise ArgumentError("track", "be a modal beam or a modal plate to be heard", got=f"a {type(tracks[0]).__name__}")
+
+
+def heard(record: xr.Dataset, system: Any, places: Any = None, baffled: bool = True) -> xr.DataArray:
+    """Return the sound of the first track that can be heard, under the contacts that press on it.
+
+    Parameters
+    ----------
+    record : xarray.Dataset
+        A record of the system.
+    system : System
+        The system.
+    places : tuple of float, or sequence of tuples, optional
+        Where one listens, as for `radiate`.
+    baffled : bool, optional
+        Whether the track is flush with an endless rigid wall.
+
+    Raises
+    ------
+    ValueError
+        If there is no such track, or the record cannot be heard.
+    """
+    track = track_of(system)
+    on_it = [number for number, contact in enumerate(system.contacts) if contact.track == track]
+    several = "contact" in record.dims
+    pressure = radiate(record.isel(contact=on_it) if several else record, track, places, baffled=baffled)
+    if several and len(on_it) < record.sizes["contact"]:
+        others = record.sizes["contact"] - len(on_it)
+        notes = [pressure.attrs["notes"], f"{others} of {record.sizes['contact']} contacts press on other tracks"]
+        pressure.attrs["notes"] = "; ".join(note for note in notes if note)
+    return pressure

@@ -1,0 +1,152 @@
+"""`stridula survey`: check the arguments, compute under a progress bar, and print what becomes of each mode."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from rich import box
+from rich.markup import escape
+from rich.table import Table
+
+from ..checks import ArgumentError
+from ..disk import check_writable, write
+from ..scenarios.read import read_tables
+from ..studies.fates import CHANGES, JOINS, LIVES, VIBRATES
+from ..studies.surveys import squeal_survey
+from ..studies.tables import survey_table
+from .consoles import wide_console
+from .counts import counted
+from .outputs import check_outputs
+from .points import Points
+from .sweeping import check_two_keys, closing, computing
+
+# Digits after the point of a level, and digits of other numbers.
+LEVEL, FORCE, NUMBER = ".1f", ".3g", ".4g"
+# Fates of one mode that have a line each.
+MOST_FATES = 3
+
+
+def survey_scenario(
+    name: str,
+    points: Points,
+    out: str,
+    plot: str | None,
+    table: str | None,
+    scheduler: str | None,
+    **options: Any,
+) -> str:
+    """Survey a scenario, write what came of it, print a table of its modes, and return the closing lines.
+
+    Raises
+    ------
+    ValueError
+        If anything that was asked for is not usable; nothing is written then.
+    OSError
+        If an output cannot be written; finished parts are kept.
+    Stopped
+        On Ctrl-C, or if other machines fail; finished parts are kept.
+    """
+    check_outputs(out, plot)
+    if table is not None:
+        _check_table(table, out, plot)
+    if plot is not None:
+        check_two_keys(points)
+    title = str(read_tables(name).get("title", name))
+    with computing(title, out, scheduler) as machinery:
+        found = squeal_survey(name, points, out=out, **options, **machinery)
+    if plot is not None:
+        from ..plot import save, squeal_map
+
+        save(squeal_map(found), plot)
+    if table is not None:
+        write(table, survey_table(found).encode())
+    console = wide_console()
+    if found.sizes["mode"]:
+        console.print(_modes(found, title))
+    console.print(escape(_verdicts(found)), highlight=False)
+    return closing(found, out)
+
+
+def _check_table(table: str, out: str, plot: str | None) -> None:
+    for option, other in (("--out", out), ("--plot", plot)):
+        if other is not None and Path(other).resolve() == Path(table).resolve():
+            raise ArgumentError("--table", f"be another file than {option}", table, got=f"{table!r} for both")
+    if not table.lower().endswith(".csv"):
+        raise ArgumentError("--table", "end in .csv", table)
+    check_writable(table)
+
+
+def _modes(found: xr.Dataset, title: str) -> Table:
+    """Return a table of the modes that grow anywhere, by rising frequency, each with what it becomes most often."""
+    table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
+    heads = ("mode", "frequency [Hz]", "growth [1/s]", "in time [1/s]", "first unstable at")
+    for head in (*heads, "becomes", "points", "tone [Hz]", "force [N rms]", "sound [dB(A)]"):
+        table.add_column(escape(head), justify="left" if head in (heads[-1], "becomes") else "right", overflow="fold")
+    flat = found.stack(at=found["verdict"].dims)
+    for number in found["mode"].values.tolist():
+        one = flat.sel(mode=number)
+        there = np.flatnonzero(np.isfinite(one["frequency"].values))
+        rates = [_span(one[word].values[there], NUMBER) for word in ("frequency", "growth_rate", "seen_growth_rate")]
+        first = [str(number), *rates, _place(found, int(there[0]))]
+        for fate in _fates(one.isel(at=there)):
+            table.add_row(*map(escape, (*first, *fate)))
+            first = [""] * len(first)
+    return table
+
+
+def _place(found: xr.Dataset, at: int) -> str:
+    """Return the values of the keys at a point, in words."""
+    verdict = found["verdict"]
+    where = verdict.isel(dict(zip(verdict.dims, np.unravel_index(at, verdict.shape), strict=True)))
+    keys = [str(name) for name in where.coords if name != "point"]
+    return ", ".join(f"{key} = {_value(where[key])}" for key in keys)
+
+
+def _value(one: xr.DataArray) -> str:
+    units = str(one.attrs.get("units", ""))
+    word = format(one.item(), NUMBER) if one.dtype.kind in "fiu" else str(one.item())
+    return f"{word} {units}" if units not in ("", "1") else word
+
+
+def _fates(one: xr.Dataset) -> Iterator[tuple[str, ...]]:
+    """Go through what becomes of a mode and how loud that is, in words, the most frequent first."""
+    names = ("fate", "joined", "regime")
+    words = np.array([_group(*told) for told in zip(*(one[name].values.tolist() for name in names), strict=True)])
+    kinds, counts = np.unique(words, return_counts=True)
+    order = np.argsort(-counts, kind="stable")
+    for kind in kinds[order[:MOST_FATES]]:
+        some = one.isel(at=np.flatnonzero(words == kind))
+        vibrates = some["fate"].values[0] in VIBRATES
+        tones, forces, levels = some["tone_frequency"].isel(tone=0), some["normal_force_rms"], some["sound_level"]
+        numbers = [(tones, NUMBER), (forces, FORCE), (levels, LEVEL)] if vibrates else []
+        yield kind, str(some.sizes["at"]), *(_span(values.values, form) for values, form in numbers)
+    left = int(counts[order[MOST_FATES:]].sum())
+    if left:
+        yield "otherwise", str(left)
+
+
+def _group(fate: str, joined: float, regime: str) -> str:
+    """Return in words what becomes of a mode, without numbers."""
+    if fate == JOINS:
+        return f"joins mode {joined:.0f}, {regime}" if np.isfinite(joined) else f"joins another mode, {regime}"
+    return {LIVES: regime, CHANGES: f"{regime}, other tone"}.get(fate, fate)
+
+
+def _span(values: Any, form: str) -> str:
+    """Return the least and the largest of some numbers in words, one if they are the same so."""
+    known = values[np.isfinite(values)]
+    if not known.size:
+        return "-"
+    low, high = format(float(known.min()), form), format(float(known.max()), form)
+    return low if low == high else f"{low} to {high}"
+
+
+def _verdicts(found: xr.Dataset) -> str:
+    """Return how many points linear theory has of each kind."""
+    kinds, counts = np.unique(found["verdict"].values.astype(str), return_counts=True)
+    order = np.argsort(-counts, kind="stable")
+    return "linear theory: " + ", ".join(f"{kinds[k]} at {counted(int(counts[k]), 'point')}" for k in order)

@@ -1,0 +1,142 @@
+"""Modes about the equilibrium that a run starts in, and how far each may swing within linear theory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+from ..drives import InitialEquilibrium
+from ..system import System
+from .equilibrium import Equilibrium, find_equilibrium
+from .given import given_status, given_velocity
+from .modes import modes_of, round_off
+from .starts import at_rest, largest_displacement
+from .structure import SEPARATED, SLIDING, STICKING, Structure
+from .vibration import Exponents, Vibration, vibration
+
+# Change of a force or a velocity, relative to the largest of the mode, that is round-off.
+ROUND_OFF = 1e-9
+
+
+@dataclass(frozen=True)
+class ModesAtRest:
+    """Modes of vibration about the equilibrium that a run starts in, by rising frequency.
+
+    Attributes
+    ----------
+    exponents : ndarray of complex, shape (modes,)
+        Growth and angular frequency [1/s].
+    round_off : float
+        Growth up to which a mode does not count as unstable [1/s].
+    reach : dict
+        Of each mode that grows, by its number, the displacement of the contact point that moves most [m] at which a
+        contact opens, lands, sticks or slips by linear theory; 0 where the least motion is enough, NaN of modes that
+        move no contact point.
+    normal_force, slip_velocity : ndarray, shape (contacts,)
+        Normal forces [N] and slip velocities [m/s] at rest.
+    """
+
+    exponents: Array
+    round_off: float
+    reach: dict[int, float]
+    normal_force: Array
+    slip_velocity: Array
+
+
+def equilibrium_at_start(system: System, asked: InitialEquilibrium) -> tuple[str, tuple[str, ...]]:
+    """Return the kind of the equilibrium under the drives as they are at the start, and the status of each contact.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    asked : InitialEquilibrium
+        Statuses and slip velocities that are given; the kind says what would come of these statuses.
+
+    Raises
+    ------
+    ValueError
+        If a slip velocity is needed, or contacts hold the same motion twice.
+    """
+    structure = Structure(system, 0.0)
+    status = given_status(asked.status, system)
+    found = find_equilibrium(structure, given_velocity(asked.velocity, structure, status), status)
+    return found.kind, found.status
+
+
+def modes_at_rest(system: System, asked: InitialEquilibrium) -> ModesAtRest:
+    """Return the modes about the equilibrium that a run starts in, numbered as `InitialEquilibrium` counts them.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    asked : InitialEquilibrium
+        The equilibrium.
+
+    Raises
+    ------
+    ValueError
+        If there is no such equilibrium.
+    """
+    whole, structure, at = at_rest(system, asked)
+    motion = vibration(structure, at)
+    found = modes_of(structure, motion)
+    grows = np.flatnonzero(found.values.real > round_off(structure)).tolist()
+    reach = {number: _reach(whole, structure, at, motion, found, number) for number in grows}
+    return ModesAtRest(found.values, round_off(structure), reach, at.normal_force, at.slip_velocity)
+
+
+def _reach(
+    whole: Structure, structure: Structure, at: Equilibrium, motion: Vibration, found: Exponents, number: int
+) -> float:
+    """Return how far a mode may swing [m]."""
+    exponent, shape = complex(found.values[number]), found.shapes[:, number]
+    largest = abs(largest_displacement(structure, shape))
+    if not largest:
+        return float("nan")
+    normal, stuck = _forces(motion, at, exponent, shape)
+    rooms = [_room(float(room), abs(change)) for room, change in _slides(structure, at, exponent, shape)]
+    moved = np.abs([line.normal @ shape for line in structure.lines])
+    for k, status in enumerate(at.status):
+        if status == SEPARATED:
+            gap = float(whole.gaps[k] + structure.lines[k].normal @ at.displacement)
+            rooms.append(_room(gap, moved[k]))
+            continue
+        rooms.append(_room(float(at.normal_force[k]), abs(normal[k]), ROUND_OFF * np.abs(normal).max()))
+        if status == STICKING:
+            hold = float(structure.system.contacts[k].friction.coefficient_at(0.0))
+            kept = float(np.hypot(at.tangential_force[k], at.lateral_force[k]))
+            rooms.append(_room(hold * float(at.normal_force[k]) - kept, abs(stuck[k]) + hold * abs(normal[k])))
+    return min(rooms) * largest
+
+
+def _room(room: float, change: float, least: float = 0.0) -> float:
+    """Return how many times a change fits into a room."""
+    return max(room, 0.0) / change if change > least else float("inf")
+
+
+def _forces(motion: Vibration, at: Equilibrium, exponent: complex, shape: Array) -> tuple[Array, Array]:
+    """Return normal forces of all contacts, and forces that hold those that stick, in a mode [N]."""
+    states = motion.from_velocity @ (exponent * shape) / (exponent - motion.state)
+    moving = motion.mass * exponent**2 * shape + exponent * (motion.damping @ shape) + motion.stiffness @ shape
+    forces = np.linalg.lstsq(motion.pushes.T, moving + motion.by_state @ states, rcond=None)[0]
+    normal, stuck = np.zeros((2, len(at.status)), dtype=complex)
+    closed = [k for k, status in enumerate(at.status) if status != SEPARATED]
+    held = [k for k in closed if at.status[k] == STICKING]
+    normal[closed] = forces[: len(closed)]
+    stuck[held] = forces[len(closed) : len(closed) + len(held)]
+    return normal, stuck
+
+
+def _slides(structure: Structure, at: Equilibrium, exponent: complex, shape: Array) -> list[tuple[float, float]]:
+    """Return slip velocity and its change in a mode [m/s] of the contacts that slide and whose slip changes."""
+    found = []
+    for k, line in enumerate(structure.lines):
+        slip = line.tangent - (line.tangent_slope @ at.displacement) * line.along
+        change = float(abs(exponent * (slip @ shape)))
+        if at.status[k] == SLIDING and change > ROUND_OFF * abs(exponent) * np.linalg.norm(slip):
+            found.append((abs(float(at.slip_velocity[k])), change))
+    return found

@@ -1,0 +1,296 @@
+"""What becomes of a mode that grows: a run from equilibrium with the mode on top, and what its limit cycle is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..acoustics.heard_system import heard, track_of
+from ..acoustics.levels import LOWEST_RATE, SHORTEST, equivalent_level
+from ..acoustics.panels import panel_of
+from ..analysis.regimes import regime_of
+from ..arrays import Array
+from ..checks import ArgumentError
+from ..drives import InitialEquilibrium
+from ..linear.reach import ModesAtRest
+from ..records.variables import STATUS_WORDS
+from ..scenarios.load import Scenario
+from .swings import growth_in_time, linear_time, relative, swing
+from .tones_of_modes import Tone, tones_of
+
+LIVES, JOINS, CHANGES, DIES = "lives", "joins", "changes", "dies"
+NOT_REACHED, LEFT, FAILED = "not reached", "off the track", "failed"
+FATES = (LIVES, JOINS, CHANGES, DIES, NOT_REACHED, LEFT, FAILED)
+# Those that end in a vibration.
+VIBRATES = (LIVES, JOINS, CHANGES)
+# Periods of the mode in the window over which a limit cycle is measured, and its shortest length [s].
+PERIODS, SHORTEST_WINDOW = 100.0, 0.1
+# Times 1 / growth in which a limit cycle settles once contacts open, stick or slip.
+SETTLING = 5.0
+# Samples recorded in a period of the highest mode of linear theory, where nothing is heard.
+SAMPLES = 20.0
+# Ratio of the swings of two windows, one after the other, up to which a limit cycle is steady.
+STEADY = 1.25
+# Share of the growth of linear theory, below which a motion has left it.
+BENT = 0.25
+# Swing, absolute and over the largest of the run, below which a vibration is dead; pieces of the run that are compared.
+DEAD, FADED, PIECES = 0.01, 0.1, 20
+
+
+@dataclass(frozen=True)
+class Options:
+    """How modes are followed.
+
+    Attributes
+    ----------
+    duration : float or None
+        Time of each run [s]; from the growth rate if None.
+    longest : float
+        Longest time of a run whose time is not given [s].
+    amplitude : float
+        Start of the mode over its reach [1].
+    resolution : float
+        Largest distance of a tone from its mode, relative to it [1].
+    highest : float
+        Highest frequency of a mode that is followed [Hz].
+    velocity : float, tuple of float or None
+        Slip velocity where nothing prescribes it [m/s].
+    """
+
+    duration: float | None
+    longest: float
+    amplitude: float
+    resolution: float
+    highest: float
+    velocity: float | tuple[float, ...] | None
+
+
+@dataclass(frozen=True)
+class Runs:
+    """Runs of a scenario from its equilibrium, each with a mode on top.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        System, without a start of its own, and how to simulate it.
+    start : InitialEquilibrium
+        The equilibrium.
+    rest : ModesAtRest
+        The modes about it.
+    options : Options
+        How they are followed.
+    watch : callable
+        Called now and then; what it raises ends a run.
+    """
+
+    scenario: Scenario
+    start: InitialEquilibrium
+    rest: ModesAtRest
+    options: Options
+    watch: Callable[[], None]
+
+    @property
+    def followed(self) -> list[int]:
+        """Numbers of the modes that grow and are followed."""
+        exponents = self.rest.exponents
+        return [number for number in self.rest.reach if exponents[number].imag <= 2.0 * np.pi * self.options.highest]
+
+    def of(self, number: int) -> xr.Dataset:
+        """Return a run with a mode on top, until its limit cycle is steady or time is up.
+
+        Raises
+        ------
+        ValueError
+            If nothing prescribes the slip, or the mode moves no contact point.
+        """
+        reach = self.rest.reach[number]
+        if reach == 0.0:
+            raise ArgumentError("velocity", "be given: a contact is about to stick, slip, open or land at the start")
+        if not np.isfinite(reach):
+            raise ArgumentError("mode", "move a contact point to be followed", got=f"{number}, which moves none")
+        start = replace(self.start, mode=number, amplitude=self.options.amplitude * reach)
+        given, longest = self.options.duration, self.options.longest
+        run = self._simulate(start, given or min(longest, self._time(number)))
+        while given is None and run.attrs["ended"] == "finished" and not self.is_settled(run, number):
+            lasted = _length(run)
+            if lasted > longest - 0.5 * self.window(run, number):
+                break
+            more = self._simulate(start, min(lasted, longest - lasted), start=run)
+            run = xr.concat([run, more], "time", data_vars="minimal", coords="minimal", compat="override").assign(
+                {name: more[name] for name in more if str(name).startswith("state_")}
+            )
+            run.attrs = more.attrs
+        return run
+
+    @cached_property
+    def still(self) -> xr.Dataset:
+        """A run from equilibrium alone, as long as modes are within linear theory."""
+        lasts = [linear_time(self.rest, number, self.options.amplitude) for number in self.followed]
+        return self._simulate(self.start, min(max(lasts), self.options.duration or self.options.longest))
+
+    @cached_property
+    def sample_rate(self) -> float:
+        """Samples per second of the runs [Hz]: those of the scenario where it is heard, else no more than it takes."""
+        highest = float(np.abs(self.rest.exponents).max()) / (2.0 * np.pi)
+        rate = self.scenario.sample_rate
+        return rate if self.is_heard else min(rate, SAMPLES * highest)
+
+    @cached_property
+    def is_heard(self) -> bool:
+        """Whether a track of the system can be heard."""
+        try:
+            panel_of(track_of(self.scenario.system))
+        except ArgumentError:
+            return False
+        return True
+
+    def window(self, run: xr.Dataset, number: int) -> float:
+        """Return the length of the windows in which a run is looked at [s]."""
+        return min(self._window(number), 0.5 * _length(run))
+
+    def is_settled(self, run: xr.Dataset, number: int) -> bool:
+        """Return whether a run has come to a limit cycle that is steady, or to rest."""
+        return self.is_dead(run, number) or (self.has_left(run, number) and self.is_steady(run, number))
+
+    def has_left(self, run: xr.Dataset, number: int) -> bool:
+        """Return whether a run has left linear theory: contacts change their status, or it grows far less."""
+        window = self.window(run, number)
+        shares = last(run, 2.0 * window)["status_share"].values
+        if bool(((shares > 0.0) & (shares < 1.0)).any() or np.ptp(shares, axis=0).any()):
+            return True
+        before, after = self._swings(run, number)
+        return after > 0.0 and np.log(after / before) < BENT * float(self.rest.exponents[number].real) * window
+
+    def is_steady(self, run: xr.Dataset, number: int) -> bool:
+        """Return whether a run swings alike in its last two windows."""
+        before, after = self._swings(run, number)
+        return after > 0.0 and before > 0.0 and bool(abs(np.log(after / before)) < np.log(STEADY))
+
+    def is_dead(self, run: xr.Dataset, number: int) -> bool:
+        """Return whether a run has come to rest."""
+        motion = relative(run, self.rest)
+        largest = max(swing(piece) for piece in np.array_split(motion, min(PIECES, len(motion))))
+        _, after = self._swings(run, number)
+        return after < DEAD and after < FADED * largest
+
+    def _swings(self, run: xr.Dataset, number: int) -> tuple[float, float]:
+        """Return the swings in the last two windows of a run [1]."""
+        motion, window = relative(run, self.rest), self.window(run, number)
+        samples = max(1, round(window / float(run.attrs["sample_interval"])))
+        return swing(motion[-2 * samples : -samples]), swing(motion[-samples:])
+
+    def _time(self, number: int) -> float:
+        """Return how long a mode takes to grow, settle and be measured [s]."""
+        growth = float(self.rest.exponents[number].real)
+        return (float(np.log(1.0 / self.options.amplitude)) + SETTLING) / growth + 2.0 * self._window(number)
+
+    def _window(self, number: int) -> float:
+        exponent = self.rest.exponents[number]
+        slowest = max(abs(float(exponent.imag)), abs(float(exponent.real)))
+        return max(SHORTEST_WINDOW, PERIODS * 2.0 * np.pi / slowest)
+
+    def _simulate(self, begins: InitialEquilibrium, lasts: float, **words: Any) -> xr.Dataset:
+        system = replace(self.scenario.system, drives=(*self.scenario.system.drives, begins))
+        scenario = replace(self.scenario, system=system, sample_rate=self.sample_rate, probes=())
+        return scenario.simulate(duration=lasts, watchers=[lambda progress: self.watch()], **words)
+
+
+def last(run: xr.Dataset, lasts: float) -> xr.Dataset:
+    """Return the end of a run, of a length [s]."""
+    return run.isel(time=slice(-max(2, round(lasts / float(run.attrs["sample_interval"]))), None))
+
+
+def fate_of(runs: Runs, number: int) -> dict[str, Any]:
+    """Return what becomes of a mode, by the names of the variables of a survey, in plain numbers and texts.
+
+    Parameters
+    ----------
+    runs : Runs
+        The runs.
+    number : int
+        Which mode.
+    """
+    run, rest = runs.of(number), runs.rest
+    seen = growth_in_time(run, runs.still, rest, number, runs.options.amplitude)
+    measured = 2.0 * runs.window(run, number)
+    end = last(run, measured)
+    which = _liveliest(end, rest)
+    contact, force = _of_contact(end, which), float(rest.normal_force[which])
+    signal = contact["normal_force"]
+    if swing(signal.values[:, None]) < 1e-6 * force:
+        signal = contact["slip_velocity"]
+    grows = np.array(list(rest.reach))
+    is_dead = runs.is_dead(run, number)
+    found = [] if is_dead else tones_of(signal, rest.exponents, grows, runs.options.resolution)
+    whole = _of_contact(run, which)
+    regime = regime_of(whole, start=max(0.0, _length(run) - measured))
+    fate, joined = _fate(runs, run, number, found)
+    shares = end["status_share"].mean([name for name in end["status_share"].dims if name != "contact_status"])
+    return {
+        "seen_frequency": abs(seen.imag) / (2.0 * np.pi),
+        "seen_growth_rate": seen.real,
+        "duration": _length(run),
+        "reached": float(runs.has_left(run, number)),
+        "steady": float(runs.is_steady(run, number)),
+        "fate": fate,
+        "joined": joined,
+        "regime": str(regime["regime"]),
+        "confidence": float(regime["confidence"]),
+        "normal_force_rms": float(contact["normal_force"].std()),
+        "slip_velocity_rms": swing(contact["slip_velocity"].values.reshape(contact.sizes["time"], -1)),
+        **{f"{word}_share": float(share) for word, share in zip(STATUS_WORDS, shares.values, strict=True)},
+        "sound_level": _sound_level(runs, run, measured),
+        "tones": [tone._asdict() for tone in found],
+    }
+
+
+def _fate(runs: Runs, run: xr.Dataset, number: int, found: list[Tone]) -> tuple[str, int]:
+    """Return the fate of a mode, and the number of the mode that it joins, -1 for none."""
+    if run.attrs["ended"] == LEFT:
+        return LEFT, -1
+    if runs.is_dead(run, number):
+        return DIES, -1
+    if not runs.has_left(run, number):
+        return NOT_REACHED, -1
+    mode = found[0].mode if found else -1
+    if mode == number:
+        return LIVES, -1
+    return (JOINS, mode) if mode in runs.rest.reach else (CHANGES, -1)
+
+
+def _liveliest(end: xr.Dataset, rest: ModesAtRest) -> int:
+    """Return the number of the contact whose normal force swings most, of those that press at rest."""
+    forces = end["normal_force"].values.reshape(end.sizes["time"], -1)
+    return int(np.where(rest.normal_force > 0.0, forces.std(axis=0), -1.0).argmax())
+
+
+def _of_contact(run: xr.Dataset, number: int) -> xr.Dataset:
+    return run.isel(contact=number) if "contact" in run.dims else run
+
+
+def _sound_level(runs: Runs, run: xr.Dataset, lasts: float) -> float:
+    """Return LAeq at the end of a run at the louder ear [dB], NaN where nothing can be heard."""
+    if not runs.is_heard or lasts < SHORTEST or runs.sample_rate < LOWEST_RATE:
+        return float("nan")
+    # The load at rest bent the track long before; it makes no sound when the run begins.
+    moved = run.assign(normal_force=run["normal_force"] - _at_rest(run, runs.rest.normal_force))
+    pressure = heard(moved, runs.scenario.system)
+    return float(equivalent_level(last_of(pressure, lasts, run), "A").max())
+
+
+def _at_rest(run: xr.Dataset, forces: Array) -> Any:
+    return xr.DataArray(forces, dims="contact") if "contact" in run.dims else float(forces[0])
+
+
+def last_of(signal: xr.DataArray, lasts: float, run: xr.Dataset) -> xr.DataArray:
+    """Return the end of what is sampled as a run is."""
+    return signal.isel(time=slice(-round(lasts / float(run.attrs["sample_interval"])), None))
+
+
+def _length(run: xr.Dataset) -> float:
+    return float(run.sizes["time"] * run.attrs["sample_interval"])

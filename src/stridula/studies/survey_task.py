@@ -1,0 +1,112 @@
+"""What is done at the points of a survey: equilibrium, modes, and a run from each mode that grows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..drives import InitialEquilibrium
+from ..linear.equilibrium import JAMMED
+from ..linear.reach import equilibrium_at_start, modes_at_rest
+from ..linear.structure import SLIDING
+from ..scenarios.load import Scenario
+from ..system import System
+from .fates import FAILED, Options, Runs, fate_of
+from .sources import Source
+from .task import NOT_BUILT, NOT_STARTED, Outcome, failing
+
+STABLE, UNSTABLE = "stable", "unstable"
+
+
+@dataclass(frozen=True)
+class SurveyTask:
+    """What is done at each point of a survey.
+
+    Attributes
+    ----------
+    source : Source
+        What makes the scenario of a point.
+    options : Options
+        How modes are followed.
+    """
+
+    source: Source
+    options: Options
+
+    def outcomes(
+        self, points: Sequence[Sequence[Any]], workers: int = 1, watch: Callable[[], None] = lambda: None
+    ) -> list[Outcome]:
+        """Return what came of some points; the same points give the same to the last bit.
+
+        Parameters
+        ----------
+        points : sequence of sequence
+            Values of the keys at each point.
+        workers : int, optional
+            Not used: the runs of a point follow each other.
+        watch : callable, optional
+            Called now and then; what it raises ends everything.
+        """
+        return [self._outcome(values, watch) for values in points]
+
+    def _outcome(self, values: Sequence[Any], watch: Callable[[], None]) -> Outcome:
+        watch()
+        outcome: Outcome = {"ended": NOT_BUILT, "message": "", "values": {}}
+        with failing(outcome, NOT_BUILT):
+            scenario = self.source.scenario(values)
+        if not outcome["message"]:
+            with failing(outcome, NOT_STARTED):
+                self._survey(scenario, outcome, watch)
+        return outcome
+
+    def _survey(self, scenario: Scenario, outcome: Outcome, watch: Callable[[], None]) -> None:
+        """Put into an outcome what linear theory has, and what comes of its modes."""
+        system, start = without_start(scenario.system, self.options.velocity)
+        kind, status = equilibrium_at_start(system, start)
+        outcome["values"] = {"equilibrium": kind, "modes": []}
+        if kind == JAMMED or SLIDING not in status:
+            # Nothing else feeds a vibration.
+            outcome["ended"] = kind
+            outcome["values"] |= {} if kind == JAMMED else {"unstable_modes": 0.0}
+            return
+        start = replace(start, status=status)
+        rest = modes_at_rest(system, start)
+        runs = Runs(replace(scenario, system=system), start, rest, self.options, watch)
+        outcome["ended"] = UNSTABLE if rest.reach else STABLE
+        outcome["values"]["unstable_modes"] = float(len(rest.reach))
+        for number in runs.followed:
+            exponent = complex(rest.exponents[number])
+            mode: dict[str, Any] = {"number": number, "frequency": exponent.imag / (2.0 * np.pi)}
+            mode |= {"growth_rate": exponent.real, "amplitude": self.options.amplitude * rest.reach[number]}
+            mode |= {"fate": FAILED, "joined": -1, "tones": []}
+            outcome["values"]["modes"].append(mode)
+            told: Outcome = {"ended": "", "message": ""}
+            with failing(told, FAILED):
+                mode |= fate_of(runs, number)
+            for tone in mode["tones"]:
+                tone["mode"] = (
+                    abs(float(rest.exponents[tone["mode"]].imag)) / (2.0 * np.pi) if tone["mode"] >= 0 else None
+                )
+            if told["message"] and not outcome["message"]:
+                outcome["message"] = f"mode at {mode['frequency']:.5g} Hz: {told['message']}"
+
+
+def without_start(system: System, velocity: float | tuple[float, ...] | None) -> tuple[System, InitialEquilibrium]:
+    """Return a system without a start of its own, and the equilibrium that it is asked for.
+
+    Parameters
+    ----------
+    system : System
+        The system; statuses and slip velocities of an equilibrium in which it starts hold on.
+    velocity : float, tuple of float or None
+        Slip velocity where nothing prescribes it [m/s], in place of those.
+    """
+    own = system.initial_equilibrium
+    kept = [
+        drive for drive in system.drives if drive is not own and drive.uniform_velocity is None and not drive.vectors
+    ]
+    asked = InitialEquilibrium() if own is None else replace(own, mode=None, amplitude=0.0, phase=0.0)
+    return replace(system, drives=kept), asked if velocity is None else replace(asked, velocity=velocity)

@@ -1,0 +1,154 @@
+"""Squeal surveys: which modes of sliding grow over parameters, and what becomes of each in time."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from ..checks import ArgumentError, by_key, finite, one_or_each, positive, within
+from ..scenarios.quantities import quantity
+from ..version import __version__
+from .computed import Plan, Watcher, check_options, computed
+from .fates import Options
+from .points import Grid, LatinHypercube, laid_out, plain_python
+from .sources import SystemOf, varying
+from .survey_task import SurveyTask
+from .surveyed import check_names, surveyed
+from .task import Outcome
+
+# Points that are computed in one go: each takes several runs.
+POINTS_OF_A_PART = 1
+
+
+def squeal_survey(
+    scenario: str | Path | xr.Dataset | SystemOf,
+    points: Grid | LatinHypercube | Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]],
+    *,
+    overrides: Mapping[str, Any] | None = None,
+    duration: float | str | None = None,
+    longest: float | str = 1.0,
+    amplitude: float = 1e-3,
+    resolution: float = 0.1,
+    highest: float | str | None = None,
+    velocity: float | Sequence[float] | None = None,
+    sample_rate: float | str | None = None,
+    out: str | Path | None = None,
+    workers: int | None = None,
+    client: Any = None,
+    watchers: Sequence[Watcher] = (),
+) -> xr.Dataset:
+    """Find the modes of steady sliding that grow over parameters, and follow each in time to what becomes of it.
+
+    At each point linear theory finds the equilibrium and its complex modes, as `sliding_stability` does at the start,
+    with the contact points where the loaded system has them. For each mode that grows a run starts in this equilibrium
+    with the mode on top and lasts until its limit cycle is steady. A run without the mode, from the same start, is
+    taken off when growth is measured. Starts that a scenario has of its own are left out, but for statuses and slip
+    velocity of its initial equilibrium.
+
+    Points are computed and kept as those of a `sweep`; each is a part of its own.
+
+    Parameters
+    ----------
+    scenario : str, Path, xarray.Dataset or callable
+        A scenario, or a function that makes a system of values by name, as for `sweep`. Its duration does not count.
+    points : Grid, LatinHypercube, mapping or sequence of mapping
+        Values by key, as for `sweep`.
+    overrides : mapping, optional
+        Values of other keys, the same at every point.
+    duration : float or str, optional
+        Time of each run [s]. If left out, it follows from the growth rate: what the mode takes to its reach, five times
+        one over the growth rate, and two windows of 100 periods or 0.1 s; then it is doubled until the limit cycle is
+        steady.
+    longest : float or str, optional
+        Longest time of a run whose duration is left out [s].
+    amplitude : float, optional
+        Start of the mode over its reach [1], below 0.1. The reach is the displacement at which a contact opens, stops,
+        sticks, slips or lands by linear theory.
+    resolution : float, optional
+        Largest distance of a tone from the mode that it belongs to, relative to the mode's frequency [1].
+    highest : float or str, optional
+        Modes above this frequency [Hz] are counted, but not followed.
+    velocity : float or sequence of float, optional
+        Slip velocity where nothing prescribes it [m/s], as for `sliding_stability`.
+    sample_rate : float or str, optional
+        Samples per second recorded [Hz]; if left out the scenario's, or what the highest mode takes where that is less
+        and nothing can be heard.
+    out : str or Path, optional
+        NetCDF file to write. Points that are done are kept in a folder beside it, ``<out>.parts``; the same call
+        resumes from there.
+    workers : int, optional
+        Points at a time; as many as there are processors if left out.
+    client : distributed.Client, optional
+        Machines that compute the points, in place of this one.
+    watchers : sequence of callable, optional
+        Called with a `SweepProgress` after each point.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the points: ``verdict`` (stable, unstable, held, lifted off, jammed, not built, not started),
+        ``equilibrium``, ``unstable_modes``, ``living_modes`` and ``message``. Over the points and ``mode``, NaN or
+        empty where a mode does not grow: ``frequency`` [Hz] and ``growth_rate`` [1/s] by linear theory,
+        ``seen_frequency`` and ``seen_growth_rate`` in the run, ``fate``, ``regime``, levels, shares, ``sound_level``
+        [dB] and more; over ``tone``, too, the tones of the limit cycle and the modes that they belong to.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario cannot be used, or a key is not known, means several places or takes values of another kind.
+    ValueError
+        If another argument is not usable, a function takes other parameters or fails at the first and the last point,
+        or `out` is another file or that of another survey, which is not touched.
+    OSError
+        If the file or a part cannot be written; finished parts are kept.
+    RuntimeError
+        If a part fails on other machines; finished parts are kept.
+    """
+    check_options(workers, client, watchers)
+    options = Options(
+        duration=None if duration is None else _positive("duration", duration, "s"),
+        longest=_positive("longest", longest, "s"),
+        amplitude=within("amplitude", plain_python(amplitude), 1e-6, 0.1),
+        resolution=within("resolution", plain_python(resolution), 0.0, 0.5),
+        highest=math.inf if highest is None else _positive("highest", highest, "Hz"),
+        velocity=None if velocity is None else one_or_each("velocity", plain_python(velocity), finite),
+    )
+    rate = None if sample_rate is None else _positive("sample_rate", sample_rate, "Hz")
+    plan = _planned(scenario, points, by_key("overrides", overrides), options, rate)
+    return computed(plan, out, workers, client, watchers)
+
+
+def _positive(name: str, given: Any, unit: str) -> float:
+    """Return a number above 0 in SI, which may be given as a text."""
+    try:
+        return positive(name, quantity(plain_python(given), unit))
+    except ArgumentError as error:
+        raise error.renamed(name) from None
+
+
+def _planned(
+    scenario: Any, points: Any, overrides: Mapping[str, Any], options: Options, sample_rate: float | None
+) -> Plan:
+    """Return a survey, checked."""
+    layout = laid_out(points)
+    check_names(layout)
+    fixed = {key: plain_python(value) for key, value in overrides.items()}
+    rate = {} if sample_rate is None else {"sample_rate": sample_rate}
+    # Of a function nobody else may say it; runs last as long as their modes take.
+    timing = {"duration": options.duration or options.longest, **rate}
+    found = varying(scenario, fixed, timing, layout, highest_rate=math.inf)
+    asked = vars(options) | {"points": layout.asked, "overrides": fixed, "sample_rate": sample_rate}
+    attributes = found.attributes | {
+        "stridula_version": __version__,
+        "survey": json.dumps(asked, ensure_ascii=False, default=str),
+    }
+
+    def labelled(outcomes: Sequence[Outcome]) -> xr.Dataset:
+        return surveyed(layout, found.keys, found.values, outcomes, attributes)
+
+    return Plan("survey", SurveyTask(found.source, options), found.values, POINTS_OF_A_PART, attributes, labelled)

@@ -1,0 +1,60 @@
+"""Surveys as tables for other programs: a row for each mode of each point."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..checks import ArgumentError, instance, listed
+from .surveyed import NUMBERS, OF_POINTS, WORDS
+
+COLUMNS = (*(name for name in OF_POINTS if name != "message"), "mode", *NUMBERS, *WORDS, "tone_frequency", "message")
+
+
+def survey_table(found: xr.Dataset) -> str:
+    """Return a survey as comma-separated values, in SI but for the keys, which keep their units.
+
+    A point without a mode that grows has one row. ``tone_frequency`` is that of the strongest tone.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        What `squeal_survey` returned.
+
+    Raises
+    ------
+    ValueError
+        If it is anything else.
+    """
+    instance("found", found, xr.Dataset)
+    if any(name not in found for name in (*OF_POINTS, *NUMBERS, *WORDS, "mode", "tone_frequency")):
+        raise ArgumentError("found", "be a survey", found, got=f"variables {listed(map(str, found))}")
+    dims, keys = found["verdict"].dims, [str(name) for name in found.coords if name not in ("mode", "tone", "point")]
+    lines = io.StringIO()
+    writer = csv.writer(lines, lineterminator="\n")
+    writer.writerow([*keys, *COLUMNS])
+    for place in np.ndindex(found["verdict"].shape):
+        point = found.isel(dict(zip(dims, place, strict=True)))
+        there = np.flatnonzero(np.isfinite(point["frequency"].values)).tolist()
+        for mode in there if there else (None,):
+            writer.writerow([_plain(point[key]) for key in keys] + [_cell(point, name, mode) for name in COLUMNS])
+    return lines.getvalue()
+
+
+def _cell(point: xr.Dataset, name: str, mode: int | None) -> Any:
+    if name in OF_POINTS:
+        return _plain(point[name])
+    if mode is None:
+        return ""
+    one = point[name].isel(mode=mode) if name != "mode" else point["mode"][mode]
+    return _plain(one.isel(tone=0) if "tone" in one.dims else one)
+
+
+def _plain(one: xr.DataArray) -> Any:
+    """Return a value as text or number, nothing for NaN."""
+    value = one.item()
+    return "" if isinstance(value, float) and np.isnan(value) else value
