@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .entries import LABEL_BASE, Entries, by_position, check_both_triangles, filled_in, labels_of
+from .entries import LABEL_BASE, Entries, by_position, check_full, filled_in, labels_of
 from .nastran import Held, chosen
 from .nastran_cards import fields_of, real
 from .text import Lines, text_of
@@ -68,7 +68,7 @@ def read_dmig(role: str, path: str | os.PathLike[str]) -> Entries:
     i, j, keys = by_position(np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64))
     full = filled_in(i, j, np.array(values), keys.size, lambda k: tuple(labels_of(keys[[k]])[0].tolist()))
     if not matrix.is_symmetric:
-        check_both_triangles(i, j, f"as the form of {matrix.name} is square")
+        check_full(i, j, keys.size, f"as the form of {matrix.name} is square")
         return Entries(i, j, np.array(values), keys=keys)
     return Entries(*full, keys=keys)
 

@@ -108,12 +108,13 @@ def with_mirror_images(rows: Array, columns: Array, values: Array) -> tuple[Arra
     return *both, np.append(values, values[beside])
 
 
-def check_both_triangles(rows: Array, columns: Array, what: str) -> None:
-    """Raise ValueError if a matrix of which `what` says that it is given in full has a triangle that is empty."""
-    below, above = bool((rows > columns).any()), bool((rows < columns).any())
-    if below != above:
-        held = "lower" if below else "upper"
-        raise ValueError(f"it must hold both triangles, {what}, it holds the {held} one only")
+def check_full(rows: Array, columns: Array, size: int, what: str) -> None:
+    """Raise ValueError if a matrix, of which `what` says that it is full, has one of each pair of entries only."""
+    if (rows != columns).any() and not _has_mirror_images(rows, columns, np.sort(_places(rows, columns, size)), size):
+        held = {-1: "the upper triangle", 1: "the lower triangle"}
+        sides = {int(side) for side in np.sign(rows - columns)} - {0}
+        got = held[sides.pop()] if len(sides) == 1 else "one of each pair of entries"
+        raise ValueError(f"it must hold both triangles, {what}, it holds {got} only")
 
 
 def filled_in(
@@ -137,16 +138,27 @@ def filled_in(
     ValueError
         If an entry stands twice.
     """
-    place = rows.astype(np.int64) * size + columns
+    place = _places(rows, columns, size)
     place.sort()
     twice = np.flatnonzero(np.diff(place) == 0)
     if twice.size:
         first, second = (called(int(k)) for k in divmod(int(place[twice[0]]), size))
         raise ValueError(f"each entry must stand once (assembled matrices), got two at {first}, {second}")
+    if _has_mirror_images(rows, columns, place, size):
+        return rows, columns, values
+    return with_mirror_images(rows, columns, values)
+
+
+def _places(rows: Array, columns: Array, size: int) -> Array:
+    return np.asarray(rows.astype(np.int64) * size + columns)
+
+
+def _has_mirror_images(rows: Array, columns: Array, places: Array, size: int) -> bool:
+    """Return whether any entry beside the diagonal has its mirror image among the rising places of all."""
     for start in range(0, rows.size, PIECE):
         i, j = (part[start : start + PIECE] for part in (rows, columns))
-        mirrored = (j.astype(np.int64) * size + i)[i != j]
-        found = np.minimum(np.searchsorted(place, mirrored), place.size - 1)
-        if (place[found] == mirrored).any():
-            return rows, columns, values
-    return with_mirror_images(rows, columns, values)
+        mirrored = _places(j, i, size)[i != j]
+        found = np.minimum(np.searchsorted(places, mirrored), places.size - 1)
+        if (places[found] == mirrored).any():
+            return True
+    return False

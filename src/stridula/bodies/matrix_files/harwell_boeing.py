@@ -9,7 +9,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...checks import ArgumentError
-from .entries import Entries, both_triangles, check_both_triangles
+from .entries import Entries, both_triangles, check_full
 from .limits import LARGEST_SPARSE, check_size
 from .text import Lines, text_of
 
@@ -47,7 +47,7 @@ def read_harwell_boeing(name: str, path: str | os.PathLike[str]) -> Entries:
     i, j, values = _kept(rows.astype(np.int32), columns, values)
     if kind[1] == "S":
         return Entries(*both_triangles(i, j, values, "as its header says symmetric"), size)
-    check_both_triangles(i, j, "as its header says unsymmetric")
+    check_full(i, j, size, "as its header says unsymmetric")
     return Entries(i, j, values, size)
 
 

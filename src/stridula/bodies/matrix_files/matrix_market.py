@@ -12,7 +12,7 @@ import scipy.io
 
 from ...arrays import Array
 from ...checks import ArgumentError
-from .entries import Entries, check_both_triangles, with_mirror_images
+from .entries import Entries, check_full, with_mirror_images
 from .limits import LARGEST_SIZE, LARGEST_SPARSE, check_size
 from .text import Layout, first_bad, table, text_of
 
@@ -46,7 +46,7 @@ def read_matrix_market(name: str, path: str | os.PathLike[str]) -> Entries:
     if symmetric:
         i, j, values = with_mirror_images(i, j, values)
     else:
-        check_both_triangles(i, j, "as its header says general")
+        check_full(i, j, rows, "as its header says general")
     return Entries(i, j, values, rows)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...checks import ArgumentError
-from .entries import Entries, check_both_triangles, filled_in
+from .entries import Entries, check_full, filled_in
 from .limits import LARGEST_SPARSE, check_size
 from .nastran import Held, chosen
 from .text import Lines, text_of
@@ -103,7 +103,7 @@ def read_output4(role: str, path: str | os.PathLike[str]) -> Entries:
             pass
     i, j, numbers = np.array(rows), np.array(columns), np.array(values)
     if not matrix.is_symmetric:
-        check_both_triangles(i, j, f"as the form of {matrix.name} is square")
+        check_full(i, j, matrix.size, f"as the form of {matrix.name} is square")
         return Entries(i, j, numbers, matrix.size)
     return Entries(*filled_in(i, j, numbers, matrix.size, lambda k: k + 1), matrix.size)
 
