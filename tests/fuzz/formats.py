@@ -118,53 +118,48 @@ def output4(
     digits : int
         Digits of numbers in a text.
     """
-    width, words = digits + 7, kind
-    across = 80 // width
-    content = b""
+    pieces: list[bytes] = []
     for name, matrix in matrices.items():
         size = len(matrix)
         sizes = (size, -size if strings == "long" else size, form, kind)
         if order:
-            content += _record(order, struct.pack(f"{order}4i", *sizes) + f"{name:8}".encode())
+            pieces.append(_record(order, struct.pack(f"{order}4i", *sizes) + f"{name:8}".encode()))
         else:
-            content += f"{sizes[0]:8d}{sizes[1]:8d}{form:8d}{kind:8d}{name:8}1P,{across}E{width}.{digits}\n".encode()
-        for j in range(size):
-            held = np.flatnonzero(matrix[:, j])
-            runs = [run for run in np.split(held, np.flatnonzero(np.diff(held) > 1) + 1) if run.size]
-            runs = runs if strings else [np.arange(held[0], held[-1] + 1)] if held.size else []
-            if not runs:
-                continue
-            parts = [([int(run[0]) + 1], matrix[run, j]) for run in runs]
-            if strings:
-                parts = [(_beginning(first[0], words * values.size, strings), values) for first, values in parts]
-            first = 0 if strings else parts[0][0][0]
-            beginnings = [begin if strings else [] for begin, _ in parts]
+            text = "".join(f"{number:8d}" for number in sizes)
+            pieces.append(f"{text}{name:8}1P,{80 // (digits + 7)}E{digits + 7}.{digits}\n".encode())
+        columns = [(j + 1, *_strings(matrix[:, j], strings, kind)) for j in range(size) if matrix[:, j].any()]
+        for number, first, parts in [*columns, (size + 1, 1, [([], np.ones(1))])]:
             if order:
                 body = b"".join(
                     struct.pack(f"{order}{len(begin)}i", *begin) + np.asarray(values, f"{order}f{4 * kind}").tobytes()
-                    for begin, (_, values) in zip(beginnings, parts, strict=True)
+                    for begin, values in parts
                 )
-                content += _record(order, struct.pack(f"{order}3i", j + 1, first, len(body) // 4) + body)
+                pieces.append(_record(order, struct.pack(f"{order}3i", number, first, len(body) // 4) + body))
                 continue
-            count = sum(len(begin) + words * values.size for begin, (_, values) in zip(beginnings, parts, strict=True))
-            content += f"{j + 1:8d}{first:8d}{count if strings else parts[0][1].size:8d}\n".encode()
-            for begin, (_, values) in zip(beginnings, parts, strict=True):
-                content += ("".join(f"{word:8d}" for word in begin) + "\n").encode() if begin else b""
-                content += _numbers(values, across, width, digits)
-        if order:
-            last = struct.pack(f"{order}3i", size + 1, 1, words) + np.ones(1, f"{order}f{4 * kind}").tobytes()
-            content += _record(order, last)
-        else:
-            content += f"{size + 1:8d}{1:8d}{1:8d}\n".encode() + _numbers([1.0], across, width, digits)
-    return content
+            # Of full columns a text counts the numbers.
+            words = sum(len(begin) + (1 if first else kind) * values.size for begin, values in parts)
+            pieces.append(f"{number:8d}{first:8d}{words:8d}\n".encode())
+            for begin, values in parts:
+                pieces.append(("".join(f"{word:8d}" for word in begin) + "\n").encode() if begin else b"")
+                pieces.append(_numbers(values, digits))
+    return b"".join(pieces)
+
+
+def _strings(column: Array, strings: str, kind: int) -> tuple[int, list[tuple[list[int], Array]]]:
+    """Return the first row of a full column, 0 of strings, and what each string begins with and holds."""
+    held = np.flatnonzero(column)
+    if not strings:
+        return int(held[0]) + 1, [([], column[held[0] : held[-1] + 1])]
+    runs = np.split(held, np.flatnonzero(np.diff(held) > 1) + 1)
+    return 0, [(_beginning(int(run[0]) + 1, kind * run.size, strings), column[run]) for run in runs]
 
 
 def _beginning(row: int, words: int, strings: str) -> list[int]:
     return [words + 1, row] if strings == "long" else [row + HALF * (words + 1)]
 
 
-def _numbers(values: Sequence[float], across: int, width: int, digits: int) -> bytes:
-    words = [f"{value:{width}.{digits}E}" for value in values]
+def _numbers(values: Sequence[float], digits: int) -> bytes:
+    words, across = [f"{value:{digits + 7}.{digits}E}" for value in values], 80 // (digits + 7)
     return "".join("".join(words[at : at + across]) + "\n" for at in range(0, len(words), across)).encode()
 
 

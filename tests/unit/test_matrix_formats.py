@@ -289,12 +289,12 @@ OF_CARDS = {
     ),
     "imaginary": (
         CARDS.replace("12,1,4.0000000000000000D+04,", "12,1,4.0D+04,1.0"),
-        "must be of real numbers, got '12, 1",
+        "the card at line 16 must hold real numbers, got '4.0D+04 and 1.0'",
     ),
-    "word": (CARDS.replace("12,1,4.0000000000000000D+04", "12,1,none"), "must be with a number, got 'none'"),
+    "word": (CARDS.replace("12,1,4.0000000000000000D+04", "12,1,none"), "must have a number, got 'none'"),
     "component": (CARDS.replace("12,1,", "12,7,"), "degree of freedom from 0 to 6, got '12, 7'"),
-    "node": (CARDS.replace("12,1,", "-12,1,"), "must be with a node from 1 on and a degree of freedom from 0 to 6"),
-    "cut": (CARDS + "DMIG,KAAX\n", "must be a card 'DMIG, name, node, dof, , node, dof, value', got 'DMIG,KAAX'"),
+    "node": (CARDS.replace("12,1,", "-12,1,"), "must name a node from 1 on and a degree of freedom from 0 to 6"),
+    "cut": (CARDS + "DMIG,KAAX\n", "must be 'DMIG, name, node, dof, , node, dof, value', got 'DMIG,KAAX'"),
     "twice": (
         CARDS + "DMIG,MAAX,9,1,,9,1,1.0\n",
         "each entry must stand once (assembled matrices), got two at (9, 1), (9, 1)",

@@ -6,6 +6,7 @@ import os
 import re
 from array import array
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,7 +19,6 @@ from .text import Lines, text_of
 SQUARE, SYMMETRIC = 1, 6
 REAL = (1, 2)
 BEGINNING = re.compile(rb"^DMIG\*?[ ,]", re.IGNORECASE | re.MULTILINE)
-CARD = "a card 'DMIG, name, node, dof, , node, dof, value'"
 LARGEST_NODE = 2**40
 
 
@@ -32,11 +32,10 @@ def held_in_dmig(path: str | os.PathLike[str]) -> list[Held]:
     forms: dict[str, tuple[int, int]] = {}
     filled = set[str]()
     with text_of(path) as file:
-        lines = Lines(file)
-        for fields in _cards(lines):
-            name = fields[0].upper()
-            if fields[1] == "0":
-                forms[name] = _integer(lines, fields[2]), _integer(lines, fields[3])
+        for card in _cards(Lines(file)):
+            name = card.fields[0].upper()
+            if card.fields[1] == "0":
+                forms[name] = card.integer(card.fields[2]), card.integer(card.fields[3])
             else:
                 filled.add(name)
     return [
@@ -50,21 +49,19 @@ def read_dmig(role: str, path: str | os.PathLike[str]) -> Entries:
     matrix = chosen(role, held_in_dmig(path))
     rows, columns, values = array("q"), array("q"), array("d")
     with text_of(path) as file:
-        lines = Lines(file)
-        for fields in _cards(lines):
-            if fields[0].upper() != matrix.name or fields[1] == "0":
+        for card in _cards(Lines(file)):
+            if card.fields[0].upper() != matrix.name or card.fields[1] == "0":
                 continue
-            column = _label(lines, fields[1:3])
-            entries = fields[4:]
-            for at in range(0, len(entries), 4):
-                node, dof, value, *imaginary = entries[at : at + 4]
+            column = card.label(card.fields[1:3])
+            for at in range(4, len(card.fields), 4):
+                node, dof, value, imaginary = card.fields[at : at + 4]
                 if not (node or dof or value):
                     continue
-                if any(imaginary):
-                    raise lines.bad("of real numbers", ", ".join(entries[at : at + 4]))
-                rows.append(_label(lines, [node, dof]))
+                if imaginary:
+                    raise card.bad("hold real numbers", f"{value} and {imaginary}")
+                rows.append(card.label([node, dof]))
                 columns.append(column)
-                values.append(_real(lines, value))
+                values.append(card.number(value))
     i, j, keys = by_position(np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64))
     full = filled_in(i, j, np.array(values), keys.size, lambda k: tuple(labels_of(keys[[k]])[0].tolist()))
     if not matrix.is_symmetric:
@@ -73,45 +70,53 @@ def read_dmig(role: str, path: str | os.PathLike[str]) -> Entries:
     return Entries(*full, keys=keys)
 
 
-def _cards(lines: Lines) -> Iterator[list[str]]:
-    """Yield the fields of each DMIG card from its name on, with those of the lines that go on with it."""
-    fields: list[str] = []
+@dataclass
+class _Card:
+    """A card with the line that it begins at: its fields from the name on, in fours."""
+
+    line: int
+    fields: list[str]
+
+    def bad(self, wanted: str, got: str) -> ValueError:
+        return ValueError(f"the card at line {self.line} must {wanted}, got {got[:60]!r}")
+
+    def label(self, fields: list[str]) -> int:
+        node, dof = (self.integer(field or "0") for field in fields)
+        if not (0 < node < LARGEST_NODE and 0 <= dof <= 6):
+            raise self.bad("name a node from 1 on and a degree of freedom from 0 to 6", ", ".join(fields))
+        return node * LABEL_BASE + dof
+
+    def integer(self, field: str) -> int:
+        try:
+            return int(field)
+        except ValueError:
+            raise self.bad("have a whole number", field) from None
+
+    def number(self, field: str) -> float:
+        try:
+            return real(field)
+        except ValueError:
+            raise self.bad("have a number", field) from None
+
+
+def _cards(lines: Lines) -> Iterator[_Card]:
+    """Yield each DMIG card, with the fields of the lines that go on with it."""
+    card: _Card | None = None
     for line in lines:
         text = line.partition("$")[0].rstrip()
         if not text:
             continue
         first, found = fields_of(text)
         if first.rstrip("*").upper() == "DMIG":
-            if fields:
-                yield fields
+            if card is not None:
+                yield card
+            card = _Card(lines.number, found)
             if not (found[0] and found[1]):
-                raise lines.bad(CARD, text)
-            fields = found
-        elif fields and (not first or first[0] in "+*"):
-            fields += found
-        elif fields:
-            yield fields
-            fields = []
-    if fields:
-        yield fields
-
-
-def _label(lines: Lines, fields: list[str]) -> int:
-    node, dof = (_integer(lines, field or "0") for field in fields)
-    if not (0 < node < LARGEST_NODE and 0 <= dof <= 6):
-        raise lines.bad("with a node from 1 on and a degree of freedom from 0 to 6", ", ".join(fields))
-    return node * LABEL_BASE + dof
-
-
-def _integer(lines: Lines, field: str) -> int:
-    try:
-        return int(field)
-    except ValueError:
-        raise lines.bad("with a whole number", field) from None
-
-
-def _real(lines: Lines, field: str) -> float:
-    try:
-        return real(field)
-    except ValueError:
-        raise lines.bad("with a number", field) from None
+                raise card.bad("be 'DMIG, name, node, dof, , node, dof, value'", text)
+        elif card is not None and (not first or first[0] in "+*"):
+            card.fields += found
+        elif card is not None:
+            yield card
+            card = None
+    if card is not None:
+        yield card

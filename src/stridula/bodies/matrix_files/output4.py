@@ -28,6 +28,8 @@ HEADING = re.compile(r"([ \d-]{8})" * 4 + r"\s*([A-Za-z]\w{0,7})\s*(?:1P,?\s*)?(
 HALF = 65536
 # Bytes of the heading of a matrix in a binary file, and of one with integers of 64 bits.
 HEADING_BYTES, LONG_HEADING_BYTES = 24, 48
+# And of what is said before a column.
+COLUMN_BYTES = 12
 
 
 @dataclass(frozen=True)
@@ -246,15 +248,16 @@ class _Binary:
         return _checked(Heading(name, columns, abs(rows), form, kind, rows < 0))
 
     def column(self, heading: Heading, keep: bool) -> tuple[int, list[String]]:
-        record = self._record()
-        if len(record) < 12:
+        record = self._record(None if keep else COLUMN_BYTES)
+        if len(record) < COLUMN_BYTES:
             raise ValueError(f"it ends within {heading.name}")
-        column, first, words = struct.unpack(f"{self._order}3i", record[:12])
-        data = record[12:]
+        column, first, words = struct.unpack(f"{self._order}3i", record[:COLUMN_BYTES])
+        data = record[COLUMN_BYTES:]
+        if not keep:
+            return column, [(0, np.empty(0))]
         if words < 0 or len(data) < 4 * words:
-            raise ValueError(
-                f"column {column} of {heading.name} must hold the {words} words that it says, it holds less"
-            )
+            wanted = f"hold the {words} words that it says"
+            raise ValueError(f"column {column} of {heading.name} must {wanted}, it holds less")
         if column > heading.columns:
             return column, []
         if first > 0:
@@ -273,15 +276,21 @@ class _Binary:
         return column, strings
 
     def _numbers(self, heading: Heading, first: int, data: bytes) -> String:
-        numbers = np.frombuffer(data, dtype=np.dtype(f"{self._order}f{4 if heading.kind in (1, 3) else 8}"))
+        of = np.dtype(f"{self._order}f{4 if heading.kind in (1, 3) else 8}")
+        if len(data) % of.itemsize:
+            raise ValueError(f"a column of {heading.name} ends within a number")
+        numbers = np.frombuffer(data, dtype=of)
         begin, _ = _string(heading, first, numbers.size)
         return begin, numbers.astype(float)
 
-    def _record(self) -> bytes:
+    def _record(self, most: int | None = None) -> bytes:
+        """Return what the next record holds, or how it begins."""
         length = self._length()
-        if not 0 <= length <= self._end - self._file.tell() - 4:
+        end = self._file.tell() + length
+        if not (length >= 0 and end <= self._end - 4):
             raise ValueError("it ends within a record")
-        record = self._file.read(length)
+        record = self._file.read(length if most is None else min(most, length))
+        self._file.seek(end)
         if self._length() != length:
             raise ValueError("the length behind a record must be that before it")
         return record
