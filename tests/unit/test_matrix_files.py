@@ -456,7 +456,7 @@ def test_which_files_go_together(tmp_path):
         ({"path": container, "mass": market, "stiffness": market}, "path must be one .* path and mass and stiffness"),
         (
             {"path": market},
-            "path must be an .npz or .mat file, got '.*m.mtx'; files of one matrix each are given as mass",
+            "path must be a file with everything, .npz, .mat, .*, got '.*m.mtx'; files of one matrix each are given",
         ),
         (
             {"mass": container, "stiffness": market},

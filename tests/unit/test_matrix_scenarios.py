@@ -69,7 +69,11 @@ def test_a_translation_in_space(tmp_path):
 WRONG = {
     "no file": (f'{CALCULIX}\nmesh = "none.inp"', "end = 9", "cannot read '.*none.inp': no such file or directory"),
     "folder": (f'{CALCULIX}\nlabels = "model"', "end = 9", "bodies.chain.labels must be a file, got '.*model'"),
-    "node": (CALCULIX, "end = 8", r"bodies.chain: points\['end'\] must name a node in the files that moves \(no node 8"),
+    "node": (
+        CALCULIX,
+        "end = 8",
+        r"bodies.chain: points\['end'\] must name a node in the files that moves \(no node 8",
+    ),
     "words": (
         CALCULIX,
         'end = "tip"',

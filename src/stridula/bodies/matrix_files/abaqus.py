@@ -14,9 +14,8 @@ LABELLED = Layout(5, "'node, dof, node, dof, value'", "*")
 NUMBERED = Layout(3, "'row column value'", "*")
 
 
-def read_abaqus(name: str, path: str | os.PathLike[str]) -> Entries:
+def read_abaqus(_: str, path: str | os.PathLike[str]) -> Entries:
     """Read ``FORMAT=MATRIX INPUT``, five numbers a line, or ``FORMAT=COORDINATE``, three, without lines with ``*``."""
-    del name
     layout = _first_layout(path)
     with text_of(path) as file:
         columns = table(file, layout, lambda: _bad_line(path))

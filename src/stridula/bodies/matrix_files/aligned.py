@@ -75,7 +75,7 @@ def files_of(path: PathLike) -> dict[str, PathLike]:
     if not files:
         raise ArgumentError(
             "path",
-            "be an .npz or .mat file",
+            "be a file with everything, .npz, .mat, or of Nastran or CalculiX",
             os.fspath(path),
             got=f"{os.fspath(path)!r}; files of one matrix each are given as mass and stiffness",
         )

@@ -70,7 +70,7 @@ def read_dmig(role: str, path: str | os.PathLike[str]) -> Entries:
     return Entries(*full, keys=keys)
 
 
-@dataclass
+@dataclass(frozen=True)
 class _Card:
     """A card with the line that it begins at: its fields from the name on, in fours."""
 
@@ -114,7 +114,7 @@ def _cards(lines: Lines) -> Iterator[_Card]:
             if not (found[0] and found[1]):
                 raise card.bad("be 'DMIG, name, node, dof, , node, dof, value'", text)
         elif card is not None and (not first or first[0] in "+*"):
-            card.fields += found
+            card.fields.extend(found)
         elif card is not None:
             yield card
             card = None
