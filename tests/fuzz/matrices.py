@@ -14,6 +14,7 @@ import scipy.sparse
 
 import stridula as st
 
+from . import formats
 from .numbers import flipped, number
 from .verdicts import folder, verdict
 
@@ -28,7 +29,8 @@ def inputs(seed: int, count: int) -> Iterator[Given]:
     """Return the contents of files by name, and the arguments of `ReducedBody.read`."""
     for k in range(count):
         dice = random.Random(f"matrices {seed} {k}")
-        files, arguments = dice.choice((_npz, _mat, _market, _market, _abaqus, _abaqus))(dice)
+        kinds = (_npz, _mat, _market, _market, _abaqus, _abaqus, _calculix, _cards, _output4, _harwell_boeing)
+        files, arguments = dice.choice(kinds)(dice)
         damaged = dice.choice(list(files))
         if dice.random() < 0.75:
             files[damaged] = flipped(dice, files[damaged])
@@ -150,6 +152,55 @@ def _as_input(dice: random.Random, matrix: Array) -> bytes:
 def _as_coordinate(dice: random.Random, matrix: Array) -> bytes:
     rows = [f"{i + 1} {j + 1} {matrix[i, j]:.9e}" for i in range(SIZE) for j in range(SIZE)]
     return _with_a_bad_line(dice, rows)
+
+
+def _symmetric(dice: random.Random) -> dict[str, Array]:
+    return {role: _matrix(dice, stiff) for role, stiff in (("mass", 1.0), ("stiffness", 1e6))}
+
+
+def _calculix(dice: random.Random) -> Given:
+    matrices = _symmetric(dice)
+    files = {"j.mas": formats.calculix(matrices["mass"]), "j.sti": formats.calculix(matrices["stiffness"])}
+    if dice.random() < 0.8:
+        files["j.dof"] = formats.dof(LABELS[: dice.choice((SIZE, SIZE, SIZE, SIZE - 1, 0))])
+    points = {"tip": dice.choice((7, 9, (0.5, 0.0, 0.0), ((1, 1), (1, 2))))} if "j.dof" in files else POINTS
+    arguments: dict[str, Any] = {"path": "j.sti", "points": points}
+    if dice.random() < 0.5:
+        places = "".join(f"{node}, {0.1 * node}, 0, 0\n" for node in (1, 2, 5, 7))
+        cards = "".join(f"GRID,{node},,{0.1 * node},0.,0.\n" for node in (1, 2, 5, 7))
+        deck, content = dice.choice((("j.inp", f"*NODE\n{places}"), ("j.bdf", cards)))
+        files[deck], arguments["mesh"] = content, deck
+    return {name: content.encode() for name, content in files.items()}, arguments
+
+
+def _named(dice: random.Random) -> dict[str, Array]:
+    matrices = _symmetric(dice)
+    names = {"MAAX": matrices["mass"], "KAAX": matrices["stiffness"]}
+    return names | ({dice.choice(("BAAX", "K4AAX", "KGG", "X")): np.eye(SIZE)} if dice.random() < 0.4 else {})
+
+
+def _cards(dice: random.Random) -> Given:
+    fields, form, kind = dice.choice(("small", "large", "free")), dice.choice((1, 6, 6, 9)), dice.choice((1, 2, 2, 4))
+    content = formats.dmig(_named(dice), LABELS, fields, form, kind)
+    return {"b.pch": content.encode()}, {"path": "b.pch", "points": {"tip": dice.choice((7, ((1, 1), (1, 2))))}}
+
+
+def _output4(dice: random.Random) -> Given:
+    order, strings = dice.choice(("", "<", ">")), dice.choice(("", "short", "long"))
+    with np.errstate(all="ignore"):
+        content = formats.output4(_named(dice), order, strings, dice.choice((1, 2)), dice.choice((1, 2, 6, 6)))
+    return {"b.op4": content}, {"path": "b.op4", "points": POINTS}
+
+
+def _harwell_boeing(dice: random.Random) -> Given:
+    files, across = dict[str, bytes](), dice.choice((1, 3))
+    for role, matrix in _symmetric(dice).items():
+        text = formats.harwell_boeing(matrix, dice.choice(("RSA", "RUA")), across, dice.random() < 0.5)
+        files[f"{role}.matrix"] = text.encode()
+    arguments: dict[str, Any] = {role: f"{role}.matrix" for role in ("mass", "stiffness")} | {"points": POINTS}
+    if dice.random() < 0.5:
+        files["mass.mapping"], arguments["points"] = formats.mapping(LABELS).encode(), {"tip": 7}
+    return files, arguments
 
 
 def _with_a_bad_line(dice: random.Random, lines: list[str]) -> bytes:

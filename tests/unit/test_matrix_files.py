@@ -11,8 +11,9 @@ import pytest
 import scipy.io
 import scipy.sparse
 
-from stridula.bodies import FiniteElementBeam, Material, Rayleigh, Rectangle, ReducedBody, matrix_files
+from stridula.bodies import FiniteElementBeam, Material, Rayleigh, Rectangle, ReducedBody
 from stridula.bodies.finite_elements import assemble, element_mass, element_stiffness
+from stridula.bodies.matrix_files import limits
 
 STEEL, STRIP = Material(2.1e11, 7800.0), Rectangle(0.020, 0.004)
 ELEMENTS = 5
@@ -357,7 +358,7 @@ def test_files_of_more_than_2_gib_are_refused_unread(tmp_path, monkeypatch):
         os.truncate(path, 3 * 1024**3)
     with pytest.raises(ValueError, match=r"^cannot read '.*mass.mtx': 3 GiB, at most 2 GiB are read$"):
         ReducedBody.read(mass=path, stiffness=path)
-    monkeypatch.setattr(matrix_files, "LARGEST_FILE", 10**5)
+    monkeypatch.setattr(limits, "LARGEST_FILE", 10**5)
     np.savez_compressed(tmp_path / "b.npz", mass=np.zeros((400, 400)))
     with pytest.raises(ValueError, match=r"^cannot read '.*b.npz': .* GiB when unpacked, at most 2 GiB are read$"):
         ReducedBody.read(tmp_path / "b.npz")
@@ -455,11 +456,11 @@ def test_which_files_go_together(tmp_path):
         ({"path": container, "mass": market, "stiffness": market}, "path must be one .* path and mass and stiffness"),
         (
             {"path": market},
-            "path must be an .npz or .mat file, got '.*m.mtx'; files of one matrix each are given as mass",
+            "path must be a file with everything, .npz, .mat, .*, got '.*m.mtx'; files of one matrix each are given",
         ),
         (
             {"mass": container, "stiffness": market},
-            "mass must be a Matrix Market file or Abaqus text, got '.*body.npz'",
+            "mass must be a file of matrices alone, got '.*body.npz'; a file with all",
         ),
         ({"path": 3}, "path must be a str or PathLike, got 3"),
         ({"mass": MASS, "stiffness": STIFFNESS}, "mass must be a str or PathLike, got a ndarray"),
@@ -489,7 +490,7 @@ LABELLED = {
     ),
     "numbers": (
         {"points": {"a": (0, 1)}},
-        r"points\['a'\] must be a pair of labels \(node, .*\), or three in space, got \(0, 1\)",
+        r"points\['a'\] must be a pair of labels \(node, .*\), three .*, or a node's number, got \(0, 1\)",
     ),
     "one label": ({"points": {"a": (101, 1)}}, r"points\['a'\] must be a pair of labels .*, got \(101, 1\)"),
     "text": ({"points": {"a": "tip"}}, r"points\['a'\] must be a pair of labels .*, got 'tip'"),

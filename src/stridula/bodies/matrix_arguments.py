@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from numbers import Integral
+from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..checks import ArgumentError
 from .damping import Rayleigh
 from .factorisation import factorised
-from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, AlignedMatrices, check_size
+from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, AlignedMatrices, Nodes, check_size
 from .matrix_input import (
     check_mass,
     is_labelled,
@@ -39,13 +39,17 @@ def from_container(held: dict[str, Any]) -> dict[str, Any]:
     return arguments
 
 
-def from_matrices(files: AlignedMatrices, points: Mapping[str, Any], translation: Any) -> dict[str, Any]:
+def from_matrices(
+    files: AlignedMatrices, points: Mapping[str, Any], translation: Any, nodes: Nodes | None = None
+) -> dict[str, Any]:
     """Return the arguments of a body from files of matrices, without the degrees of freedom held in them."""
     free, size = files.free, files.free.size
     check_size("stiffness", int(free.sum()), LARGEST_SPARSE)
     arguments: dict[str, Any] = {name: matrix[free][:, free] for name, matrix in files.matrices.items()}
     arguments["points"] = {
-        name: point_rows(f"points[{name!r}]", _by_number(f"points[{name!r}]", value, files.labels), size)[:, free]
+        name: point_rows(f"points[{name!r}]", _by_number(f"points[{name!r}]", value, files.labels, nodes), size)[
+            :, free
+        ]
         for name, value in points.items()
     }
     if translation is not None:
@@ -64,13 +68,36 @@ def _held_back(mass: Any, pulled: Array) -> Array:
     return np.asarray(scipy.linalg.solve(dense, pulled, assume_a="pos"))
 
 
-def _by_number(word: str, value: Any, labels: Array | None) -> Any:
-    """Return a point given by labels as numbers of degrees of freedom, any other as it is."""
-    if labels is None or isinstance(value, np.ndarray):
+def _by_number(word: str, value: Any, labels: Array | None, nodes: Nodes | None) -> Any:
+    """Return a point given by a node, a place or labels as numbers of degrees of freedom, any other as it is."""
+    if labels is None and nodes is not None:
+        raise ArgumentError("mesh", "be left out where files do not say which nodes their rows are", word)
+    if labels is None or (isinstance(value, np.ndarray) and value.ndim > 1):
         return value
+    if isinstance(value, Integral) and not isinstance(value, bool):
+        return _of_node(word, int(value), labels)
+    if nodes is not None and _is_place(value):
+        return _of_node(word, nodes.nearest(word, value), labels)
     if not is_labelled(value, (tuple, list)) or not all(entry is None or is_pair(entry, Integral) for entry in value):
-        raise ArgumentError(word, "be a pair of labels (node, degree of freedom), or three in space", value)
+        words = "be a pair of labels (node, degree of freedom), three of them in space, or a node's number"
+        raise ArgumentError(word, words + (" or place" if nodes is not None else ""), value)
     return tuple(None if label is None else _number(word, label, labels) for label in value)
+
+
+def _is_place(value: Any) -> bool:
+    return is_labelled(value, Real) and len(value) == 3 and all(part is not None for part in value)
+
+
+def _of_node(word: str, node: int, labels: Array) -> tuple[int | None, ...]:
+    """Return the degrees of freedom along x, y and, where the files know it, z; None where the node does not move."""
+    directions = 3 if ((labels[:, 0] > 0) & (labels[:, 1] == 3)).any() else 2
+    place = np.flatnonzero(labels[:, 0] == node)
+    along = {int(labels[k, 1]): int(k) for k in place}
+    found = tuple(along.get(direction) for direction in range(1, directions + 1))
+    if not any(number is not None for number in found):
+        known = f"node {node} has {', '.join(map(str, along))}" if along else f"no node {node}, or all of it is held"
+        raise ArgumentError(word, f"name a node in the files that moves ({known})", node)
+    return found
 
 
 def _number(word: str, label: tuple[int, int], labels: Array) -> int:

@@ -17,7 +17,7 @@ from ..arrays import Array
 from ..checks import ArgumentError, instance, positive
 from .damping import DampingLaw, Rayleigh, checked_damping
 from .matrix_arguments import from_container, from_matrices
-from .matrix_files import LARGEST_SIZE, POINT, read_container, read_matrices, write_npz
+from .matrix_files import LARGEST_SIZE, POINT, files_of, read_container, read_matrices, read_nodes, write_npz
 from .matrix_input import (
     check_finite,
     check_mass,
@@ -125,6 +125,8 @@ class ReducedBody(NamedPoints):
         translation: Any = None,
         cutoff: float | None = None,
         residual_flexibility: bool | None = None,
+        labels: str | os.PathLike[str] | None = None,
+        mesh: str | os.PathLike[str] | None = None,
         name: str = "",
     ) -> ReducedBody:
         """Read a body from one file with everything, or from one file for each matrix.
@@ -139,16 +141,27 @@ class ReducedBody(NamedPoints):
 
         One file for each matrix is given as `mass`, `stiffness` and perhaps `damping`:
 
-        - Matrix Market.
+        - Matrix Market, as Ansys' ``*EXPORT,,MMF`` writes it, too.
+        - Harwell-Boeing, RSA or RUA, as Ansys' HBMAT writes it as text.
+        - ``.sti`` and ``.mas`` of CalculiX' ``*FREQUENCY, SOLVER=MATRIXSTORAGE``, one triangle.
+        - DMIG cards of Nastran, real, square or symmetric, in small, large or free fields.
+        - OUTPUT4 of Nastran, real, text or binary in either order of bytes, columns full or in strings.
         - Text of Abaqus' ``*MATRIX GENERATE``, assembled: ``FORMAT=MATRIX INPUT``, lines "node, dof, node, dof, value",
           or ``FORMAT=COORDINATE``, lines "row column value", rows from 1. Lines that start with ``*`` are left out. If
-          no entry has its mirror image in the file, the file holds one triangle and the other is filled in. Degrees of
-          freedom of all files are taken together and sorted by (node, dof); internal nodes, with negative numbers, are
-          kept.
+          no entry has its mirror image in the file, the file holds one triangle and the other is filled in.
+
+        A format is told by the beginning of a file, of CalculiX by its ending. Of several matrices in a file of Nastran
+        those are taken whose names begin with M, K (but not K4) and B. Such a file, or one of the two of CalculiX, may
+        be given as `path`, too.
+
+        MATRIX INPUT and DMIG label their rows by (node, dof). Rows of other files are labelled by ``job.dof`` beside
+        ``job.sti``, by ``K.mapping`` beside ``K.matrix`` (HBMAT writes it), or by `labels`. Degrees of freedom of all
+        files are then taken together and sorted by (node, dof); internal nodes, with negative numbers, are kept.
 
         Degrees of freedom that Abaqus constrained (1e30 and more on the diagonal of the stiffness, it writes 1e36) are
         removed: points do not move along them. The translation of the others is chosen so that gravity still acts on
-        them through the mass that they share with the removed ones.
+        them through the mass that they share with the removed ones. CalculiX and Ansys leave constrained ones out
+        themselves, and with them that mass: near to where they are held, gravity pulls a little less.
 
         Parameters
         ----------
@@ -156,17 +169,25 @@ class ReducedBody(NamedPoints):
             The files.
         points : mapping, optional
             As in `ReducedBody`, before degrees of freedom are removed; they replace those of the same name in `path`.
-            With labels, a point is a pair of them: ``{"tip": ((101, 1), (101, 2))}`` moves along x with the first
-            degree of freedom of node 101 and along y with the second.
+            With labels, a point is the number of a node, ``{"tip": 101}``, or a pair of labels, three in space:
+            ``{"tip": ((101, 1), (101, 2))}`` moves along x with the first degree of freedom of node 101 and along y
+            with the second. A node moves along z, too, if the files have a third degree of freedom anywhere, and not
+            at all along those of its own that are not there. With `mesh`, a point may be a place, ``(x, y, z)`` [m].
         damping : str or Path, or as in `ReducedBody`, optional
             File of the damping matrix, or what replaces the damping in `path`.
         translation : array_like, shape (2, n), or pair of int, optional
             As in `ReducedBody`, before degrees of freedom are removed. With labels, the numbers of the degrees of
-            freedom that are displacements along x and y at every node, usually ``(1, 2)``.
+            freedom that are displacements along x and y at every node, usually ``(1, 2)``, in space ``(1, 2, 3)``.
         cutoff : float, optional
             As in `ReducedBody`.
         residual_flexibility : bool, optional
             As in `ReducedBody`.
+        labels : str or Path, optional
+            File that names node and degree of freedom of every row, one a line: "node.dof" as CalculiX' ``.dof``, or
+            "row node UX" below a heading as Ansys' ``.mapping``. Searched beside the matrices if left out.
+        mesh : str or Path, optional
+            Deck that says where nodes are: ``*NODE`` of Abaqus or CalculiX in ``.inp``, else ``GRID`` of Nastran.
+            Places are met to a thousandth of its size.
         name : str, optional
             As in `ReducedBody`.
 
@@ -205,12 +226,23 @@ class ReducedBody(NamedPoints):
         given = {word: value for word, value in options.items() if value is not None}
         added = {} if points is None else points
         instance("points", added, Mapping)
+        beside = {word: file for word, file in (("labels", labels), ("mesh", mesh)) if file is not None}
+        for word, file in beside.items():
+            instance(word, file, (str, os.PathLike))
+        held = None if path is None else read_container(path)
+        if held is not None:
+            for word, file in beside.items():
+                raise ArgumentError(word, "be left out where a file holds everything", os.fspath(file))
+            known = from_container(held)
+            return cls(**{**known, **given, "points": {**known["points"], **added}})
         if path is not None:
-            held = from_container(read_container(path))
-            return cls(**{**held, **given, "points": {**held["points"], **added}})
+            given_files = files_of(path)
+            if "damping" in given:
+                given_files.pop("damping", None)
         if isinstance(damping, (str, os.PathLike)):
             given_files["damping"] = given.pop("damping")
-        return cls(**given | from_matrices(read_matrices(given_files), added, given.get("translation")))
+        nodes = None if mesh is None else read_nodes(mesh)
+        return cls(**given | from_matrices(read_matrices(given_files, labels), added, given.get("translation"), nodes))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the body to an ``.npz`` file that `read` takes; what is read back is equal.

@@ -36,6 +36,7 @@ from ..records import Acceleration, Displacement, Probe, Reaction, SupportForce,
 from ..system import System
 from .errors import ScenarioError
 from .quantities import quantity
+from .read import FILES
 
 OF_SPACE: dict[str, Callable[..., Any]] = {one.kind: one for one in (RigidBody, ModalBody)}
 SHAPES: dict[str, Callable[..., Any]] = {section.shape: section for section in SECTIONS}
@@ -192,13 +193,14 @@ class Builder:
         return "track" if name == track.get("body") else f"body {used.index(name) + 1}"
 
     def _reduced(self, path: Place, table: Tables) -> Any:
-        files = {key: table[key] for key in ("file", "mass", "stiffness", "damping") if isinstance(table.get(key), str)}
+        files = {key: table[key] for key in FILES if isinstance(table.get(key), str)}
         for key, file in files.items():
             if is_there(file) and not Path(file).is_file():
                 self.problems.append(f"{self.words((*path, key))} must be a file, got {brief(file)}")
                 return None
-        if table.get("residual_flexibility") is None:
-            table.pop("residual_flexibility", None)
+        for key in ("residual_flexibility", "labels", "mesh"):
+            if table.get(key) is None:
+                table.pop(key, None)
         with self._within(*path):
             if "file" in table or {"mass", "stiffness"} & set(files):
                 container = table.pop("file", None)
@@ -206,6 +208,9 @@ class Builder:
             for key, words in (("mass", "mass matrix"), ("stiffness", "stiffness matrix"), ("points", "its points")):
                 if table.get(key) is None:
                     raise ArgumentError(key, f"be given: {words}, unless a file has it")
+            for key in ("labels", "mesh"):
+                if key in table:
+                    raise ArgumentError(key, "be left out where matrices are written out", table[key])
             return ReducedBody(**table)
 
     def _beam(self, path: Place, kind: Callable[..., Any], given: Tables) -> Any:

@@ -414,7 +414,7 @@ class Numbers(_Kind):
 
 @dataclass(frozen=True)
 class Points(_Kind):
-    """Points of a reduced body by name: rows, or the degrees of freedom or labels that they move with along x and y."""
+    """Points of a reduced body by name: rows, degrees of freedom or labels along x and y, a node or a place."""
 
     def read(self, value: Any) -> dict[str, Any]:
         if not isinstance(value, dict):
@@ -427,19 +427,25 @@ class Points(_Kind):
         along = dict.fromkeys("xyz", label)
         axes = {"type": "object", "properties": along, "additionalProperties": False}
         pair = {"type": "array", "items": label}
-        return {"type": "object", "additionalProperties": {"anyOf": [axes, pair, *rows["anyOf"]]}}
+        node, place = {"type": "integer"}, {"type": "array", "items": {"type": "number"}}
+        return {"type": "object", "additionalProperties": {"anyOf": [axes, pair, node, place, *rows["anyOf"]]}}
 
     def _point(self, name: str, point: Any) -> Any:
         if isinstance(point, dict) and set(point) <= {"x", "y", "z"}:
             point = [point.get(axis) for axis in ("xyz" if "z" in point else "xy")]
         if isinstance(point, list) and len(point) in (2, 3) and all(map(_is_label_or_none, point)):
             return tuple(tuple(label) if isinstance(label, list) else label for label in point)
+        if _is_whole(point):
+            return point
+        place = _array(point)
+        if place is not None and place.shape == (3,) and np.isfinite(place).all():
+            return tuple(place.tolist())
         try:
             return Numbers((2,)).read(point)
         except ArgumentError:
             raise _refused(
                 f"give the point {name} as rows on the degrees of freedom, shape (2, n) or (3, n), or by the degrees "
-                "of freedom that it moves with: {x = 0, y = 1}"
+                "of freedom that it moves with: {x = 0, y = 1}, or as a node or a place where files have them"
             ) from None
 
 
@@ -458,10 +464,10 @@ class Places(_Kind):
 
 @dataclass(frozen=True)
 class Motion(_Kind):
-    """How a translation moves the degrees of freedom: rows, or with labels the numbers of those along x and y."""
+    """How a translation moves the degrees of freedom: rows, or with labels the numbers of those along x, y and z."""
 
     def read(self, value: Any) -> Any:
-        if isinstance(value, list) and len(value) == 2 and all(map(_is_whole, value)):
+        if isinstance(value, list) and len(value) in (2, 3) and all(map(_is_whole, value)):
             return tuple(value)
         return Numbers((2,)).read(value)
 

@@ -18,7 +18,7 @@ from .inheritance import merged, spelled_out
 from .quantities import is_quantity
 from .shipped import shipped
 
-FILES = ("file", "mass", "stiffness", "damping")
+FILES = ("file", "mass", "stiffness", "damping", "labels", "mesh")
 
 # Scenarios take 5; what recurses over tables takes far more.
 DEEPEST = 50

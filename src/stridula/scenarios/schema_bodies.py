@@ -75,13 +75,13 @@ class Reduced(Table):
     kind: Literal["reduced"]
     """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
     file: str | None = None
-    """.npz or .mat file with matrices and points, beside the scenario"""
+    """.npz or .mat file with matrices and points, or a file of Nastran or CalculiX, beside the scenario"""
     mass: is_.Matrix | None = None
     """mass matrix: rows, or its file [SI]"""
     stiffness: is_.Matrix | None = None
     """stiffness matrix: rows, or its file [SI]"""
     points: is_.PointTable | None = None
-    """points by name: rows, or the degrees of freedom along x and y"""
+    """points by name: rows, the degrees of freedom along x and y, or a node"""
     damping: is_.ReducedDamping | None = None
     """damping: a ratio, one for each mode, a law of frequency, a matrix, or its file"""
     translation: is_.Translation | None = None
@@ -90,6 +90,10 @@ class Reduced(Table):
     """keep the modes up to this frequency, all if left out [Hz]"""
     residual_flexibility: bool | None = None
     """whether modes beyond the cutoff yield statically at the points, true if left out"""
+    labels: str | None = None
+    """file that says which node and degree of freedom each row is, searched beside the matrices if left out"""
+    mesh: str | None = None
+    """deck that says where nodes are, for points by place"""
     name: str = ""
     """what it is called in records, the table's own name if left out"""
 

@@ -19,7 +19,7 @@ from .outline import Node, Path
 from .quantities import parts, quantity
 
 # Files of a body, whose matrices are read once.
-READ_ONCE = ("file", "mass", "stiffness")
+READ_ONCE = ("file", "mass", "stiffness", "labels", "mesh")
 _UNIT = re.compile(r"\s*\[[^]]*\]$")
 
 

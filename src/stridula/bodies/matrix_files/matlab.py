@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
-from ..arrays import Array
+from ...arrays import Array
 
 HEADER = 128
 # Kinds of elements that hold numbers, and those that hold a variable.

@@ -1,0 +1,24 @@
+"""Files of matrices: those of NumPy and MATLAB, Matrix Market, and what finite-element programs write.
+
+Each format has a room of its own here and a line in `formats.py`; all end as `Entries`, which `aligned.py` brings to
+the same degrees of freedom.
+"""
+
+from .aligned import AlignedMatrices, files_of, read_container, read_matrices
+from .containers import POINT, write_npz
+from .limits import LARGEST_SIZE, LARGEST_SPARSE, check_size
+from .nodes import Nodes, read_nodes
+
+__all__ = [
+    "LARGEST_SIZE",
+    "LARGEST_SPARSE",
+    "POINT",
+    "AlignedMatrices",
+    "Nodes",
+    "check_size",
+    "files_of",
+    "read_container",
+    "read_matrices",
+    "read_nodes",
+    "write_npz",
+]
