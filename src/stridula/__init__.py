@@ -37,9 +37,12 @@ _HOME = {
     "contact": (
         "Coulomb",
         "ExponentialWeakening",
+        "HertzStiffness",
+        "LinearStiffness",
         "LinearWeakening",
         "LuGre",
         "PointContact",
+        "PowerStiffness",
         "RateAndState",
         "RigidTrack",
         "StaticKinetic",

@@ -8,6 +8,7 @@ from .friction import set_valued
 from .lanes import anywhere, choose, held, hold, magnitude, read
 from .modes import OPTIONS
 from .solves import carried_by, next_states, strayed
+from .yielding import stored_in, yields_of
 
 
 @numba.njit(**OPTIONS)
@@ -98,6 +99,7 @@ def keep_motion(i, moved, before, carried, run, zero):
     base = i * at.CARRIED
     hold(carried, base + at.EARLIER_SLIP, run, before[1])
     hold(carried, base + at.LAST_SLIP, run, moved[3])
+    hold(carried, base + at.EARLIER_GAP, run, held(carried, base + at.LAST_GAP, run, zero))
     hold(carried, base + at.LAST_GAP, run, moved[2])
     add(carried, base + at.MATERIAL, run, moved[3], zero)
 
@@ -113,6 +115,32 @@ def keep_place(i, carried, place, run, zero):
 
 
 @numba.njit(**OPTIONS)
+def store_in(i, gap, contacts, state, run, zero):
+    """Add what a contact that yields stores in this step to the work of the contacts."""
+    yields = yields_of(i, contacts.constants, run, zero)
+    if anywhere(yields[0] > 0.0):
+        earlier = held(state.carried, i * at.CARRIED + at.EARLIER_GAP, run, zero)
+        stored = 0.5 * (stored_in(-gap, yields) - stored_in(-earlier, yields))
+        add(state.energies, at.CONTACT_WORK, run, stored, zero)
+
+
+@numba.njit(**OPTIONS)
+def stored_in_contacts(contacts, carried, count, run, zero):
+    """Return the energy that contacts which yield store half a step ago."""
+    energy = zero
+    for i in range(count):
+        yields = yields_of(i, contacts.constants, run, zero)
+        if anywhere(yields[0] > 0.0):
+            base = i * at.CARRIED
+            last, earlier = (
+                held(carried, base + at.LAST_GAP, run, zero),
+                held(carried, base + at.EARLIER_GAP, run, zero),
+            )
+            energy += 0.5 * (stored_in(-last, yields) + stored_in(-earlier, yields))
+    return energy
+
+
+@numba.njit(**OPTIONS)
 def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, runs, zero):
     """Do the bookkeeping of contact `i` in step `n`, but for where it is.
 
@@ -121,6 +149,12 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
     """
     law, carried, sums = contacts.codes[i], state.carried, contacts.sums
     before = carried_by(carried, i, run, zero)
+    store_in(i, moved[2], contacts, state, run, zero)
+    give, beyond = (
+        held(contacts.now, i * at.IN_STEP + at.GIVE, run, zero),
+        held(contacts.now, i * at.IN_STEP + at.BEYOND, run, zero),
+    )
+    w, moved = (w[0] + give, w[1], w[2], w[3]), (moved[0] + beyond, moved[1], moved[2], moved[3])
     if not set_valued(law) or anywhere(touch[2] + before[0] > 0.5):
         away = strayed(carried, i, run, zero)
         at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero)

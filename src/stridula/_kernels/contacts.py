@@ -15,7 +15,8 @@ from .faces import displace, displace_freely, own_compliance
 from .lanes import anywhere, choose, entry, everywhere, held, hold, magnitude
 from .modes import ENTRY, OPTIONS, PASTED
 from .solves import carried_by, forces_of_one, strayed
-from .space import forces_in_space, is_second, put_second
+from .space import free_of_own, is_second, put_second, solve_in_space
+from .yielding import comes_close, forces_yielding, forces_yielding_in_space, yields_anywhere, yields_of
 
 # Sweeps after which, and then between which, the forces of the states that were found are solved for directly.
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 2, 8
@@ -56,7 +57,10 @@ def start_from_last(contacts, carried, touching, sizes, run, zero):
         status = choose(normal > 0.0, held(carried, base + at.STATUS, run, zero), zero)
         hold(now, here + at.STATUS_NOW, run, status)
         hold(now, here + at.JAMMED_NOW, run, zero)
-        hold(now, here + at.MAY_TOUCH, run, choose(normal > 0.0, 1.0, zero))
+        close = comes_close(i, held(now, here + at.FREE_GAP, run, zero), contacts.constants, carried, run, zero)
+        hold(now, here + at.MAY_TOUCH, run, choose(normal > 0.0, 1.0, close))
+        hold(now, here + at.GIVE, run, zero)
+        hold(now, here + at.BEYOND, run, zero)
         hold(now, here + at.BROKE, run, zero)
         hold(now, here + at.LET_GO, run, zero)
         if anywhere(normal > 0.0):
@@ -73,6 +77,44 @@ def carried_or_found(carried, i, let_go, normal, tangential, run, zero):
     late = choose(let_go > 0.0, normal, zero) > 0.0
     last_normal, last_tangential = choose(late, normal, last_normal), choose(late, tangential, last_tangential)
     return status, last_slip, earlier_slip, state, last_normal, last_tangential
+
+
+@numba.njit(**PASTED)
+def forces_of_this(i, gap, slip, w, forces, contacts, carried, let_go, step, run, runs, zero):
+    """Return normal force, tangential force, status and whether it is jammed of contact `i` of the plane."""
+    away, at_rest = (
+        strayed(carried, i, run, zero),
+        held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero),
+    )
+    law, number = contacts.codes[i], i * runs + run
+    before = carried_or_found(carried, i, let_go, forces[0], forces[1], run, zero)
+    yields = yields_of(i, contacts.constants, run, zero)
+    if not yields_anywhere(yields):
+        return forces_of_one(gap, slip, away, w, law, contacts.laws, number, at_rest, before, let_go, step, zero)
+    earlier = -held(carried, i * at.CARRIED + at.EARLIER_GAP, run, zero)
+    normal, tangential, status, jammed, give, beyond = forces_yielding(
+        gap, slip, away, w, law, contacts.laws, number, at_rest, before, let_go, step, yields, earlier, zero
+    )
+    hold(contacts.now, i * at.IN_STEP + at.GIVE, run, give)
+    hold(contacts.now, i * at.IN_STEP + at.BEYOND, run, beyond)
+    return normal, tangential, status, jammed
+
+
+@numba.njit(**PASTED)
+def forces_of_this_in_space(i, contacts, carried, let_go, step, run, runs, zero):
+    """Return normal force, both tangential forces, status and whether it is jammed of contact `i` in space."""
+    free, laws = free_of_own(contacts, carried, i, run, runs, zero)
+    gap, slips, strays, w, law, number, before = free
+    yields = yields_of(i, contacts.constants, run, zero)
+    if not yields_anywhere(yields):
+        return solve_in_space(gap, slips, strays, w, law, laws, number, before, let_go, step)
+    earlier = -held(carried, i * at.CARRIED + at.EARLIER_GAP, run, zero)
+    normal, first, second, status, jammed, give, beyond = forces_yielding_in_space(
+        gap, slips, strays, w, law, laws, number, before, let_go, step, yields, earlier, zero
+    )
+    hold(contacts.now, i * at.IN_STEP + at.GIVE, run, give)
+    hold(contacts.now, i * at.IN_STEP + at.BEYOND, run, beyond)
+    return normal, first, second, status, jammed
 
 
 @numba.njit(**OPTIONS)
@@ -110,25 +152,14 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
         in_space = sizes.space and is_second(contacts.codes, i + 1)
         second = zero
         if in_space:
-            normal, tangential, second, status, jammed = forces_in_space(
-                contacts, carried, i, run, runs, let_go, step, zero
+            normal, tangential, second, status, jammed = forces_of_this_in_space(
+                i, contacts, carried, let_go, step, run, runs, zero
             )
         else:
             gap -= w[0] * was_normal - w[1] * was_tangential
             slip -= w[2] * was_normal - w[3] * was_tangential
-            normal, tangential, status, jammed = forces_of_one(
-                gap,
-                slip,
-                strayed(carried, i, run, zero),
-                w,
-                contacts.codes[i],
-                contacts.laws,
-                i * runs + run,
-                held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero),
-                carried_or_found(carried, i, let_go, was_normal, was_tangential, run, zero),
-                let_go,
-                step,
-                zero,
+            normal, tangential, status, jammed = forces_of_this(
+                i, gap, slip, w, (was_normal, was_tangential), contacts, carried, let_go, step, run, runs, zero
             )
         goes_on = done < 0.5
         normal, tangential = choose(goes_on, normal, was_normal), choose(goes_on, tangential, was_tangential)

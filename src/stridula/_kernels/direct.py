@@ -60,6 +60,7 @@ def set_equations(contacts, carried, sizes, i, size, run, zero):
     ratio = choose(normal > 0.0, tangential, zero) / choose(normal > 0.0, normal, 1.0)
     holds = choose(sticks, 1.0, zero) if set_valued(contacts.codes[i]) else zero
     own_n, own_t = entry(faces, n, COMPLIANCE + n, run, zero), entry(faces, t, COMPLIANCE + t, run, zero)
+    give, beyond = held(now, here + at.GIVE, run, zero), held(now, here + at.BEYOND, run, zero)
     mirrors = sizes.space and is_second(contacts.codes, i)
     own_n = zero + 1.0 if mirrors else own_n
     for j in range(size):
@@ -68,12 +69,14 @@ def set_equations(contacts, carried, sizes, i, size, run, zero):
         if mirrors:
             # The second pair of rows has the normal force of the first.
             upright = zero - 1.0 if j == n - 2 else diagonal_n
+        elif j == n:
+            upright = upright + give
         if j == n:
             diagonal_t = choose(closed, ratio * own_t, zero)
         set_entry(scratch, j, n, run, choose(closed, upright, diagonal_n))
         set_entry(scratch, j, t, run, choose(holds > 0.5, level, diagonal_t))
     gap, slip = held(now, here + at.FREE_GAP, run, zero), held(now, here + at.FREE_SLIP, run, zero)
-    set_entry(scratch, n, size, run, zero if mirrors else choose(closed, -gap, zero))
+    set_entry(scratch, n, size, run, zero if mirrors else choose(closed, -gap - beyond, zero))
     set_entry(scratch, t, size, run, choose(holds > 0.5, -slip - strayed(carried, i, run, zero), zero))
 
 

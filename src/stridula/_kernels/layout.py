@@ -26,9 +26,24 @@ TIP_MOTION, TRACK_MOTION, GAP_MOTION = range(3)
 MOTIONS = 3
 
 # Constants of a contact: where it starts, its gap, the ends of its path, rate along the path and value at abscissa zero
-# of the two angles whose sines the modes of the path are, ratio at rest of the law of friction.
-START, GAP, LOW, HIGH, ALONG, ALONG_PHASE, ACROSS, ACROSS_PHASE, AT_REST = range(9)
-CONTACT_CONSTANTS = 9
+# of the two angles whose sines the modes of the path are, ratio at rest of the law of friction; stiffness of the
+# contact itself, 0 of a rigid one, its exponent, damping, and damping rate over the force.
+(
+    START,
+    GAP,
+    LOW,
+    HIGH,
+    ALONG,
+    ALONG_PHASE,
+    ACROSS,
+    ACROSS_PHASE,
+    AT_REST,
+    YIELD_STIFFNESS,
+    YIELD_EXPONENT,
+    YIELD_DAMPING,
+    YIELD_RATE,
+) = range(13)
+CONTACT_CONSTANTS = 13
 
 # Laws of friction, and the parameters of each, the state of a new contact last.
 COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, LUGRE, AGING, SLIP = range(7)
@@ -38,7 +53,7 @@ LAW_PARAMETERS = 8
 
 # Scalars that each contact carries from step to step: material abscissa of the tip, anchor of the stick, last status,
 # tip's abscissa at the last two steps, last slip and the one before, internal state of the law, forces and gap of the
-# last step, share of the last step in which it was closed if it still is.
+# last step, share of the last step in which it was closed if it still is, gap of the step before the last.
 (
     MATERIAL,
     ANCHOR,
@@ -52,11 +67,13 @@ LAW_PARAMETERS = 8
     LAST_TANGENTIAL,
     LAST_GAP,
     CLOSED_SHARE,
-) = range(12)
-CARRIED = 12
+    EARLIER_GAP,
+) = range(13)
+CARRIED = 13
 
 # What a contact is in a step: gap, slip and abscissa, without its forces, then with them; forces, status, whether it is
-# jammed; while the contacts are solved together whether it may touch, has broken away, has been let go.
+# jammed; while the contacts are solved together whether it may touch, has broken away, has been let go. How much more
+# it yields for a unit of force than the bodies, and beyond that.
 (
     FREE_GAP,
     FREE_SLIP,
@@ -70,8 +87,10 @@ CARRIED = 12
     MAY_TOUCH,
     BROKE,
     LET_GO,
-) = range(12)
-IN_STEP = 12
+    GIVE,
+    BEYOND,
+) = range(14)
+IN_STEP = 14
 
 # Sums over the steps of a sample, of each contact, and where it was at its beginning.
 (

@@ -3,6 +3,7 @@
 import numba
 
 from . import layout as at
+from .bookkeeping import stored_in_contacts
 from .coupled import energy_of
 from .lanes import anywhere, choose, held, hold, magnitude, write
 from .modes import OPTIONS, PASTED
@@ -55,4 +56,6 @@ def end(parts, ended, completed, run, zero):
     for row in range(carried.shape[0]):
         kept = choose(ended > 0.0, held(parts.state.at_end, row, run, zero), held(carried, row, run, zero))
         hold(carried, row, run, kept)
-    hold(parts.state.energies, at.STORED, run, energy_of(parts.modes, parts.sizes, run, zero))
+    stored = energy_of(parts.modes, parts.sizes, run, zero)
+    stored += stored_in_contacts(parts.contacts, carried, parts.sizes.contacts, run, zero)
+    hold(parts.state.energies, at.STORED, run, stored)

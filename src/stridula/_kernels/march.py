@@ -9,7 +9,7 @@ import numba
 
 from . import layout as at
 from .block_rows import CONTACTS, SINE
-from .bookkeeping import credit
+from .bookkeeping import credit, stored_in_contacts
 from .coupled import energy_of
 from .lanes import anywhere, choose, everywhere, hold, magnitude, spread
 from .leaving import end, leave
@@ -98,6 +98,7 @@ def march(zero, run, runs, parts):
             break
         credit_loads(parts, n, run, runs, zero)
         stored = energy_of(parts.modes, sizes, run, zero)
+        stored += stored_in_contacts(parts.contacts, parts.state.carried, sizes.contacts, run, zero)
         hold(parts.state.energies, at.STORED, run, stored)
         finite = choose(ended > 0.0, zero, magnitude(stored)) < math.inf
         if not everywhere(finite):

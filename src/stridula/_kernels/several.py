@@ -14,6 +14,7 @@ from .bookkeeping import (
     keep_place,
     keep_tangential,
     share_states,
+    store_in,
 )
 from .contacts import solve_all, start_from_last
 from .faces import own_compliance
@@ -34,6 +35,7 @@ from .space import (
     whole_compliance,
 )
 from .trying import complete_many, place_after, soften, try_many
+from .yielding import comes_close
 
 # Error of the contact forces, relative to the largest, beyond which none can be believed.
 UNBELIEVABLE = 1e-3
@@ -45,7 +47,9 @@ def solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero)
     now, faces, count = contacts.now, contacts.faces, sizes.contacts
     touching, closed = zero, zero
     for i in range(count):
-        touching = choose(held(now, i * at.IN_STEP + at.FREE_GAP, run, zero) < 0.0, 1.0, touching)
+        gap = held(now, i * at.IN_STEP + at.FREE_GAP, run, zero)
+        close = comes_close(i, gap, contacts.constants, state.carried, run, zero)
+        touching = choose(close > 0.5, 1.0, touching)
         closed = choose(held(state.carried, i * at.CARRIED + at.STATUS, run, zero) > 0.5, 1.0, closed)
     if sizes.paths and (anywhere(touching > 0.5) or anywhere(closed > 0.5)):
         soften(modes, paths, contacts, sizes, run, zero)
@@ -97,15 +101,18 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
     c, s = direction(forces, last_forces)
     before = (was, on(last, c, s), on(earlier, c, s), kept, last_normal, on(last_forces, c, s))
     law = contacts.codes[i]
+    store_in(i, held(now, here + at.NEW_GAP, run, zero), contacts, state, run, zero)
     if not set_valued(law) or anywhere(status + was > 0.5):
+        give, beyond = held(now, here + at.GIVE, run, zero), held(now, here + at.BEYOND, run, zero)
         moved = (
-            held(now, here + at.FREE_GAP, run, zero),
+            held(now, here + at.FREE_GAP, run, zero) + beyond,
             on(free, c, s),
             held(now, here + at.NEW_GAP, run, zero),
             on(slips, c, s),
         )
         touch = (normal, on(forces, c, s), status, held(now, here + at.JAMMED_NOW, run, zero))
         w = along(whole_compliance(contacts.faces, i, run, zero), c, s)
+        w = (w[0] + give, w[1], w[2], w[3])
         away = on((strayed(carried, i, run, zero), strayed(carried, i + 1, run, zero)), c, s)
         at_rest = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero)
         keep_second_anchor(i, status, was, carried, run, zero)

@@ -10,16 +10,28 @@ from .modes import PASTED
 from .recording import keep_probes_at
 from .solves import carried_by, forces_of_one, strayed
 from .trying import try_one
+from .yielding import comes_close, forces_yielding, yields_anywhere, yields_of
 
 
 @numba.njit(**PASTED)
 def solve_single(free, contacts, carried, w, timing, run, zero):
     """Return normal and tangential force, status and whether it is jammed of the only contact: 5."""
     _, gap, slip = free
-    if not anywhere(gap < 0.0):
+    hold(contacts.now, at.GIVE, run, zero)
+    hold(contacts.now, at.BEYOND, run, zero)
+    if not anywhere(comes_close(0, gap, contacts.constants, carried, run, zero) > 0.5):
         return zero, zero, zero, zero
     law, at_rest = contacts.codes[0], held(contacts.constants, at.AT_REST, run, zero)
     away, before = strayed(carried, 0, run, zero), carried_by(carried, 0, run, zero)
+    yields = yields_of(0, contacts.constants, run, zero)
+    if yields_anywhere(yields):
+        earlier = -held(carried, at.EARLIER_GAP, run, zero)
+        normal, tangential, status, jammed, give, beyond = forces_yielding(
+            gap, slip, away, w, law, contacts.laws, run, at_rest, before, zero, timing.step, yields, earlier, zero
+        )
+        hold(contacts.now, at.GIVE, run, give)
+        hold(contacts.now, at.BEYOND, run, beyond)
+        return normal, tangential, status, jammed
     return forces_of_one(gap, slip, away, w, law, contacts.laws, run, at_rest, before, zero, timing.step, zero)
 
 

@@ -311,8 +311,8 @@ def carried_in_space(carried, i, run, zero):
 
 
 @numba.njit(**PASTED)
-def forces_in_space(contacts, carried, i, run, runs, let_go, step, zero):
-    """Return normal force, both tangential forces, status and whether it is jammed of a contact in space."""
+def free_of_own(contacts, carried, i, run, runs, zero):
+    """Return what `solve_in_space` takes of a contact: as it is without its own forces; and the laws."""
     faces, now = contacts.faces, contacts.now
     w = whole_compliance(faces, i, run, zero)
     here = i * at.IN_STEP
@@ -325,8 +325,7 @@ def forces_in_space(contacts, carried, i, run, runs, let_go, step, zero):
     strays = strayed(carried, i, run, zero), strayed(carried, i + 1, run, zero)
     was, last, earlier, state, last_normal, last_forces = carried_in_space(carried, i, run, zero)
     before = (was, last, earlier, state, last_normal, last_forces, (first, second))
-    law, number = contacts.codes[i], i * runs + run
-    return solve_in_space(gap, (slip, swerve), strays, w, law, contacts.laws, number, before, let_go, step)
+    return (gap, (slip, swerve), strays, w, contacts.codes[i], i * runs + run, before), contacts.laws
 
 
 @numba.njit(**OPTIONS)

@@ -7,16 +7,22 @@ from .lugre import LuGre
 from .point_contact import PointContact
 from .rate_and_state import RateAndState
 from .rigid_track import RigidTrack
+from .stiffness import STIFFNESSES, ContactStiffness, HertzStiffness, LinearStiffness, PowerStiffness
 from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
 
 __all__ = [
     "LAWS",
+    "STIFFNESSES",
+    "ContactStiffness",
     "Coulomb",
     "ExponentialWeakening",
     "FrictionLaw",
+    "HertzStiffness",
+    "LinearStiffness",
     "LinearWeakening",
     "LuGre",
     "PointContact",
+    "PowerStiffness",
     "RateAndState",
     "RigidTrack",
     "StaticKinetic",

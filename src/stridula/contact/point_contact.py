@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Annotated
+from numbers import Real
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from .coulomb import Coulomb
 from .friction_law import FrictionLaw
 from .laws import LAWS
 from .rigid_track import RigidTrack
+from .stiffness import STIFFNESSES, ContactStiffness, LinearStiffness
 
 # Sine or cosine that rounding leaves of a right angle.
 ALONG_AN_AXIS = 1e-15
@@ -29,7 +31,7 @@ ALONG_SURFACE = 1e-9
 
 @dataclass(frozen=True)
 class PointContact:
-    """The tip of a slider on a track: unilateral (Signorini), with dry friction, without restitution.
+    """The tip of a slider on a track: unilateral (Signorini or yielding), with dry friction, without restitution.
 
     The normal force is compressive and never below zero; the tangential force is the force on the track along its
     tangent. On a beam, a plate or a rigid track the contact point moves along the track with the tip; against a
@@ -61,6 +63,8 @@ class PointContact:
     surface_velocity : float or sequence of float, optional
         Velocity at which the surface of a touched point's body moves under the tip [m/s], as that of a disc that turns
         about its axis while its vibration is seen from where it stands: along the tangent, in space along both.
+    stiffness : float, LinearStiffness, PowerStiffness or HertzStiffness, optional
+        Stiffness of the contact itself, a number in N/m; rigid if left out.
 
     Notes
     -----
@@ -77,6 +81,7 @@ class PointContact:
     normal: Annotated[Sequence[float], Each(Number())] | None = None
     tangent: Annotated[Sequence[float], Each(Number())] | None = None
     surface_velocity: Annotated[float | Sequence[float], OneOrEach(Number("m/s"))] = 0.0
+    stiffness: ContactStiffness | float | None = None
 
     def __post_init__(self) -> None:
         instance("tip", self.tip, BodyPoint)
@@ -97,6 +102,10 @@ class PointContact:
         if abs(self.inclination) > 2.0 * math.pi:
             raise ArgumentError("inclination", "be from -2 pi to 2 pi rad", self.inclination)
         instance("name", self.name, str)
+        if self.stiffness is not None and not isinstance(self.stiffness, STIFFNESSES):
+            instance("stiffness", self.stiffness, (Real, *STIFFNESSES))
+            number: Any = self.stiffness
+            object.__setattr__(self, "stiffness", LinearStiffness(float(number)))
         self._check_directions()
 
     def _check_directions(self) -> None:
@@ -159,6 +168,12 @@ class PointContact:
                 assert turning is not None
                 found.append((turning, sign * self.frame[1:] @ point.turning_velocity[: len(self.frame)]))
         return tuple(found)
+
+    @property
+    def yields(self) -> ContactStiffness | None:
+        """Stiffness of the contact itself, None where it is rigid."""
+        found: ContactStiffness | None = self.stiffness  # type: ignore[assignment]
+        return found
 
     @property
     def is_spatial(self) -> bool:

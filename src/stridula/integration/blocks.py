@@ -195,6 +195,8 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
             constants[i, at.LOW : at.AT_REST] = (*path.ends, *angles)
         codes[i], laws[i] = _law(one.contact.friction)
         constants[i, at.AT_REST] = laws[i, 0]
+        if one.contact.yields is not None and not one.is_second:
+            constants[i, at.YIELD_STIFFNESS :] = one.contact.yields.numbers
         if one.is_second:
             codes[i] = at.SECOND_TANGENT
         elif not one.fixed[0].any() and along is None:

@@ -13,6 +13,7 @@ from ..arrays import Array
 from ..assembly import Assembly, ContactRows
 from ..checks import ArgumentError
 from ..contact import FrictionLaw
+from ..contact.stiffness import stored_at, tangent_of
 from ..records.state import State
 from .blocks import Blocks
 from .contact_solve import GaussSeidel
@@ -42,7 +43,7 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
     force = start.factors @ arrays.loads
     first = start.increment(force)
     carried = start.carried(first)
-    closed = np.flatnonzero(start.gaps == 0.0)
+    closed = np.flatnonzero(start.is_closed)
     if closed.size:
         forces = start.forces(closed, first, carried, solve)
         first = start.increment(force + (forces * [1.0, -1.0]).ravel() @ start.pushes(closed))
@@ -52,8 +53,18 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
         carried[pressed, at.CLOSED_SHARE] = 1.0
         carried[pressed, at.STATUS] = np.where(start.slip_speeds[pressed] == 0.0, STICKING, SLIDING)
     modal, energies = np.stack([arrays.position, first]), np.zeros(at.ENERGIES)
-    energies[at.STORED] = modes.stored_energy(modal)
+    energies[at.STORED] = modes.stored_energy(modal) + _stored_in_contacts(arrays, carried)
     return State(modal, np.zeros_like(modal), carried, energies)
+
+
+def _stored_in_contacts(arrays: Assembly, carried: Array) -> float:
+    """Return the energy that contacts which yield store half a step before the start [J]."""
+    energy = 0.0
+    for one, own in zip(arrays.contacts, carried, strict=True):
+        if one.contact.yields is not None and not one.is_second:
+            gaps = own[[at.LAST_GAP, at.EARLIER_GAP]].tolist()
+            energy += sum(0.5 * stored_at(one.contact.yields, -gap) for gap in gaps)
+    return energy
 
 
 class _Start:
@@ -80,6 +91,12 @@ class _Start:
             first, second = one.pairs.T
             self.velocity[first] += rate * arrays.position[second]
             self.velocity[second] -= rate * arrays.position[first]
+
+    @property
+    def is_closed(self) -> Array:
+        """Whether each contact presses: rigid ones without a gap, others where they are indented."""
+        rigid = np.array([one.contact.yields is None for one in self.arrays.contacts])
+        return (self.gaps < 0.0) | (rigid & (self.gaps == 0.0))
 
     def increment(self, force: Array) -> Array:
         """Return the increment before the start of motion under constant modal forces."""
@@ -125,11 +142,12 @@ class _Start:
         for i, one in enumerate(self.arrays.contacts):
             carried[i, at.MATERIAL] = one.at + self.rows[i, 1] @ self.arrays.position
             carried[i, at.ABSCISSA] = one.at + self.fixed[i, 1] @ self.arrays.position
-            carried[i, at.STATUS] = STICKING if self.gaps[i] == 0.0 and self.slip_speeds[i] == 0.0 else SEPARATED
+            carried[i, at.STATUS] = STICKING if self.is_closed[i] and self.slip_speeds[i] == 0.0 else SEPARATED
             if one.is_second:
                 continue
             carried[i, at.FRICTION_STATE] = self._state_before(i, one.contact.friction, float(self.speeds[i]))
         carried[:, at.ANCHOR], carried[:, at.LAST_GAP] = carried[:, at.MATERIAL], self.gaps
+        carried[:, at.EARLIER_GAP] = self.gaps - self.rows[self.first, 0] @ first - self.before[self.first, 2]
         carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - self.fixed[:, 1] @ first - tip
         carried[:, at.LAST_SLIP] = self.rows[:, 1] @ first + tip - track
         # One step more back, under the same acceleration.
@@ -157,6 +175,12 @@ class _Start:
         gap, slip = self._at_first_step(free + self.factors @ self.modes.loads)
         gap, slip = gap + self.rows[:, 0] @ around, slip + self.rows[:, 1] @ beyond
         compliance = self._compliance(self.pushes(closed))
+        for k, i in enumerate(closed):
+            one = self.arrays.contacts[i]
+            if one.contact.yields is not None and not one.is_second:
+                give, further = tangent_of(one.contact.yields, -float(self.gaps[i]))
+                compliance[2 * k, 2 * k] += give
+                gap[i] += further
         codes, laws = self.contacts.codes[closed], self.contacts.laws[closed]
         ratios = self._known_ratios(carried)[closed]
         for i in np.flatnonzero(np.isfinite(ratios)):
@@ -235,6 +259,8 @@ def _gap(one: ContactRows, rows: Array, arrays: Assembly, terms: Array) -> float
     spans = [slice(*span) for span in arrays.spans.values()] if terms.any() else []
     felt = sum(float(np.linalg.norm(rows[0, span]) * np.linalg.norm(terms[span])) for span in spans)
     scale = one.gap + felt
+    if one.contact.yields is not None:
+        return gap if abs(gap) > ROUND_OFF * scale else 0.0
     if gap < -ROUND_OFF * scale:
         raise ArgumentError("gap", "leave the bodies apart at the start", got=f"an overlap of {-gap:.3g} m")
     return gap if gap > ROUND_OFF * scale else 0.0

@@ -11,11 +11,13 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError
 from ..contact import FrictionLaw
+from ..contact.stiffness import indentation_under, tangent_of
 from .structure import SEPARATED, SLIDING, STICKING, UNMOVED, Structure
 
 # Relative size below which a force or an acceleration is round-off.
 ROUND_OFF = 1e-9
-# Laws whose coefficient in sliding is the same at every speed.
+# Passes in which contacts come to yield as their forces want, and the relative change of these that is round-off.
+YIELDING, SETTLED = 60, 1e-13
 # Contacts up to which all minors are looked at.
 MOST_CONTACTS = 10
 HELD, LIFTED_OFF, JAMMED = "held", "lifted off", "jammed"
@@ -194,10 +196,9 @@ def _balance(
 
     Sticking contacts are held at their anchors, displacements along their tangents.
     """
-    equations = _Equations(structure, status, sense * ratio)
     load = structure.load - structure.damping @ structure.following(status)
+    equations, (displacement, acceleration, forces) = _solved(structure, status, sense * ratio, load, anchors)
     closed, stuck = equations.closed, equations.stuck
-    displacement, acceleration, forces = equations.solved(load, -structure.gaps[closed], anchors[stuck])
     normal, tangential = np.zeros((2, len(status)))
     normal[closed] = forces[: len(closed)]
     tangential[closed] = (sense * ratio * normal)[closed]
@@ -208,14 +209,33 @@ def _balance(
     return _Balance(status, sense, ratio, normal, tangential, lateral, slip, slips, displacement, equations.determinant)
 
 
+def _solved(
+    structure: Structure, status: Sequence[str], share: Array, load: Array, anchors: Array
+) -> tuple[_Equations, list[Array]]:
+    """Solve the equations under a load, again where contacts yield otherwise than they were thought to."""
+    normal = np.full(len(status), _force(structure) or 1.0)
+    for _ in range(YIELDING):
+        give, beyond = yielding_at(structure, normal)
+        equations = _Equations(structure, status, share, give)
+        closed, stuck = equations.closed, equations.stuck
+        found = equations.solved(load, -structure.gaps[closed] - beyond[closed], anchors[stuck])
+        before, normal[closed] = normal[closed], found[2][: len(closed)]
+        if np.abs(normal[closed] - before).max(initial=0.0) <= SETTLED * np.abs(before).max(initial=0.0):
+            break
+        if not any(structure.system.contacts[k].yields for k in closed) or not np.isfinite(normal).all():
+            break
+    return equations, found
+
+
 class _Equations:
     """Balance of forces and what contacts hold, as equations for displacement, accelerations and contact forces."""
 
-    def __init__(self, structure: Structure, status: Sequence[str], share: Array) -> None:
+    def __init__(self, structure: Structure, status: Sequence[str], share: Array, give: Array | None = None) -> None:
         held, pushes, self.closed, self.stuck = held_rows(structure, status, share)
         self.lateral = held_across(structure, self.stuck)
         who = [*self.closed, *self.stuck, *self.lateral]
-        structure.once(("checked", *status), lambda: _check_held(structure, held, who))
+        rigid = [row for row, k in enumerate(who) if row >= len(self.closed) or structure.is_rigid(k)]
+        structure.once(("checked", *status), lambda: _check_held(structure, held[rigid], [who[row] for row in rigid]))
         self.free, modes = structure.free_motions(held), structure.mode_count
         _check_unbraked(structure, self.free)
         self.parts = modes, modes + self.free.shape[1]
@@ -223,6 +243,8 @@ class _Equations:
         matrix = np.zeros((size, size))
         matrix[:modes] = np.hstack([structure.stiffness, self.free, -pushes.T])
         matrix[modes:, :modes] = np.vstack([self.free.T, held])
+        rows = self.parts[1] + np.arange(len(self.closed))
+        matrix[rows, rows] = 0.0 if give is None else give[self.closed]
         self.scale = np.sqrt(np.maximum(np.abs(np.diag(matrix)), 1.0))
         self.matrix = matrix / np.outer(self.scale, self.scale)
         self.determinant = float(np.linalg.slogdet(self.matrix)[0])
@@ -251,12 +273,24 @@ def travelling(structure: Structure, at: Equilibrium, speed: Array) -> Array:
     speed : ndarray, shape (contacts,)
         Velocities of the contact points along their tracks [m/s].
     """
-    equations = _Equations(structure, at.status, at.sense * at.ratio)
+    give, _ = yielding_at(structure, at.normal_force)
+    equations = _Equations(structure, at.status, at.sense * at.ratio, give)
     pull, opening = np.zeros(structure.mode_count), np.zeros(len(speed))
     for k, line in enumerate(structure.lines):
         pull -= speed[k] * (at.normal_force[k] * line.normal_slope - at.tangential_force[k] * line.tangent_slope)
         opening[k] = speed[k] * line.normal_slope @ at.displacement
     return equations.solved(pull, opening[equations.closed], np.zeros(len(equations.stuck)))[0]
+
+
+def yielding_at(structure: Structure, normal: Array) -> tuple[Array, Array]:
+    """Return by how much more contacts yield for a unit of force about normal forces, and beyond that, (contacts,)."""
+    give, beyond = np.zeros((2, len(normal)))
+    least = ROUND_OFF * (_force(structure) or 1.0)
+    for k, contact in enumerate(structure.system.contacts):
+        if contact.yields is not None:
+            indented = indentation_under(contact.yields, max(float(normal[k]), least))
+            give[k], beyond[k] = tangent_of(contact.yields, indented)
+    return give, beyond
 
 
 def held_rows(structure: Structure, status: Sequence[str], share: Array) -> tuple[Array, Array, list[int], list[int]]:
@@ -349,8 +383,9 @@ def _wrong(structure: Structure, found: tuple[_Balance, _Balance]) -> tuple[int,
 
 def _is_held(structure: Structure, status: Sequence[str], contact: int) -> bool:
     """Return whether what other contacts hold keeps a contact from slipping, too."""
-    held, *_ = held_rows(structure, status, np.zeros(len(status)))
-    return _rank_is_short(np.vstack([held, structure.lines[contact].tangent]))
+    held, _, closed, _ = held_rows(structure, status, np.zeros(len(status)))
+    rigid = [row for row in range(len(held)) if row >= len(closed) or structure.is_rigid(closed[row])]
+    return _rank_is_short(np.vstack([held[rigid], structure.lines[contact].tangent]))
 
 
 def _rank_is_short(rows: Array) -> bool:
@@ -370,7 +405,10 @@ def slides_on(structure: Structure, status: Sequence[str], share: Array) -> bool
     residual shapes yield at once, modes move by nothing against them.
     """
     held, pushes, closed, _ = held_rows(structure, status, share)
-    whole, size = held * structure.promptness @ pushes.T, len(closed)
+    # What yields answers to any impulse.
+    rigid = [row for row in range(len(held)) if row >= len(closed) or structure.is_rigid(closed[row])]
+    held, pushes, size = held[rigid], pushes[rigid], sum(structure.is_rigid(k) for k in closed)
+    whole = held * structure.promptness @ pushes.T
     compliance = whole[:size, :size]
     if len(held) > size:
         compliance = compliance - whole[:size, size:] @ np.linalg.solve(whole[size:, size:], whole[size:, :size])

@@ -1,14 +1,15 @@
 """Small vibration of systems with residual shapes, which have stiffness and no mass.
 
-Motions that contacts allow split into those with mass, a, and those without, b, which no damping and no slope of
-friction sees. They follow at once::
+Motions that contacts allow split into those with mass, a, and those without, b. Where no damping sees these they follow
+at once, else they creep::
 
-    M a'' + D a' + K_a a + K_b b + B z = 0    in rows with mass, without M in the others
+    M a'' + D_a a' + D_b b' + K_a a + K_b b + B z = 0    in rows with mass, without M in the others
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import scipy.linalg
@@ -18,6 +19,10 @@ from .vibration import Exponents, Vibration
 
 # Relative mass below which a motion has none.
 MASSLESS = 1e-9
+# Damping of motions without mass over their stiffness, at the highest frequency, that rounding leaves.
+UNDAMPED = 1e-9
+# Relative inverse of an exponent that rounding gives to endless ones.
+ENDLESS = 1e-13
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,8 @@ def massless_exponents(motion: Vibration) -> Exponents:
     """Return all exponents of a system with residual shapes, by a dense solver."""
     highest = float(np.sqrt(np.diag(motion.stiffness)[motion.mass > 0.0].max(initial=1.0)))
     split = _split(motion, np.where(motion.mass > 0.0, 1.0, highest))
+    if _is_damped(motion, split):
+        return _creeping(motion, split)
     first, followed = _first_order(motion, split)
     values, vectors = scipy.linalg.eig(first, check_finite=False, overwrite_a=True)
     chosen = values.imag >= 0.0
@@ -68,6 +75,42 @@ def _split(motion: Vibration, scale: Array) -> _Split:
     basis = np.linalg.svd(others, full_matrices=False)[0][:, : heavy - free.shape[1]]
     moves, rows, size = np.hstack([free, basis]), balanced @ left, scale[:, None]
     return _Split(size * moves, size * light, size * rows[:, :heavy], size * rows[:, heavy:], free.shape[1])
+
+
+def _is_damped(motion: Vibration, split: _Split) -> bool:
+    """Return whether any damping sees motions without mass."""
+    seen = np.abs(motion.damping @ split.light).max(initial=0.0) * np.abs(split.light).max(initial=0.0)
+    stiff = np.abs(motion.stiffness @ split.light).max(initial=0.0) * np.abs(split.light).max(initial=0.0)
+    return bool(seen * float(np.sqrt(np.abs(np.diag(motion.stiffness)).max(initial=0.0))) > UNDAMPED * stiff)
+
+
+def _creeping(motion: Vibration, split: _Split) -> Exponents:
+    """Return the exponents where damping sees motions without mass, which then have velocities of their own.
+
+    Of displacements along all motions with mass but the free rigid ones, velocities along all, states, and motions
+    without mass: ``left s' = right s``, singular where nothing brakes a motion without mass.
+    """
+    heavy, light, rigid = split.heavy, split.light, split.rigid
+    bent, states = heavy[:, rigid:], len(motion.state)
+    sizes = np.cumsum([0, bent.shape[1], heavy.shape[1], states, light.shape[1]])
+    x, v, z, y = (slice(*pair) for pair in pairwise(sizes.tolist()))
+    left, right = np.zeros((2, sizes[-1], sizes[-1]))
+    left[x, x], right[x, sizes[1] + rigid : sizes[2]] = np.eye(bent.shape[1]), np.eye(bent.shape[1])
+    for rows, test in ((v, split.with_mass), (y, split.without)):
+        right[rows, x], right[rows, y] = -test.T @ motion.stiffness @ bent, -test.T @ motion.stiffness @ light
+        right[rows, v], left[rows, y] = -test.T @ motion.damping @ heavy, test.T @ motion.damping @ light
+        right[rows, z] = -test.T @ motion.by_state
+    left[v, v] = split.with_mass.T @ (motion.mass[:, None] * heavy)
+    left[z, z], left[z, y] = np.eye(states), -motion.from_velocity @ light
+    right[z, x], right[z, y] = motion.from_displacement @ bent, motion.from_displacement @ light
+    right[z, v], right[z, z] = motion.from_velocity @ heavy, np.diag(motion.state)
+    pairs, vectors = scipy.linalg.eig(right, left, check_finite=False, homogeneous_eigvals=True)
+    finite = np.abs(pairs[1]) > ENDLESS * np.abs(pairs).max(axis=0)
+    values, vectors = pairs[0, finite] / pairs[1, finite], vectors[:, finite]
+    chosen = values.imag >= 0.0
+    values, vectors = values[chosen], vectors[:, chosen]
+    drift = vectors[sizes[1] : sizes[1] + rigid] / np.where(values == 0.0, 1.0, values)
+    return Exponents(values, heavy @ np.concatenate([drift, vectors[x]]) + light @ vectors[y])
 
 
 def _null(rows: Array) -> Array:

@@ -143,7 +143,7 @@ def _mode(structure: Structure, at: Equilibrium, asked: InitialEquilibrium) -> t
     shape = shape * (asked.amplitude * np.exp(1.0j * asked.phase) / largest)
     states = np.zeros(len(structure.lines), dtype=complex)
     known = [k for k, contact in enumerate(structure.system.contacts) if contact.friction.has_state]
-    rates = motion.from_velocity @ (exponent * shape)
+    rates = motion.from_velocity @ (exponent * shape) + motion.from_displacement @ shape
     states[[k for k in known if at.slip_velocity[k]]] = rates / (exponent - motion.state)
     return shape, exponent, states
 
@@ -169,8 +169,8 @@ def _number(exponents: Array, mode: int | str | None, least: float) -> int:
 
 
 def _closed(whole: Structure, status: Sequence[str], position: Array) -> Array:
-    """Return positions with the contacts exactly closed, where a contact point has shifted along a bent track, too."""
-    closed = np.array([one != SEPARATED for one in status])
+    """Return positions with rigid contacts exactly closed, where contact points have shifted along bent tracks, too."""
+    closed = np.array([one != SEPARATED and whole.is_rigid(k) for k, one in enumerate(status)])
     if not closed.any():
         return position
     along = np.array([line.along for line in whole.lines])

@@ -144,6 +144,10 @@ class Structure:
         highest = float(np.diag(self.stiffness)[self.mass > 0.0].max(initial=1.0))
         return np.where(self.mass > 0.0, SHORT**2 / highest, 1.0)
 
+    def is_rigid(self, contact: int) -> bool:
+        """Return whether a contact does not yield itself."""
+        return self.system.contacts[contact].yields is None
+
     def shifted(self, shifts: Array) -> Structure:
         """Return the system with its contact points shifted along their tracks by distances [m], shape (contacts,)."""
         other = copy(self)

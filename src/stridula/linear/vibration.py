@@ -15,6 +15,7 @@ import scipy.sparse.linalg
 from ..arrays import Array
 from ..checks import ArgumentError
 from ..contact.linearised import Linearised
+from ..contact.stiffness import slopes_at
 from .equilibrium import Equilibrium, held_rows
 from .structure import SLIDING, STICKING, Structure
 
@@ -97,8 +98,16 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
             damping += normal * near.slope * np.outer(line.tangent, slip)
             stiffness += normal * near.slope * np.outer(line.tangent, slip @ passing)
             answers.append((near, equilibrium.sense[k], normal, line.tangent, slip))
-    by_state, from_velocity, state = _states(answers, structure)
     free = structure.free_motions(held)
+    for row, k in enumerate(closed):
+        yields = structure.system.contacts[k].yields
+        if yields is not None:
+            slope, rate = slopes_at(yields, float(equilibrium.normal_force[k]))
+            stiffness += slope * np.outer(pushes[row], held[row])
+            damping += rate * np.outer(pushes[row], held[row])
+    rigid = [row for row in range(len(held)) if row >= len(closed) or structure.is_rigid(closed[row])]
+    held, pushes = held[rigid], pushes[rigid]
+    by_state, from_velocity, state = _states(answers, structure)
     moved = from_velocity, from_velocity @ passing
     return Vibration(structure.mass, stiffness, damping, held, pushes, by_state, *moved, state, free)
 

@@ -104,6 +104,8 @@ def _contact(contact: PointContact) -> dict[str, Any]:
     for name in ("inclination", "name", "normal", "tangent", "surface_velocity"):
         if getattr(contact, name):
             given[name] = _value(getattr(contact, name))
+    if contact.yields is not None:
+        given["stiffness"] = {"kind": contact.yields.kind, **_plain(contact.yields)}
     return {**given, "friction": {"law": contact.friction.law, **_plain(contact.friction)}}
 
 

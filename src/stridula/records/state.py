@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ..arrays import Array
 
 # Raised whenever what a State, or the record of one, holds means something else.
-LAYOUT = 1
+LAYOUT = 2
 
 
 @dataclass

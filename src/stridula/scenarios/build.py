@@ -28,7 +28,7 @@ from ..bodies.ordinary import NotOrdinary
 from ..bodies.sections import SECTIONS
 from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, listed, suggestion
-from ..contact import LAWS, PointContact, RigidTrack
+from ..contact import LAWS, STIFFNESSES, PointContact, RigidTrack
 from ..disk import is_there
 from ..drives import Drive
 from ..integration import GaussSeidel
@@ -45,6 +45,7 @@ HISTORIES: dict[str, Callable[..., Any]] = {history.kind: history for history in
 DRIVES: dict[str, type[Drive]] = {drive.kind: drive for drive in drives.DRIVES}
 MOTIONS = {"displacement": Displacement, "velocity": Velocity, "acceleration": Acceleration}
 FRICTIONS: dict[str, Callable[..., Any]] = {law.law: law for law in LAWS}
+STIFFNESS: dict[str, Callable[..., Any]] = {kind.kind: kind for kind in STIFFNESSES}
 CONNECTIONS: dict[str, Callable[..., Any]] = {connection.kind: connection for connection in connections.CONNECTIONS}
 Tables = dict[str, Any]
 Place = tuple[str | int, ...]
@@ -117,7 +118,7 @@ class Builder:
         for body, place in ((slider, "slider"), (track, "track")):
             self.places |= {body.name: (place,)} if body.name else {}
         table = dict(self.tables["contact"])
-        friction = self._friction(("contact",), table)
+        friction = self._friction(("contact",), table) | self._stiffness(("contact",), table)
         tip = self._point(("contact", "point"), slider, table.pop("point", "tip"))
         with self._within("contact"):
             return PointContact(tip, track, **friction, **table)
@@ -246,9 +247,19 @@ class Builder:
             return {"friction": FRICTIONS[given.pop("law")](**given)}
         return {}
 
+    def _stiffness(self, path: Place, table: Tables) -> dict[str, Any]:
+        """Take the stiffness of a contact out of its table, if it has one."""
+        given = table.pop("stiffness", None)
+        if not isinstance(given, dict):
+            return {} if given is None else {"stiffness": given}
+        values = {name: value for name, value in given.items() if name != "kind"}
+        with self._within(*path, "stiffness"):
+            return {"stiffness": STIFFNESS[given["kind"]](**values)}
+        return {}
+
     def _contact(self, number: int, table: Tables) -> Any:
         path = ("contacts", number)
-        friction = self._friction(path, table)
+        friction = self._friction(path, table) | self._stiffness(path, table)
         tip = self._place((*path, "tip"), table.pop("tip"))
         track = self._track((*path, "track"), dict(table.pop("track")))
         with self._within(*path):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 from ..connections import CONNECTIONS
-from ..contact import LAWS, Coulomb, PointContact, RigidTrack
+from ..contact import LAWS, STIFFNESSES, Coulomb, PointContact, RigidTrack
 from . import fields as is_
 from .derived import Keys, one_of, table_of
 from .fields import Table
@@ -13,10 +13,15 @@ from .schema_drives import History
 
 if TYPE_CHECKING:
     Friction = Any
+    Stiffness = Any
 else:
     Friction = one_of(
         "law", (table_of(law, "law", law.law, "law of friction", is_usual=law is Coulomb) for law in LAWS)
     )
+    Stiffness = one_of(
+        "kind", (table_of(kind, "kind", kind.kind, "linear, power law or hertz") for kind in STIFFNESSES)
+    )
+YIELDS = "stiffness of the contact itself: a number [N/m] or a table, rigid if left out"
 
 
 class PairContact(Table):
@@ -26,6 +31,8 @@ class PairContact(Table):
     """friction between tip and track"""
     gap: is_.Distance = PointContact.gap
     """distance between tip and track at the start [m]"""
+    stiffness: is_.Stiffness | Stiffness | None = None
+    """stiffness of the contact itself: a number [N/m] or a table, rigid if left out"""
     point: is_.Point = "tip"
     """point of the slider that touches: tip, root or a position from the tip [m]"""
     name: str = ""
@@ -81,6 +88,7 @@ else:
         "track": (one_of("kind", [BeamTrack, PlateTrack, _rigid, PointTrack]), ..., "what it slides on"),
     }
     _friction = {"friction": (Friction | None, None, "friction between tip and track, none if left out")}
+    _friction["stiffness"] = (is_.Stiffness | Stiffness | None, None, YIELDS)
     Contact = table_of(PointContact, title="Contact", before=_sides, after=_friction)
     Connection = one_of(
         "kind", [table_of(kind, "kind", kind.kind, "spring or dashpot", before=ENDS) for kind in CONNECTIONS]

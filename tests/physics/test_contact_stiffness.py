@@ -1,0 +1,220 @@
+"""Contacts that yield: against Hertz, Hoffmann's mass, closed forms of a spring, and linear theory."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi, radians, sqrt
+
+import numpy as np
+import pytest
+
+import stridula as st
+from stridula.contact.stiffness import force_at
+
+from .test_equilibrium_starts import growth, starting
+from .test_space import SCHEMES, dragged, standing
+
+SEPARATED, STICKING, SLIDING = 0, 1, 2
+BALL = 4.0 / 3.0 * pi * 0.01**3 * 7960.0
+KINDS = [st.LinearStiffness(2e6), st.PowerStiffness(1.570377e10), st.PowerStiffness(1e12, 2.5)]
+
+
+def thrown(stiffness, speed: float = 0.01, mass: float = BALL) -> st.System:
+    ball = st.RigidBody(mass)
+    contact = st.PointContact(ball.centre, st.RigidTrack(), stiffness=stiffness)
+    return st.System(contact, [st.InitialVelocity(ball, y=-speed)])
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("stiffness", KINDS, ids=str)
+def test_a_ball_bounces_back_as_fast_as_it_came(stiffness, scheme):
+    """What is stored is given back to the last digit, in whatever steps."""
+    system = thrown(stiffness)
+    for step in (2e-6, 2e-5):
+        probes = [st.Velocity(system.slider.centre, "y")]
+        run = st.simulate(system, 8e-3, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes)
+        assert (run.normal_force.values >= 0.0).all()
+        assert float(run.normal_force.max()) > 0.0
+        assert float(run.velocity[-1, 0]) == pytest.approx(0.01, rel=1e-12)
+        assert np.ptp(run.kinetic_and_elastic.values) < 1e-11 * float(run.kinetic_and_elastic[0])
+        assert abs(float(run.impact_loss[-1])) < 1e-11 * float(run.kinetic_and_elastic[0])
+
+
+def test_hertz_on_a_wall():
+    """Force and time of an impact in closed form: m v² / 2 = 0.4 k d^2.5, t = 2.9432 d / v."""
+    stiffness = st.HertzStiffness.between(
+        st.Material(2.157463e11, 7960.0, 0.29), st.Material(2.157463e11, 7960.0, 0.29), 0.01
+    )
+    k, speed = stiffness.numbers[0], 0.01
+    assert k == pytest.approx(1.570377e10, rel=1e-6)
+    deepest = (1.25 * BALL * speed**2 / k) ** 0.4
+    run = st.simulate(thrown(stiffness), 2.5e-4, step=2.5e-7, sample_rate=4e6, probes=[])
+    force, time = run.normal_force.values, run.time.values
+    assert force.max() == pytest.approx(k * deepest**1.5, rel=2e-5)
+    assert force.max() == pytest.approx(7.0851, rel=2e-5)
+    assert np.ptp(time[force > 0.0]) == pytest.approx(2.943275 * deepest / speed, rel=5e-3)
+
+
+def test_damping_takes_what_it_says():
+    """A mass on a contact's spring and dashpot, pressed so that it never opens: the oscillator in closed form."""
+    stiffness, damping, mass, push = 1e6, 20.0, 0.1, 100.0
+    body = st.RigidBody(mass)
+    contact = st.PointContact(body.centre, st.RigidTrack(), stiffness=st.LinearStiffness(stiffness, damping))
+    system = st.System(contact, [st.Force(body.centre, y=-push)])
+    errors = []
+    for step in (4e-6, 2e-6):
+        run = st.simulate(system, 5e-3, step=step, sample_rate=1.0 / step, probes=[])
+        time = run.time.values
+        w, rate = sqrt(stiffness / mass), 0.5 * damping / mass
+        fast = sqrt(w**2 - rate**2)
+        known = (
+            -push / stiffness * (1.0 - np.exp(-rate * time) * (np.cos(fast * time) + rate / fast * np.sin(fast * time)))
+        )
+        errors.append(np.abs(run.gap.values - known).max() * stiffness / push)
+        lost = float(run.impact_loss[-1])
+        assert lost > 0.0
+        assert float(run.ledger_residual.max()) < 1e-13
+    assert errors[1] < 3e-4
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+
+
+def hoffmann(friction: float, **start) -> st.System:
+    """Hoffmann's mass (2002) with the spring that it has at its contact: K = [[2, 1 - 4 mu / 3], [1, 2]]."""
+    mass = st.PointMass(1.0)
+    belt = st.RigidTrack(velocity=-5.0)
+    contact = st.PointContact(mass.centre, belt, friction=st.Coulomb(friction), stiffness=4.0 / 3.0)
+    springs = [
+        (2.0 * (2.0 - sqrt(3.0)) / 3.0, 150.0),
+        (2.0 * (2.0 + sqrt(3.0)) / 3.0, 30.0),
+    ]
+    connections = [
+        st.Spring(mass.centre, stiffness=rate, direction=(np.cos(radians(by)), np.sin(radians(by)), 0.0))
+        for rate, by in springs
+    ]
+    return st.System(contact, [st.Force(mass.centre, y=-10.0)], connections)
+
+
+@pytest.mark.parametrize(("friction", "known"), [(0.5, (1.192749, 1.605413)), (0.9, (1.422918,))])
+def test_linear_theory_is_hoffmanns(friction, known):
+    theory = st.sliding_stability(hoffmann(friction))
+    found = 2.0 * pi * theory.frequency.values
+    for one in known:
+        assert np.abs(found - one).min() < 1e-6
+    assert float(theory.growth_rate.max()) == pytest.approx(0.157147 if friction == 0.9 else 0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_growth_in_time_is_hoffmanns(scheme):
+    system = hoffmann(0.9)
+    probe = st.Displacement(system.slider.centre, "x")
+    known, seen, _ = growth(system, probe, 5e-3, 40.0, 200, scheme, amplitude=1e-4)
+    assert known.real == pytest.approx(0.157147, abs=1e-6)
+    assert seen == pytest.approx(known, rel=1e-3)
+
+
+def on_layers(stiffness, friction: float = 0.3, **words) -> st.System:
+    """A pillar that stands in space, every foot on a layer."""
+    system = standing(st.Coulomb(friction), **words)
+    kinds = stiffness if isinstance(stiffness, list) else [stiffness] * len(system.contacts)
+    contacts = [replace(one, stiffness=kind) for one, kind in zip(system.contacts, kinds, strict=True)]
+    return replace(system, contact=contacts)
+
+
+MIXED = [st.LinearStiffness(1e8, 10.0), st.PowerStiffness(1e12), None, st.PowerStiffness(1e13, 2.0, 0.1)]
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_several_contacts_obey_their_laws_at_every_step(scheme):
+    count, step = 2500, 4e-6
+    system = on_layers([MIXED[k % 4] for k in range(len(standing().contacts))])
+    run = st.simulate(system, count * step, step=step, sample_rate=1.0 / step, scheme=scheme, probes=[])
+    assert run.attrs["ended"] == "finished"
+    assert int(run.unsolved_steps.sum()) == 0
+    normal, gap = run.normal_force.values, run.gap.values
+    size = normal.max()
+    pulled = np.hypot(*np.moveaxis(run.tangential_force.values, -1, 0))
+    assert (normal >= 0.0).all()
+    assert (pulled <= 0.3 * normal + 1e-9 * size).all()
+    for k, contact in enumerate(system.contacts):
+        if contact.yields is None:
+            assert np.abs(gap[:, k] * normal[:, k]).max() < 1e-9 * size * np.abs(gap).max()
+            continue
+        # Where the indentation hardly changes in two steps the force is that at its mean.
+        *_, damping, rate = contact.yields.numbers
+        indented = np.maximum(-gap[:, k], 0.0)
+        mean, change = 0.5 * (indented[2:] + indented[:-2]), (indented[2:] - indented[:-2]) / (2.0 * step)
+        steady = np.abs(indented[2:] - indented[:-2]) < 0.05 * mean
+        known = np.array([force_at(contact.yields, one) for one in mean])
+        known = np.maximum(known * (1.0 + rate * change) + damping * change, 0.0)
+        assert steady.sum() > 100
+        np.testing.assert_allclose(normal[2:, k][steady], known[steady], rtol=1e-3)
+    terms = ["kinetic_and_elastic", "damping_loss", "drive_work", "contact_work"]
+    largest = max(np.abs(run[term].values).max() for term in terms)
+    assert np.abs(run.ledger_residual.values).max() < 1e-11 * largest
+
+
+def test_runs_side_by_side_are_those_alone():
+    systems = [on_layers(st.PowerStiffness(10.0**k, 1.5, 0.05)) for k in np.linspace(10.0, 12.0, 9)]
+    words = {"step": 4e-6, "sample_rate": 5e4, "probes": []}
+    together = st.simulate_many(systems, 2e-3, workers=1, **words)
+    for one, system in zip(together, systems, strict=True):
+        alone = st.simulate(system, 2e-3, **words)
+        for name in ("normal_force", "tangential_force", "slip_velocity", "friction_loss"):
+            np.testing.assert_allclose(one[name], alone[name], rtol=1e-9, atol=1e-9 * float(np.abs(alone[name]).max()))
+
+
+def test_a_run_goes_on_to_the_last_bit_and_runs_again(tmp_path):
+    system = on_layers(st.PowerStiffness(1e12, 1.5, 0.05))
+    words = {"step": 4e-6, "sample_rate": 5e4, "probes": []}
+    whole, half = st.simulate(system, 2e-3, **words), st.simulate(system, 1e-3, **words)
+    st.save(half, tmp_path / "half.nc")
+    rest = st.simulate(system, 1e-3, start=st.load(tmp_path / "half.nc"), **words)
+    for name in ("normal_force", "tangential_force", "kinetic_and_elastic"):
+        np.testing.assert_array_equal(whole[name][half.time.size :], rest[name])
+    again = st.load_scenario(whole).simulate()
+    np.testing.assert_array_equal(again.normal_force, whole.normal_force)
+
+
+def test_a_stiff_contact_is_a_rigid_one():
+    """As it stiffens equilibrium and modes come close to those of rigid ones."""
+    rigid = dragged(0.4, 0.01)
+    known, apart = st.sliding_stability(rigid), []
+
+    def lowest(theory) -> np.ndarray:
+        exponents = theory.growth_rate.values + 2j * pi * theory.frequency.values
+        return exponents[exponents.imag > 1.0][:8]
+
+    for stiffness in (1e9, 1e10, 1e11):
+        contacts = [replace(one, stiffness=stiffness) for one in rigid.contacts]
+        found = st.sliding_stability(replace(rigid, contact=contacts))
+        forces = float(np.abs(found.normal_force / known.normal_force - 1.0).max())
+        apart.append([forces, np.abs(lowest(found) - lowest(known)).max()])
+    ratios = np.array(apart[1:]) / np.array(apart[:-1])
+    np.testing.assert_allclose(ratios, 0.1, rtol=0.3)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("stiffness", KINDS, ids=str)
+def test_a_start_in_equilibrium_stays_there(stiffness, scheme):
+    system = hoffmann(0.3)
+    system = replace(system, contact=replace(system.contact, stiffness=stiffness))
+    theory = st.sliding_stability(system)
+    run = st.simulate(starting(system), 0.5, scheme=scheme, step=2e-5, probes=[])
+    assert (run.status == SLIDING).all()
+    np.testing.assert_allclose(run.normal_force.values, float(theory.normal_force), rtol=1e-9)
+    assert force_at(stiffness, -float(run.gap[-1])) == pytest.approx(float(theory.normal_force), rel=1e-8)
+
+
+BAD = {
+    "number": (lambda: st.LinearStiffness(0.0), "stiffness must be above 0"),
+    "exponent": (lambda: st.PowerStiffness(1.0, 0.5), "exponent must be 1 or above"),
+    "kind": (lambda: st.PointContact(st.RigidBody(1.0).centre, st.RigidTrack(), stiffness="soft"), "stiffness must be"),
+    "below": (lambda: st.PointContact(st.RigidBody(1.0).centre, st.RigidTrack(), stiffness=-1.0), "stiffness must be"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_what_does_not_fit_is_said(name):
+    make, words = BAD[name]
+    with pytest.raises(ValueError, match=words):
+        make()
