@@ -6,12 +6,13 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, at_least, brief, choice, count, finite, instance, listed, positive
+from ..checks import ArgumentError, at_least, brief, choice, finite, instance, listed
+from ..declared import CountFrom0, Each, Frequency, Number, Own, check_declared
 from .damping import DampingLaw, checked_damping, damping_rates
 from .modes import BodyPoint, Modes, hashed_once
 from .ordinary import NotOrdinary, of_ordinary_size
@@ -134,26 +135,24 @@ class AxisymmetricBody:
     is_spatial: ClassVar[bool] = True
     profile: Profile
     material: Any
-    cutoff: float
+    cutoff: Frequency
     held: Any = ()
-    orders: int | None = None
-    damping: float | Sequence[float] | DampingLaw = 0.0
+    orders: CountFrom0 | None = None
+    damping: Annotated[float | Sequence[float] | DampingLaw, Own("damping")] = 0.0
     residual_at: Any = ()
-    axis: tuple[float, float, float] = Z
-    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    axis: Annotated[Sequence[float], Each(Number())] = Z
+    origin: Annotated[Sequence[float], Each(Number("m"))] = (0.0, 0.0, 0.0)
     name: str = ""
 
     def __post_init__(self) -> None:
         instance("profile", self.profile, PROFILES)
         object.__setattr__(self, "material", _materials(self.material, self.profile.region_names))
-        positive("cutoff", self.cutoff)
+        check_declared(self)
         is_one = isinstance(self.held, str) or not isinstance(self.held, Sequence)
         given = (self.held,) if is_one else self.held
         object.__setattr__(self, "held", tuple(Held(one) if isinstance(one, str) else one for one in given))
         for number, one in enumerate(self.held):
             instance(f"held[{number}]", one, Held)
-        if self.orders is not None:
-            count("orders", self.orders, low=0)
         object.__setattr__(self, "damping", checked_damping(self.damping))
         axis, origin = _triple("axis", self.axis), _triple("origin", self.origin)
         length = math.hypot(*axis)

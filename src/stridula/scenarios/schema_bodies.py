@@ -11,8 +11,9 @@ from ..bodies.sections import SECTIONS
 from . import fields as is_
 from .derived import Keys, one_of, table_of
 from .fields import Table
+from .schema_meshed import meshed_tables
 
-KINDS = "finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"
+KINDS = "finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"
 OWN_NAME = "what it is called in records, the table's own name if left out"
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ class Line(Table):
 
 class Plate(Table):
     kind: Literal["modal plate"]
-    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
+    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"""
     material: Material
     """what the plate is made of"""
     thickness: is_.Length
@@ -72,7 +73,7 @@ class Plate(Table):
 
 class Reduced(Table):
     kind: Literal["reduced"]
-    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
+    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"""
     file: str | None = None
     """.npz or .mat file with matrices and points, beside the scenario"""
     mass: is_.Matrix | None = None
@@ -95,7 +96,7 @@ class Reduced(Table):
 
 class Rigid(Table):
     kind: Literal["rigid body"]
-    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
+    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"""
     mass: is_.Mass
     """mass [kg]"""
     inertia: is_.Inertia | None = None
@@ -108,7 +109,7 @@ class Rigid(Table):
 
 class Modal(Table):
     kind: Literal["modal body"]
-    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
+    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"""
     angular_frequency: is_.Vector
     """angular frequencies of the modes [rad/s]"""
     points: is_.PointTable
@@ -133,4 +134,4 @@ else:
     )
     _exact = table_of(bodies.ModalBeam, "kind", "modal beam", KINDS, title="ModalBody", **_words)
     _mass = table_of(bodies.PointMass, "kind", "point mass", KINDS, after=_named)
-    Body = one_of("kind", [_beam, _exact, Plate, _mass, Reduced, Rigid, Modal])
+    Body = one_of("kind", [_beam, _exact, Plate, _mass, Reduced, Rigid, Modal, *meshed_tables(KINDS, Material, _named)])
