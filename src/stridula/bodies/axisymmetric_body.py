@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 DIRECTIONS = ("r", "theta", "z")
 Z = (0.0, 0.0, 1.0)
+POSITION = "three numbers, (r, theta, z)"
 # Largest side of a cell as a share of 1 / k, of the shortest waves: in parts thicker than that, and in parts so thin
 # that cells of their thickness would be more than bending needs; between them it is a share of the thickness.
 # Frequencies come out within 1e-3, and within 5e-3 where corners point inwards.
@@ -260,14 +261,14 @@ class AxisymmetricBody:
 
     def at(self, position: Any) -> BodyPoint:
         """Return the point at a distance r from the axis [m], an angle theta [rad] and a place z along it [m]."""
-        return BodyPoint(self, _triple("position", position))
+        return BodyPoint(self, _triple("position", position, POSITION))
 
     def check_position(self, position: Any) -> None:
         """Raise ValueError if `position`, (r, theta, z) in metres and radians, is not in the body."""
         self._position(position)
 
     def _position(self, position: Any) -> tuple[float, float, float]:
-        r, theta, z = _triple("position", position)
+        r, theta, z = _triple("position", position, POSITION)
         if self.mesh.cell_at(r, z) is None:
             raise ArgumentError("position", "be (r, theta, z) in the profile", position)
         return r, theta, z
@@ -456,8 +457,8 @@ def _box(place: Any) -> tuple[tuple[float, float], tuple[float, float]]:
     return ranges[0], ranges[1]
 
 
-def _triple(name: str, values: Any) -> tuple[float, float, float]:
+def _triple(name: str, values: Any, words: str = "three numbers") -> tuple[float, float, float]:
     if isinstance(values, str) or not isinstance(values, (Sequence, np.ndarray)) or len(values) != 3:
-        raise ArgumentError(name, "be three numbers", values)
+        raise ArgumentError(name, f"be {words}", values)
     x, y, z = (finite(f"{name}[{k}]", one) for k, one in enumerate(values))
     return x, y, z

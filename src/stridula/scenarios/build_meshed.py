@@ -28,6 +28,8 @@ Tables = dict[str, Any]
 Within = Callable[..., AbstractContextManager[None]]
 # The least number above 0: a rectangle has an area.
 TINY = math.ulp(0.0)
+# What profiles call what they are made of.
+OUTLINES = ("rectangles", "points and thickness")
 # What the description of a made-up mesh is called in Python, by its shape.
 MADE: dict[str, Callable[..., SolidMesh]] = {
     "block": SolidMesh.block,
@@ -58,7 +60,7 @@ def axisymmetric_body(table: Tables, within: Within) -> AxisymmetricBody | None:
             with within("held", number):
                 held[number] = _held(one, within, number)
     with within():
-        return AxisymmetricBody(profile, material, **_given(table), held=held)
+        return _revolved(profile, material, **_given(table), held=held)
     return None
 
 
@@ -93,6 +95,16 @@ def _profile(given: Tables, within: Within) -> Profile | None:
     if len(boxes) < len(parts):
         return None
     return RectangleProfile(boxes, table.get("size"))
+
+
+def _revolved(profile: Profile, material: Any, **table: Any) -> AxisymmetricBody:
+    try:
+        return AxisymmetricBody(profile, material, **table)
+    except ArgumentError as error:
+        # What is divided into cells is the profile.
+        if error.argument == "size":
+            raise error.renamed("profile.size") from None
+        raise error.renamed("profile") if error.argument in OUTLINES else error from None
 
 
 def _held(given: Tables, within: Within, number: int) -> Held | None:

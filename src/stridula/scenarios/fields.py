@@ -525,7 +525,7 @@ def one_or_by_name(table: Any) -> Any:
 
 def holds_tables(value: Any) -> bool:
     """Return whether a table holds tables by name."""
-    return isinstance(value, dict) and any(isinstance(each, (dict, Table)) for each in value.values())
+    return isinstance(value, dict) and any(isinstance(each, (dict, BaseModel)) for each in value.values())
 
 
 def _text_or_one(value: Any) -> str:

@@ -11,6 +11,7 @@ from .schema import json_schema
 Node = dict[str, Any]
 Path = tuple[str | int, ...]
 SHARED = ("material", "section", "damping", "cutoff")
+SHARED_BY_CONTACTS = ("friction",)
 TAGS = ("shape", "law", "kind", "form", "quantity")
 BEAMS = ("finite-element beam", "modal beam")
 PLATES = ("modal plate",)
@@ -69,6 +70,16 @@ def beams(tables: Any) -> list[Path]:
     named = bodies if isinstance(bodies, dict) else {}
     kinds = [("bodies", name) for name, body in named.items() if look_up(body, ("kind",)) in (*BEAMS, *PLATES)]
     return [path for path in (("slider",), ("track",), *kinds) if isinstance(look_up(tables, path), dict)]
+
+
+def contacts(tables: Any) -> list[Path]:
+    """Return the paths of contacts, which take the friction that stands at the top."""
+    listed = look_up(tables, ("contacts",))
+    places: list[Path] = [
+        ("contact",),
+        *(("contacts", number) for number in range(len(listed) if isinstance(listed, list) else 0)),
+    ]
+    return [path for path in places if isinstance(look_up(tables, path), dict)]
 
 
 def node_at(path: Path, tables: Any) -> Node | None:
