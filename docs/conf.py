@@ -272,7 +272,7 @@ def collect(model: type, path: str, seen: dict[type, str]) -> None:
 
 def kind_of(table: type) -> str:
     """Return what tells a table from its alternatives, such as ``ramp``."""
-    tag = next((key for key in ("kind", "shape", "law", "quantity") if key in fields(table)), None)
+    tag = next((key for key in ("shape", "kind", "law", "quantity") if key in fields(table)), None)
     return " or ".join(get_args(fields(table)[tag].annotation)) if tag else ""
 
 

@@ -38,9 +38,14 @@ Given = tuple[bytes, dict[str, Any]]
 
 def inputs(seed: int, count: int) -> Iterator[Given]:
     """Return scenarios as the bytes of their files, and what is set by key."""
+    return wrong("scenarios", seed, count, is_meshed=False)
+
+
+def wrong(kind: str, seed: int, count: int, is_meshed: bool) -> Iterator[Given]:
+    """Return scenarios with or without meshes that are wrong, as the bytes of their files, and what is set by key."""
     for k in range(count):
-        dice = random.Random(f"scenarios {seed} {k}")
-        tables = copy.deepcopy(dice.choice(_shipped()))
+        dice = random.Random(f"{kind} {seed} {k}")
+        tables = copy.deepcopy(dice.choice(_shipped(is_meshed)))
         for _ in range(dice.choice((1, 1, 1, 1, 2, 3))):
             _changed(dice, tables)
         content = tomli_w.dumps(tables).encode()
@@ -65,8 +70,13 @@ def check(given: Given) -> str:
 
 
 @cache
-def _shipped() -> tuple[dict[str, Any], ...]:
-    return tuple(read_tables(case.name) for case in st.list_scenarios())
+def _shipped(is_meshed: bool) -> tuple[dict[str, Any], ...]:
+    every = [read_tables(case.name) for case in st.list_scenarios()]
+    return tuple(tables for tables in every if is_meshed == _has_mesh(tables))
+
+
+def _has_mesh(tables: dict[str, Any]) -> bool:
+    return any({"mesh", "profile"} & body.keys() for body in tables.get("bodies", {}).values())
 
 
 def _changed(dice: random.Random, tables: dict[str, Any]) -> None:

@@ -23,6 +23,7 @@ from stridula.scenarios.quantities import quantity
 CASES = ["axial-sliding", "judder", "squeal", "stable-sliding", "strong-pressure", "weak-pressure"]
 MASSES = ["belt", "lugre"]
 PLATES = ["judder-on-plate", "squeal-on-plate"]
+MESHED = ["pad-on-disc", "pin-on-disc"]
 STEEL = st.Material(young=2.1e11, density=7800.0)
 SIMULATION = {"duration": 0.5, "scheme": "central difference", "step": 1e-6, "sample_rate": 5e4}
 
@@ -77,7 +78,7 @@ def test_a_quantity_must_be_finite(value):
 
 def test_the_cases_are_listed_by_their_sources():
     cases = st.list_scenarios()
-    assert sorted(case.name for case in cases) == sorted(CASES + MASSES + PLATES)
+    assert sorted(case.name for case in cases) == sorted(CASES + MASSES + PLATES + MESHED)
     assert all(case.source for case in cases)
     assert [case.source for case in cases] == sorted(case.source for case in cases)
 
@@ -91,7 +92,7 @@ def test_all_cases_share_one_set_of_beams():
     assert len({(slider.length, slider.material, slider.section, slider.damping) for slider in sliders.values()}) == 1
 
 
-@pytest.mark.parametrize("name", CASES + MASSES + PLATES)
+@pytest.mark.parametrize("name", CASES + MASSES + PLATES + MESHED)
 def test_what_is_shown_loads_as_the_same_scenario(name, tmp_path):
     path = tmp_path / "copy.toml"
     path.write_text(st.scenario_text(name), encoding="utf-8")
@@ -758,7 +759,7 @@ def test_every_problem_of_bodies_and_contacts_is_told(tmp_path):
         "bodies.b.mass must be a matrix, a list of rows of numbers or a file, got [[1, 2], [3]]",
         "bodies.b.points must be a table of points by name, got 3",
         "bodies.c.kind must be one of finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, "
-        "modal body, got 'mass'",
+        "modal body, axisymmetric, solid, got 'mass'",
         "contacts.0.tip.pint must be one of the known keys body, point, got pint = 'centre'; did you mean 'point'?",
         "contacts.0.track.kind must be one of beam, plate, rigid, point, got 'belt'",
         "contacts.0.friction.law must be one of coulomb, static-kinetic, stribeck",
@@ -971,3 +972,76 @@ def test_records_without_poisson_load_as_before(tmp_path):
     assert old != record.attrs["scenario"]
     (tmp_path / "old.toml").write_text(old, encoding="utf-8")
     assert st.load_scenario(tmp_path / "old.toml").system == st.load_scenario("squeal").system
+
+
+TWO_CONTACTS = """
+friction = 0.3
+[bodies.m]
+kind = "point mass"
+mass = 1.0
+[[contacts]]
+tip = {body = "m"}
+track = {kind = "rigid", velocity = 0.1}
+[[contacts]]
+tip = {body = "m"}
+track = {kind = "rigid", velocity = 0.2}
+gap = "1 mm"
+[simulation]
+duration = 0.01
+"""
+
+
+def frictions(path, **overrides) -> list[object]:
+    return [contact.friction for contact in st.load_scenario(path, overrides).system.contacts]
+
+
+def test_a_friction_at_the_top_is_that_of_every_contact_without_its_own(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(TWO_CONTACTS)
+    assert frictions(path) == [st.Coulomb(0.3)] * 2
+    own = TWO_CONTACTS.replace('gap = "1 mm"', 'friction = {law = "static-kinetic", static = 0.5, kinetic = 0.4}')
+    path.write_text(own)
+    assert frictions(path) == [st.Coulomb(0.3), st.StaticKinetic(0.5, 0.4)]
+    # A part of a law is that of the top with what is its own; a bare number is a law of its own.
+    stribeck = TWO_CONTACTS.replace(
+        "friction = 0.3", 'friction = {law = "stribeck", static = 0.5, kinetic = 0.3, velocity = 0.1}'
+    )
+    path.write_text(stribeck.replace('gap = "1 mm"', "friction = {kinetic = 0.2}"))
+    assert frictions(path) == [st.Stribeck(0.5, 0.3, 0.1), st.Stribeck(0.5, 0.2, 0.1)]
+    path.write_text(stribeck.replace('gap = "1 mm"', "friction = 0"))
+    assert frictions(path) == [st.Stribeck(0.5, 0.3, 0.1), st.Coulomb(0.0)]
+
+
+def test_a_friction_set_at_the_top_is_that_of_all_contacts(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(TWO_CONTACTS.replace('gap = "1 mm"', "friction = 0.1"))
+    assert frictions(path) == [st.Coulomb(0.3), st.Coulomb(0.1)]
+    assert frictions(path, friction=0.7) == [st.Coulomb(0.7)] * 2
+    law = {"friction.law": "static-kinetic", "friction.static": 0.6, "friction.kinetic": 0.2}
+    path.write_text(TWO_CONTACTS)
+    assert frictions(path, **law) == [st.StaticKinetic(0.6, 0.2)] * 2
+    assert frictions(path, **{"contacts.1.friction.coefficient": 0.9}) == [st.Coulomb(0.3), st.Coulomb(0.9)]
+    (found,) = problems(TWO_CONTACTS.replace("friction = 0.3", 'friction = "x"'), tmp_path)
+    assert found == "friction.coefficient must be a number, got 'x'"
+    # Without one at the top it must be said which contact is meant.
+    (found,) = problems(TWO_CONTACTS.replace("friction = 0.3", ""), tmp_path, {"coefficient": 0.5})
+    assert "contacts.0.friction.coefficient, contacts.1.friction.coefficient" in found
+
+
+def test_a_pair_takes_the_friction_at_the_top(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text('base = "squeal"\nfriction = {law = "static-kinetic", static = 0.5, kinetic = 0.4}\n')
+    assert st.load_scenario(path).system.contact.friction == st.load_scenario("squeal").system.contact.friction
+
+
+def test_entries_of_a_list_are_keys_where_it_is_short(tmp_path):
+    path = tmp_path / "shaken.toml"
+    path.write_text(SHAKEN, encoding="utf-8")
+    history = st.load_scenario(path, {"track.history.value.1": 0.5}).system.contact.track.history
+    assert history.value == (0.0, 0.5, 0.0)
+    with pytest.raises(st.ScenarioError, match=r"must mean one place, got 'value\.1'"):
+        st.load_scenario(path, {"value.1": 0.5})
+    times = ", ".join(str(0.01 * k) for k in range(65))
+    path.write_text(SHAKEN.replace("time = [0, 0.01, 0.02], value = [0, 1, 0]", f"time = [{times}], value = [{times}]"))
+    with pytest.raises(st.ScenarioError, match="key must be one of the scenario's"):
+        st.load_scenario(path, {"track.normal_history.value.1": 0.5})

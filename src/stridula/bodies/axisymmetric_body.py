@@ -6,12 +6,13 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, at_least, brief, choice, count, finite, instance, listed, positive
+from ..checks import ArgumentError, at_least, brief, choice, finite, instance, listed
+from ..declared import CountFrom0, Each, Frequency, Number, Own, check_declared
 from ..histories import HISTORIES, Constant, History
 from .damping import DampingLaw, checked_damping, damping_rates
 from .modes import BodyPoint, Modes, hashed_once
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 DIRECTIONS = ("r", "theta", "z")
 Z = (0.0, 0.0, 1.0)
+POSITION = "three numbers, (r, theta, z)"
 # Largest side of a cell as a share of 1 / k, of the shortest waves: in parts thicker than that, and in parts so thin
 # that cells of their thickness would be more than bending needs; between them it is a share of the thickness.
 # Frequencies come out within 1e-3, and within 5e-3 where corners point inwards.
@@ -148,28 +150,26 @@ class AxisymmetricBody:
     is_spatial: ClassVar[bool] = True
     profile: Profile
     material: Any
-    cutoff: float
+    cutoff: Frequency
     held: Any = ()
-    orders: int | None = None
-    damping: float | Sequence[float] | DampingLaw = 0.0
+    orders: CountFrom0 | None = None
+    damping: Annotated[float | Sequence[float] | DampingLaw, Own("damping")] = 0.0
     residual_at: Any = ()
-    axis: tuple[float, float, float] = Z
-    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    turning: float = 0.0
+    axis: Annotated[Sequence[float], Each(Number())] = Z
+    origin: Annotated[Sequence[float], Each(Number("m"))] = (0.0, 0.0, 0.0)
+    turning: Annotated[float, Number("rad/s")] = 0.0
     turning_history: History = field(default_factory=Constant)
     name: str = ""
 
     def __post_init__(self) -> None:
         instance("profile", self.profile, PROFILES)
         object.__setattr__(self, "material", _materials(self.material, self.profile.region_names))
-        positive("cutoff", self.cutoff)
+        check_declared(self)
         is_one = isinstance(self.held, str) or not isinstance(self.held, Sequence)
         given = (self.held,) if is_one else self.held
         object.__setattr__(self, "held", tuple(Held(one) if isinstance(one, str) else one for one in given))
         for number, one in enumerate(self.held):
             instance(f"held[{number}]", one, Held)
-        if self.orders is not None:
-            count("orders", self.orders, low=0)
         object.__setattr__(self, "damping", checked_damping(self.damping))
         axis, origin = _triple("axis", self.axis), _triple("origin", self.origin)
         length = math.hypot(*axis)
@@ -177,7 +177,6 @@ class AxisymmetricBody:
             raise ArgumentError("axis", "be a direction, of a length above 0", self.axis)
         object.__setattr__(self, "axis", tuple(one / length + 0.0 for one in axis))
         object.__setattr__(self, "origin", origin)
-        object.__setattr__(self, "turning", finite("turning", self.turning))
         instance("turning_history", self.turning_history, HISTORIES)
         instance("name", self.name, str)
         object.__setattr__(self, "residual_at", _places(self.residual_at))
@@ -285,14 +284,14 @@ class AxisymmetricBody:
 
     def at(self, position: Any) -> BodyPoint:
         """Return the point at a distance r from the axis [m], an angle theta [rad] and a place z along it [m]."""
-        return BodyPoint(self, _triple("position", position))
+        return BodyPoint(self, _triple("position", position, POSITION))
 
     def check_position(self, position: Any) -> None:
         """Raise ValueError if `position`, (r, theta, z) in metres and radians, is not in the body."""
         self._position(position)
 
     def _position(self, position: Any) -> tuple[float, float, float]:
-        r, theta, z = _triple("position", position)
+        r, theta, z = _triple("position", position, POSITION)
         if self.mesh.cell_at(r, z) is None:
             raise ArgumentError("position", "be (r, theta, z) in the profile", position)
         return r, theta, z
@@ -505,8 +504,8 @@ def _box(place: Any) -> tuple[tuple[float, float], tuple[float, float]]:
     return ranges[0], ranges[1]
 
 
-def _triple(name: str, values: Any) -> tuple[float, float, float]:
+def _triple(name: str, values: Any, words: str = "three numbers") -> tuple[float, float, float]:
     if isinstance(values, str) or not isinstance(values, (Sequence, np.ndarray)) or len(values) != 3:
-        raise ArgumentError(name, "be three numbers", values)
+        raise ArgumentError(name, f"be {words}", values)
     x, y, z = (finite(f"{name}[{k}]", one) for k, one in enumerate(values))
     return x, y, z

@@ -28,11 +28,11 @@ class Profile(Protocol):
 
     Attributes
     ----------
-    kind : str
+    shape : str
         Its name in scenarios.
     """
 
-    kind: ClassVar[str]
+    shape: ClassVar[str]
 
     @property
     def size(self) -> float | None:
@@ -70,7 +70,7 @@ class RectangleProfile:
         together by their sides.
     """
 
-    kind: ClassVar[str] = "rectangles"
+    shape: ClassVar[str] = "rectangles"
     rectangles: Any
     size: float | None = None
 
@@ -153,7 +153,7 @@ class LineProfile:
         itself, or if the line bends more sharply than its thickness lets it.
     """
 
-    kind: ClassVar[str] = "line"
+    shape: ClassVar[str] = "line"
     points: Any
     thickness: float | Sequence[float]
     size: float | None = None
@@ -226,7 +226,7 @@ class MeshProfile:
         if regions do not divide them.
     """
 
-    kind: ClassVar[str] = "mesh"
+    shape: ClassVar[str] = "mesh"
     size: ClassVar[float | None] = None
     nodes: Any
     cells: Any

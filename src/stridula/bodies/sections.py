@@ -21,7 +21,7 @@ class Material:
     density : float
         Mass density [kg/m³].
     poisson : float, optional
-        Poisson's ratio [1], of plates; from -1 to 0.5, both excluded.
+        Poisson's ratio [1], of plates and solids; from -1 to 0.5, both excluded.
     """
 
     young: Annotated[float, Number("Pa", above=0.0)]

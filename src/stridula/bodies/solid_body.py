@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, fields
 from functools import cached_property, lru_cache
 from numbers import Integral
 from types import MappingProxyType
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import scipy.linalg
@@ -17,6 +17,7 @@ import scipy.sparse
 
 from ..arrays import Array
 from ..checks import ArgumentError, at_most, choice, count, instance, listed, positive
+from ..declared import Frequency, Own
 from .damping import DampingLaw, checked_damping
 from .factorisation import dissection
 from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
@@ -101,8 +102,8 @@ class SolidBody(NamedPoints):
     materials: Material | Mapping[str, Material]
     points: Mapping[str, Any] = field(default_factory=dict)
     fixed: Sequence[str] | Mapping[str, str] = ()
-    cutoff: float | None = None
-    damping: float | Sequence[float] | Array | DampingLaw = 0.0
+    cutoff: Frequency | None = None
+    damping: Annotated[float | Sequence[float] | Array | DampingLaw, Own("damping")] = 0.0
     residual_flexibility: bool = True
     linear: bool = False
     name: str = ""

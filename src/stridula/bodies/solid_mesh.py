@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
@@ -151,7 +152,7 @@ class SolidMesh:
         divisions : sequence of int, length 3
             Numbers of elements along x, y and z.
         """
-        sides, parts = _three("lengths", lengths, positive), _three("divisions", divisions, count)
+        sides, parts = _three("lengths", lengths, positive), _divisions(divisions)
         return cls(**solid_shapes.block(sides, parts))
 
     @classmethod
@@ -182,7 +183,7 @@ class SolidMesh:
             "x", "y" or "z".
         """
         choice("axis", axis, ("x", "y", "z"))
-        parts = _three("divisions", divisions, count)
+        parts = _divisions(divisions)
         inner, outer = _two("radii", radii)
         positive("radii[0]", inner)
         if outer <= inner:
@@ -220,7 +221,7 @@ class SolidMesh:
         corners = whole("quadrilaterals", quadrilaterals, len(places))
         if corners.ndim != 2 or corners.shape[1] != 4 or not len(corners):
             raise ArgumentError("quadrilaterals", "have the shape (elements, 4)", quadrilaterals, got=corners.shape)
-        height, layers = positive("height", height), count("layers", layers)
+        height, layers = positive("height", height), count("layers", layers, high=MOST_NODES // len(corners))
         return cls(**solid_shapes.extrusion(places, corners, height, layers, axis))
 
     @property
@@ -418,6 +419,15 @@ def _three(word: str, values: Any, check: Any) -> tuple[Any, Any, Any]:
         raise ArgumentError(word, "be three numbers, along x, y and z", values)
     first, second, third = (check(f"{word}[{number}]", value) for number, value in enumerate(values))
     return first, second, third
+
+
+def _divisions(values: Any) -> tuple[int, int, int]:
+    """Return numbers of elements along three directions, of which there are not too many in all."""
+    parts = _three("divisions", values, count)
+    elements = math.prod(parts)
+    if elements > MOST_NODES:
+        raise ArgumentError("divisions", f"make at most {MOST_NODES} elements", values, got=elements)
+    return parts
 
 
 def _two(word: str, values: Any) -> tuple[float, float]:

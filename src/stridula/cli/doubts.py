@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Any
 
@@ -34,8 +34,9 @@ def say_doubts(name: str) -> None:
 
 
 def _of(name: str, body: Any) -> Iterator[str]:
-    material = getattr(body, "material", None)
-    materials = {"": material} if isinstance(material, Material) else getattr(body, "materials", {})
+    given = [getattr(body, word, None) for word in ("material", "materials")]
+    made_of = next((one for one in given if isinstance(one, (Material, Mapping))), {})
+    materials = made_of if isinstance(made_of, Mapping) else {"": made_of}
     for region, one in materials.items():
         whose = f"{name}, {region}" if region else name
         if not YOUNG[0] <= one.young <= YOUNG[1]:

@@ -12,7 +12,7 @@ import numpy as np
 import tomli_w
 
 from ..arrays import Array
-from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalBody
+from ..bodies import AxisymmetricBody, BodyPoint, FiniteElementBeam, ModalBeam, ModalBody
 from ..bodies.damping import DampingLaw
 from ..bodies.turning import Turning
 from ..connections import ends
@@ -163,6 +163,17 @@ def body_table(body: Any) -> dict[str, Any]:
     return {"kind": body.kind, **_body(body)}
 
 
+def mesh_tables(body: Any) -> dict[str, Any]:
+    """Return the profile or the mesh of a body cell by cell, or element by element, as the table of the body has it."""
+    if body.kind == AxisymmetricBody.kind:
+        return {"profile": {"shape": "cells", **_cells(body.profile, "nodes", "cells", "regions", "edges")}}
+    return {"mesh": {"shape": "elements", **_cells(body.mesh, *(field.name for field in fields(body.mesh)))}}
+
+
+def _cells(mesh: Any, *names: str) -> dict[str, Any]:
+    return {name: _value(getattr(mesh, name)) for name in names}
+
+
 def _general_body(body: Any, system: System, probed: Sequence[BodyPoint]) -> dict[str, Any]:
     """Return the table of a body, without the name where the table's own name says it."""
     given = _modes_table(body, [*_points_in(system), *probed]) if _is_meshed(body) else body_table(body)
@@ -180,13 +191,14 @@ def _modes_table(body: Any, points: Sequence[BodyPoint]) -> dict[str, Any]:
     """Return the table of a body by its modes, with the points that are used."""
     modes = body.modes()
     held = ~modes.massless
-    rows = {point.label: body.trace(point.position) for point in points if point.body == body}
+    # No zero below zero: the body that is read from here has none.
+    rows = {point.label: body.trace(point.position) + 0.0 for point in points if point.body == body}
     return {
         "kind": ModalBody.kind,
         "angular_frequency": _value(modes.angular_frequency[held]),
         "damping_rate": _value(modes.damping_rate[held]),
         "points": {name: _value(one) for name, one in rows.items()},
-        "translation": _value(modes.translation),
+        "translation": _value(modes.translation + 0.0),
         "residual": int(modes.massless.sum()),
         **_turning(modes.turning, {point.label: point for point in points if point.body == body}),
         "name": body.name,

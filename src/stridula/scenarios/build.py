@@ -6,11 +6,13 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from .. import connections, drives, histories
 from ..bodies import (
+    AxisymmetricBody,
     BodyPoint,
     FiniteElementBeam,
     HasRoot,
@@ -22,6 +24,7 @@ from ..bodies import (
     PointMass,
     ReducedBody,
     RigidBody,
+    SolidBody,
 )
 from ..bodies.damping import DAMPING_LAWS
 from ..bodies.ordinary import NotOrdinary
@@ -34,11 +37,13 @@ from ..drives import Drive
 from ..integration import GaussSeidel
 from ..records import Acceleration, Displacement, Probe, Reaction, SupportForce, Velocity
 from ..system import System
+from .build_meshed import axisymmetric_body, solid_body
 from .errors import ScenarioError
 from .quantities import quantity
 from .read import FILES
 
 OF_SPACE: dict[str, Callable[..., Any]] = {one.kind: one for one in (RigidBody, ModalBody)}
+MESHED: dict[str, Callable[..., Any]] = {AxisymmetricBody.kind: axisymmetric_body, SolidBody.kind: solid_body}
 SHAPES: dict[str, Callable[..., Any]] = {section.shape: section for section in SECTIONS}
 DAMPINGS: dict[str, Callable[..., Any]] = {law.form: law for law in DAMPING_LAWS}
 HISTORIES: dict[str, Callable[..., Any]] = {history.kind: history for history in histories.HISTORIES}
@@ -52,7 +57,8 @@ Place = tuple[str | int, ...]
 # How a value that another problem left out looks.
 NOTHING = repr(None)
 # Arguments that are keys of a table, or two of them.
-_KEY = re.compile(r"[a-z_]\w*(?:[.\[]\w+\]?)*(?: and \w+)?")
+_KEY = re.compile(r"[a-z_]\w*(?:\.\w+|\[(?:\d+|'[^']*')\])*(?: and \w+)?")
+_ENTRY = re.compile(r"\[(?:(\d+)|'([^']*)')\]")
 
 
 class Builder:
@@ -84,7 +90,7 @@ class Builder:
             system = System(contacts[0] if len(contacts) == 1 else contacts, drives, connections)
         self._stop_at_problems()
         for name, body in self.bodies.items():
-            if isinstance(body, HasRoot):
+            if isinstance(body, HasRoot) or body.kind in MESHED:
                 with self._within(*self.places.get(name, ("bodies", name))):
                     body.modes(system.is_held(body))
         self._stop_at_problems()
@@ -174,12 +180,16 @@ class Builder:
             with self._within(*path):
                 return PointMass(**table)
             return None
-        if table.get("turning") is not None:
+        if table.get("turning_history") is not None:
+            table["turning_history"] = self._history((*path, "turning_history"), table["turning_history"])
+        if isinstance(table.get("turning"), dict):
             table["turning"] = self._turning((*path, "turning"), dict(table["turning"]))
         if kind in OF_SPACE:
             with self._within(*path):
                 return OF_SPACE[kind](**{name: value for name, value in table.items() if value is not None})
             return None
+        if kind in MESHED:
+            return MESHED[kind](table, partial(self._within, *path))
         if kind == "reduced":
             return self._reduced(path, table)
         if kind == "modal plate":
@@ -350,11 +360,14 @@ class Builder:
             self.problems.append(_unknown(self.words(path), name, list(self.bodies)))
         return self.bodies.get(name)
 
-    def _point(self, path: Place, body: Any, place: str | float | tuple[float, float] | None, end: str = "") -> Any:
+    def _point(self, path: Place, body: Any, place: Any, end: str = "") -> Any:
         """Return a point of a body; without a place the `end` of a slider, the centre or the only point."""
         if body is None:
             return None
         names = body.point_names
+        if place is None and not names:
+            self.problems.append(f"{self.words(path)} must be given: a position, as it has no points with names")
+            return None
         if place is None and len(names) > 1 and body.has_positions:
             place = end if end in names else names[0]
         if place is None and len(names) == 1:
@@ -379,7 +392,8 @@ class Builder:
             if error.argument == "position":
                 self.problems.append(str(error.renamed(key)))
             else:
-                self.problems.append(f"{key} must be {' or '.join(body.point_names)} or a position, got {brief(place)}")
+                words = " or ".join([*body.point_names, "a position"])
+                self.problems.append(f"{key} must be {words}, got {brief(place)}")
         return None
 
     @contextmanager
@@ -398,7 +412,8 @@ class Builder:
     def _named(self, path: Place, error: ValueError | OSError) -> str:
         if not isinstance(error, ArgumentError) or error.where or not _KEY.fullmatch(error.argument):
             return f"{self.words(path)}: {error}" if path else str(error)
-        argument = "file" if error.argument == "path" else error.argument.replace("[", ".").replace("]", "")
+        entry = _ENTRY.sub(lambda found: f".{found[1] or found[2]}", error.argument)
+        argument = "file" if entry == "path" else entry
         if argument in ("root_support", "tip_support") and not path:
             driven: Tables = next((drive for drive in self.tables["drives"] if drive["kind"] == "imposed velocity"), {})
             path = self.places.get(driven.get("body", "slider"), ("slider",))

@@ -95,10 +95,11 @@ def wrong_form(tables: dict[str, Any]) -> list[str]:
 
 
 def as_written(path: Path, written: dict[str, Any]) -> str:
-    """Return a key as text; one that a body takes from the shared tables at the top loses the body's name."""
-    body = next((beam for beam in outline.beams(written) if path[: len(beam)] == beam), path)
+    """Return a key as text; one that a body or a contact takes from what stands at the top loses its name."""
+    sharers = (*outline.beams(written), *outline.contacts(written))
+    body = next((one for one in sharers if path[: len(one)] == one), path)
     shared = path[len(body) :]
-    is_shared = bool(shared) and shared[0] in outline.SHARED
+    is_shared = bool(shared) and shared[0] in (*outline.SHARED, *outline.SHARED_BY_CONTACTS)
     # A key that is not there belongs to the table in which it is missed.
     for length in range(len(shared), 0, -1) if is_shared else ():
         if outline.look_up(written, (*body, *shared[:length])) is not None:

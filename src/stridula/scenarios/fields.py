@@ -13,13 +13,14 @@ from numbers import Integral
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import BaseModel, ConfigDict, Discriminator, GetCoreSchemaHandler, GetJsonSchemaHandler, Tag
 from pydantic_core import CoreSchema, PydanticCustomError
 from pydantic_core.core_schema import no_info_plain_validator_function
 
 from .. import declared as declarations
 from ..arrays import Array
 from ..bodies import Rayleigh
+from ..bodies.axisymmetric_body import DIRECTIONS
 from ..bodies.damping import DAMPING_LAWS
 from ..checks import ArgumentError
 from ..declared import Kind, Number, declared, texts
@@ -311,55 +312,93 @@ class Way(_Kind):
 
 
 @dataclass(frozen=True)
-class Pair(_Kind):
-    """Two values of the same kind, one along the length of a plate and one along its width.
+class Row(_Kind):
+    """Some values in their order, such as the coordinates of a point.
 
     Attributes
     ----------
-    each : Quantity or Whole
-        What both are.
+    each : tuple of Quantity or Whole
+        What each is.
     words : str
-        What both are, in words.
+        What they are, in words.
     """
 
-    each: Quantity | Whole
+    each: tuple[Quantity | Whole, ...]
     words: str
 
-    def read(self, value: Any) -> tuple[Any, Any]:
-        if not isinstance(value, (list, tuple)) or len(value) != 2:
-            raise _refused(f"be two {self.words}, along length and width")
+    def read(self, value: Any) -> tuple[Any, ...]:
+        if not isinstance(value, (list, tuple)) or len(value) != len(self.each):
+            raise _refused(f"be {self.words}")
         try:
-            first, second = (self.each.read(one) for one in value)
+            return tuple(kind.read(one) for kind, one in zip(self.each, value, strict=True))
         except ArgumentError as error:
-            words = f"be two {self.words}, along length and width, each of which must {error.allowed}"
-            raise _refused(words) from None
-        return first, second
+            share = "each" if len(set(self.each)) == 1 else "one"
+            raise _refused(f"be {self.words}, {share} of which must {error.allowed}") from None
 
     def json_schema(self) -> dict[str, Any]:
-        return {"type": "array", "items": self.each.json_schema(), "minItems": 2, "maxItems": 2}
+        size = {"minItems": len(self.each), "maxItems": len(self.each)}
+        first, *others = self.each
+        if all(other == first for other in others):
+            return {"type": "array", "items": first.json_schema(), **size}
+        return {"type": "array", "prefixItems": [kind.json_schema() for kind in self.each], **size}
 
 
-DISTANCES = Pair(Quantity("m"), "distances")
+DISTANCES = Row((Quantity("m"), Quantity("m")), "two distances, along length and width")
+COORDINATES = Row((Quantity("m"),) * 3, "three distances, along x, y and z")
+AROUND = Row((Quantity("m"), Quantity("rad"), Quantity("m")), "(r, theta, z), two distances and an angle between them")
 
 
 @dataclass(frozen=True)
 class Place(_Kind):
-    """A point of a body: one of its named points, a position along a beam, or two distances on a plate."""
+    """A point of a body.
+
+    One of its named points, a position along a beam, two distances on a plate, or (r, theta, z) in a body of
+    revolution.
+    """
 
     names = ("tip", "root", "centre")
 
-    def read(self, value: Any) -> str | float | tuple[float, float]:
+    def read(self, value: Any) -> Any:
         if isinstance(value, str):
             return value
         if isinstance(value, (list, tuple)):
-            return DISTANCES.read(value)
+            return (AROUND if len(value) == 3 else DISTANCES).read(value)
         try:
             return quantity(value, "m")
         except ArgumentError as error:
             raise _refused(f"be the name of a point or a position, which must {error.allowed}") from None
 
     def json_schema(self) -> dict[str, Any]:
-        return {"anyOf": [{"enum": list(self.names)}, {"type": "string"}, {"type": "number"}, DISTANCES.json_schema()]}
+        positions = [{"type": "number"}, DISTANCES.json_schema(), AROUND.json_schema()]
+        return {"anyOf": [{"enum": list(self.names)}, {"type": "string"}, *positions]}
+
+
+@dataclass(frozen=True)
+class Node(_Kind):
+    """A node of a mesh: the name of a set of one node, its number, or its coordinates."""
+
+    def read(self, value: Any) -> Any:
+        if isinstance(value, str):
+            return value
+        return COORDINATES.read(value) if isinstance(value, (list, tuple)) else Whole(0).read(value)
+
+    def json_schema(self) -> dict[str, Any]:
+        return {"anyOf": [{"type": "string"}, Whole(0).json_schema(), COORDINATES.json_schema()]}
+
+
+@dataclass(frozen=True)
+class Fixed(_Kind):
+    """Groups of faces or nodes that are held: their names, or by name the directions in which they are."""
+
+    def read(self, value: Any) -> Any:
+        given = value.values() if isinstance(value, dict) else value
+        if not isinstance(value, (dict, list)) or not all(isinstance(one, str) for one in given):
+            raise _refused('be a list of names, or directions by name, such as {top = "xz"}')
+        return value
+
+    def json_schema(self) -> dict[str, Any]:
+        word = {"type": "string"}
+        return {"anyOf": [{"type": "array", "items": word}, {"type": "object", "additionalProperties": word}]}
 
 
 @dataclass(frozen=True)
@@ -475,6 +514,34 @@ class Motion(_Kind):
         return {"anyOf": [{"type": "array", "items": {"type": "integer"}}, *Numbers((2,)).json_schema()["anyOf"]]}
 
 
+# What unions without a key that tells them apart are told apart by; pydantic puts it into the paths of errors.
+TEXT, ONE, BY_NAME = "a text", "one table", "tables by name"
+
+
+def text_or(table: Any) -> Any:
+    """Return the type of a text or a table."""
+    return Annotated[Annotated[str, Tag(TEXT)] | Annotated[table, Tag(ONE)], Discriminator(_text_or_one)]
+
+
+def one_or_by_name(table: Any) -> Any:
+    """Return the type of one table, or of one for each name."""
+    several = Annotated[dict[str, table], Tag(BY_NAME)]
+    return Annotated[Annotated[table, Tag(ONE)] | several, Discriminator(_one_or_by_name)]
+
+
+def holds_tables(value: Any) -> bool:
+    """Return whether a table holds tables by name."""
+    return isinstance(value, dict) and any(isinstance(each, (dict, BaseModel)) for each in value.values())
+
+
+def _text_or_one(value: Any) -> str:
+    return TEXT if isinstance(value, str) else ONE
+
+
+def _one_or_by_name(value: Any) -> str:
+    return BY_NAME if holds_tables(value) else ONE
+
+
 def _refused(allowed: str) -> ArgumentError:
     return ArgumentError("value", allowed)
 
@@ -515,9 +582,10 @@ Time = Annotated[float, Quantity("s", above=0.0)]
 Velocity = Annotated[float, Quantity("m/s")]
 AnyAcceleration = Annotated[float, Quantity("m/s2")]
 Count = Annotated[int, Whole(1)]
-Counts = Annotated[tuple[int, int], Pair(Whole(1), "whole numbers")]
-CountsOrNone = Annotated[tuple[int, int], Pair(Whole(0), "whole numbers")]
-Point = Annotated[str | float | tuple[float, float], Place()]
+Counts = Annotated[tuple[int, int], Row((Whole(1),) * 2, "two whole numbers, along length and width")]
+CountsOrNone = Annotated[tuple[int, int], Row((Whole(0),) * 2, "two whole numbers, along length and width")]
+Divisions = Annotated[tuple[int, int, int], Row((Whole(1),) * 3, "three whole numbers")]
+Point = Annotated[Any, Place()]
 Spot = Annotated[tuple[float, float], DISTANCES]
 Position = Annotated[float, Quantity("m")]
 PositiveRatio = Annotated[float, Quantity("1", above=0.0)]
@@ -532,6 +600,14 @@ PointTable = Annotated[Any, Points()]
 PlaceTable = Annotated[Any, Places()]
 Inertia = Annotated[Any, Numbers((0, 1, 2))]
 Translation = Annotated[Any, Motion()]
+Lengths = Annotated[tuple[float, float, float], Row((Quantity("m", above=0.0),) * 3, "three lengths")]
+Radii = Annotated[tuple[float, float], Row((Quantity("m", above=0.0),) * 2, "two radii")]
+Angles = Annotated[tuple[float, float], Row((Quantity("rad"),) * 2, "two angles")]
+OfProfile = Annotated[tuple[float, float], Row((Quantity("m"),) * 2, "(r, z), two distances")]
+LengthOrEach = Annotated[Any, OneOrEach(Quantity("m", above=0.0))]
+MeshNode = Annotated[Any, Node()]
+FixedGroups = Annotated[Any, Fixed()]
+Directions = Annotated[Any, Words(DIRECTIONS, each=True)]
 
 # The unit of a number is told in the JSON schema by the spellings that its text may have.
 UNIT_OF_PATTERN = {Quantity(unit).json_schema()["anyOf"][1]["pattern"]: unit for unit in UNITS}

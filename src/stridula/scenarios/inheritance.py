@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .outline import PLATES, SHARED, TAGS, Path, beams, look_up
+from .outline import PLATES, SHARED, SHARED_BY_CONTACTS, TAGS, Path, beams, contacts, look_up
 
 
 def merged(below: Any, above: Any) -> Any:
@@ -21,36 +21,34 @@ def merged(below: Any, above: Any) -> Any:
 
 
 def shared_out(tables: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables with what all beams share put into each of them that has it, and each friction with its law."""
+    """Return the tables with what beams, or contacts, share put into each, and each friction with its law."""
     shared = {key: tables[key] for key in SHARED if key in tables}
-    full = {key: value for key, value in tables.items() if key not in SHARED}
+    full = {key: value for key, value in tables.items() if key not in (*SHARED, *SHARED_BY_CONTACTS)}
     for path in beams(full):
         body = look_up(full, path)
         skipped = "section" if body.get("kind") in PLATES else None
         _replace(full, path, merged({key: value for key, value in shared.items() if key != skipped}, body))
-    for path in _frictions(full):
-        friction = look_up(full, path)
+    of_all = tables.get("friction")
+    for contact in contacts(full):
+        path = (*contact, "friction")
+        own = look_up(full, path)
+        friction = of_all if own is None else merged(of_all, own)
         if isinstance(friction, dict) and "law" not in friction:
-            _replace(full, path, {"law": "coulomb", **friction})
+            friction = {"law": "coulomb", **friction}
+        if friction is not None:
+            _replace(full, path, friction)
     return full
 
 
 def spelled_out(tables: dict[str, Any]) -> dict[str, Any]:
     """Return the tables with a bare ``friction = 1.5`` written as a table."""
     full = dict(tables)
-    for path in _frictions(full):
+    for holder in [(), *contacts(tables)]:
+        path = (*holder, "friction")
         friction = look_up(full, path)
         if friction is not None and not isinstance(friction, dict):
             _replace(full, path, {"law": "coulomb", "coefficient": friction})
     return full
-
-
-def _frictions(tables: dict[str, Any]) -> list[Path]:
-    """Return where the friction of each contact stands."""
-    contacts = tables.get("contacts")
-    count = len(contacts) if isinstance(contacts, list) else 0
-    places: list[Path] = [("contact",), *(("contacts", number) for number in range(count))]
-    return [(*place, "friction") for place in places if isinstance(look_up(tables, place), dict)]
 
 
 def _replace(tables: Any, path: Path, value: Any) -> None:

@@ -69,6 +69,10 @@ def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
     if "bodies" in tables and not outline.beams(tables):
         # What beams share means nothing where there is none.
         known = {path: node for path, node in known.items() if path[0] not in outline.SHARED}
+    # A friction of all contacts is set where the scenario has one; else a key means that of a contact.
+    known = {
+        path: node for path, node in known.items() if path[0] not in outline.SHARED_BY_CONTACTS or path[0] in tables
+    }
     full = [path for path in known if _text(path) == asked]
     ending = [path for path in known if _text(path)[-len(asked) :] == asked]
     present = [path for path in ending if outline.look_up(tables, path) is not None]
@@ -112,12 +116,13 @@ def _set(tables: dict[str, Any], path: Path, value: Any) -> None:
 
 
 def _make_shared(tables: dict[str, Any], path: Path) -> None:
-    """Take a value that is set for all beams out of each of them."""
-    if path[0] not in outline.SHARED:
+    """Take a value that is set for all beams, or all contacts, out of each of them."""
+    of_contacts = path[0] in outline.SHARED_BY_CONTACTS
+    if not of_contacts and path[0] not in outline.SHARED:
         return
     own = path[:-1] if path[-1] in outline.TAGS else path
-    for beam in outline.beams(tables):
-        table = outline.look_up(tables, (*beam, *own[:-1]))
+    for one in outline.contacts(tables) if of_contacts else outline.beams(tables):
+        table = outline.look_up(tables, (*one, *own[:-1]))
         if isinstance(table, dict):
             table.pop(own[-1], None)
 

@@ -15,7 +15,7 @@ from ..bodies.ordinary import NotOrdinary
 from ..checks import ArgumentError, by_key
 from ..integration import SCHEMES, CentralDifference, ExactModal, GaussSeidel, simulate
 from ..records import Probe
-from ..records.provenance import body_table
+from ..records.provenance import body_table, mesh_tables
 from ..system import System
 from .build import Builder, out_of_range
 from .errors import MOST_PROBLEMS, ScenarioError, as_written, explain, wrong_form
@@ -141,7 +141,7 @@ def scenario_of_tables(written: dict[str, Any], problems: Sequence[str] = ()) ->
 
 
 def with_matrices(written: dict[str, Any], usable: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables of a scenario with the matrices of reduced bodies in place of the files that hold them.
+    """Return the tables of a scenario with matrices and meshes of bodies in place of the files that hold them.
 
     Parameters
     ----------
@@ -161,8 +161,13 @@ def with_matrices(written: dict[str, Any], usable: dict[str, Any]) -> dict[str, 
         return written
     _, builder = _checked(usable)
     builder.system()
-    filled = {name: body_table(builder.bodies[name]) if name in files else body for name, body in bodies.items()}
+    filled = {name: _filled(body, builder.bodies[name]) if name in files else body for name, body in bodies.items()}
     return written | {"bodies": filled}
+
+
+def _filled(table: dict[str, Any], body: Any) -> dict[str, Any]:
+    """Return the table of a body with what its files hold."""
+    return table | mesh_tables(body) if hasattr(body, "mesh") else body_table(body)
 
 
 def _checked(written: dict[str, Any], problems: Sequence[str] = ()) -> tuple[ScenarioTable, Builder]:

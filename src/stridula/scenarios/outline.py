@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from .fields import BY_NAME, ONE, TEXT, holds_tables
 from .schema import json_schema
 
 Node = dict[str, Any]
 Path = tuple[str | int, ...]
 SHARED = ("material", "section", "damping", "cutoff")
+SHARED_BY_CONTACTS = ("friction",)
 TAGS = ("shape", "law", "kind", "form", "quantity")
 BEAMS = ("finite-element beam", "modal beam")
 PLATES = ("modal plate",)
+# Entries of longer lists of numbers, such as samples, are no keys of their own; tables in lists always are.
+LONGEST_LIST = 64
 
 
 def properties(node: Node | None, table: Any = None) -> dict[str, Node]:
@@ -23,16 +27,14 @@ def properties(node: Node | None, table: Any = None) -> dict[str, Node]:
     variants = _variants(node)
     kinds = [variant["properties"] for variant in variants if "properties" in variant]
     named = [variant["additionalProperties"] for variant in variants if variant.get("additionalProperties")]
+    if kinds and named:
+        # One table, or one for each name.
+        kinds, named = ([], named) if holds_tables(table) else (kinds, [])
     known: dict[str, Node] = dict.fromkeys(table, named[0]) if named and isinstance(table, dict) else {}
     for kind in [kind for kind in kinds if not _differs(kind, table)] or kinds:
         for name, child in kind.items():
             known[name] = _joined(known[name], child) if name in known else child
     return known
-
-
-def items(node: Node | None) -> Node | None:
-    """Return the node of a list's entries, if it is a list."""
-    return next((variant["items"] for variant in _variants(node) if "items" in variant), None)
 
 
 def is_number(node: Node) -> bool:
@@ -70,11 +72,21 @@ def beams(tables: Any) -> list[Path]:
     return [path for path in (("slider",), ("track",), *kinds) if isinstance(look_up(tables, path), dict)]
 
 
+def contacts(tables: Any) -> list[Path]:
+    """Return the paths of contacts, which take the friction that stands at the top."""
+    listed = look_up(tables, ("contacts",))
+    places: list[Path] = [
+        ("contact",),
+        *(("contacts", number) for number in range(len(listed) if isinstance(listed, list) else 0)),
+    ]
+    return [path for path in places if isinstance(look_up(tables, path), dict)]
+
+
 def node_at(path: Path, tables: Any) -> Node | None:
     """Return the node at a path, or None if there is no such key."""
     node: Node | None = json_schema()
     for part in path:
-        node = items(node) if isinstance(part, int) else properties(node, tables).get(part)
+        node = _entry(node, tables, part) if isinstance(part, int) else properties(node, tables).get(part)
         tables = look_up(tables, (part,))
     return node
 
@@ -82,12 +94,8 @@ def node_at(path: Path, tables: Any) -> Node | None:
 def paths(tables: Any, node: Node | None = None, path: Path = ()) -> Iterator[tuple[Path, Node]]:
     """Go through every key that can be set: those there and those left out."""
     for name, child in properties(json_schema() if node is None else node, tables).items():
-        below = look_up(tables, (name,))
         yield (*path, name), child
-        yield from paths(below, child, (*path, name))
-        entry = items(child)
-        for number, element in enumerate(below if entry and isinstance(below, list) else ()):
-            yield from paths(element, entry, (*path, name, number))
+        yield from _below(look_up(tables, (name,)), child, (*path, name))
 
 
 def look_up(tables: Any, path: Sequence[str | int]) -> Any:
@@ -110,10 +118,36 @@ def plain(location: Sequence[str | int], tables: Any) -> Path:
         if tag is not None and part == tag:
             tag = None
             continue
+        if part in (TEXT, ONE, BY_NAME) and look_up(tables, (*path, part)) is None:
+            continue
         path.append(part)
         table = look_up(tables, path)
         tag = next((table[name] for name in TAGS if name in table), None) if isinstance(table, dict) else None
     return tuple(path)
+
+
+def _below(value: Any, node: Node, path: Path) -> Iterator[tuple[Path, Node]]:
+    """Go through the keys of a value that is a table, and through the entries of one that is a list."""
+    yield from paths(value, node, path)
+    for number, element in enumerate(value if isinstance(value, list) else ()):
+        is_key = isinstance(element, dict) or len(value) <= LONGEST_LIST
+        entry = _entry(node, value, number) if is_key else None
+        if entry is not None:
+            if is_number(entry):
+                yield (*path, number), entry
+            yield from _below(element, entry, (*path, number))
+
+
+def _entry(node: Node | None, table: Any, number: int) -> Node | None:
+    """Return the node of an entry of a list, None if it can have none."""
+    length = len(table) if isinstance(table, list) else number + 1
+    for variant in _variants(node):
+        if variant.get("minItems", 0) <= length <= variant.get("maxItems", length):
+            each = variant.get("prefixItems", ())
+            if number < len(each) or "items" in variant:
+                entry: Node = each[number] if number < len(each) else variant["items"]
+                return entry
+    return None
 
 
 def _variants(node: Node | None) -> list[Node]:

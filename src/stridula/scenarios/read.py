@@ -19,6 +19,8 @@ from .quantities import is_quantity
 from .shipped import shipped
 
 FILES = ("file", "mass", "stiffness", "damping", "labels", "mesh")
+# Tables of a body that may name a file, too.
+MESHES = ("profile", "mesh")
 
 # Scenarios take 5; what recurses over tables takes far more.
 DEEPEST = 50
@@ -116,7 +118,7 @@ def _file_tables(path: Path) -> dict[str, Any]:
 
 
 def _with_files(tables: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the tables with the files of reduced bodies found from the folder of the file that names them."""
+    """Return the tables with the files of bodies found from the folder of the file that names them."""
     bodies = tables.get("bodies")
     if not isinstance(bodies, dict):
         return tables
@@ -124,18 +126,29 @@ def _with_files(tables: dict[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def _with_own_files(body: Any, folder: Path) -> Any:
-    return body | {key: str(folder / text) for key, text in _files_of(body).items()} if names_files(body) else body
+    if not isinstance(body, dict):
+        return body
+    inside = {key: _with_own_files(body[key], folder) for key in MESHES if isinstance(body.get(key), dict)}
+    return body | inside | {key: str(folder / text) for key, text in _own_files(body).items()}
 
 
 def names_files(body: Any) -> bool:
-    """Return whether the table of a body names files with its matrices."""
+    """Return whether the table of a body names files, with its matrices or its mesh."""
     return bool(_files_of(body))
 
 
 def _files_of(body: Any) -> dict[str, str]:
-    if not isinstance(body, dict) or body.get("kind", "reduced") != "reduced":
+    if not isinstance(body, dict):
         return {}
-    texts = {key: body[key] for key in FILES if isinstance(body.get(key), str)}
+    inside = [_own_files(body[key]) for key in MESHES if isinstance(body.get(key), dict)]
+    return {key: text for files in (*inside, _own_files(body)) for key, text in files.items()}
+
+
+def _own_files(table: dict[str, Any]) -> dict[str, str]:
+    """Return the files that a body, or its mesh, names itself."""
+    if table.get("kind", "reduced") != "reduced":
+        return {}
+    texts = {key: table[key] for key in FILES if isinstance(table.get(key), str)}
     # A damping of "1 %" is no file.
     return {key: text for key, text in texts.items() if not is_packed(text) and not is_quantity(text, "1")}
 

@@ -11,7 +11,7 @@ from ..integration import GaussSeidel
 from . import fields as is_
 from .fields import Table
 from .schema_bodies import Body, Material, Section, Slider, Track
-from .schema_contacts import Connection, Contact, PairContact
+from .schema_contacts import Connection, Contact, Friction, PairContact
 from .schema_drives import Drive
 
 
@@ -89,6 +89,8 @@ class ScenarioTable(Table):
     """damping of all beams and plates, a ratio or a law of frequency, unless a body has its own"""
     cutoff: is_.Frequency | None = None
     """highest frequency of the modes of all beams and plates, unless a body has its own [Hz]"""
+    friction: Friction | None = None
+    """law of friction of all contacts, unless a contact has its own"""
     slider: Slider | None = None
     """the beam whose tip touches"""
     track: Track | None = None

@@ -12,8 +12,9 @@ from . import fields as is_
 from .derived import Keys, one_of, table_of
 from .fields import Table
 from .schema_drives import History
+from .schema_meshed import meshed_tables
 
-KINDS = "finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"
+KINDS = "finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"
 OWN_NAME = "what it is called in records, the table's own name if left out"
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ class Line(Table):
 
 class Plate(Table):
     kind: Literal["modal plate"]
-    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
+    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"""
     material: Material
     """what the plate is made of"""
     thickness: is_.Length
@@ -73,7 +74,7 @@ class Plate(Table):
 
 class Reduced(Table):
     kind: Literal["reduced"]
-    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
+    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"""
     file: str | None = None
     """.npz or .mat file with matrices and points, or a file of Nastran or CalculiX, beside the scenario"""
     mass: is_.Matrix | None = None
@@ -100,7 +101,7 @@ class Reduced(Table):
 
 class Rigid(Table):
     kind: Literal["rigid body"]
-    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
+    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"""
     mass: is_.Mass
     """mass [kg]"""
     inertia: is_.Inertia | None = None
@@ -126,7 +127,7 @@ class Turning(Table):
 
 class Modal(Table):
     kind: Literal["modal body"]
-    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body or modal body"""
+    """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"""
     angular_frequency: is_.Vector
     """angular frequencies of the modes [rad/s]"""
     points: is_.PointTable
@@ -155,4 +156,4 @@ else:
     )
     _exact = table_of(bodies.ModalBeam, "kind", "modal beam", KINDS, title="ModalBody", **_words)
     _mass = table_of(bodies.PointMass, "kind", "point mass", KINDS, after=_named)
-    Body = one_of("kind", [_beam, _exact, Plate, _mass, Reduced, Rigid, Modal])
+    Body = one_of("kind", [_beam, _exact, Plate, _mass, Reduced, Rigid, Modal, *meshed_tables(KINDS, Material, _named)])

@@ -16,6 +16,8 @@ from .read import read_tables
 from .schema import json_schema
 
 COMMENT_COLUMN = 32
+# Lists of rows that are longer have each row on a line of its own.
+LONGEST_ROW = 100
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
@@ -58,12 +60,29 @@ def _lines(table: dict[str, Any], path: Path, tables: dict[str, Any]) -> list[st
 
 def _value_lines(key: str, value: Any, path: Path, tables: dict[str, Any]) -> list[str]:
     is_text = isinstance(value, str) and "\n" in value
-    text = tomli_w.dumps({key: value}, multiline_strings=True) if is_text else toml({key: value})
+    text = tomli_w.dumps({key: value}, multiline_strings=True) if is_text else _with_rows(key, value)
     lines = text.rstrip("\n").split("\n")
     comment = (node_at(path, tables) or {}).get("description")
     if comment and len(path) > 1 and len(lines) == 1:
         lines = [f"{lines[0]:<{COMMENT_COLUMN}}  # {comment}"]
     return lines
+
+
+def _with_rows(key: str, value: Any) -> str:
+    """Return a key and its value, short lists and those in lists on one line."""
+    name = toml({key: 0}).rpartition(" = ")[0]
+    if not isinstance(value, list) or "{" in str(value):
+        return toml({key: value})
+    line = f"{name} = {_row(value)}"
+    if len(line) <= LONGEST_ROW or not any(isinstance(each, list) for each in value):
+        return line
+    return "\n".join([f"{name} = [", *(f"    {_row(each)}," for each in value), "]"])
+
+
+def _row(value: Any) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(_row, value))}]"
+    return tomli_w.dumps({"x": value}).partition(" = ")[2].strip()
 
 
 def _has_header(value: Any) -> bool:

@@ -17,6 +17,7 @@ from .fields import UNIT_OF_PATTERN
 from .keys import located, plain_value
 from .outline import Node, Path
 from .quantities import parts, quantity
+from .read import MESHES, names_files
 
 # Files of a body, whose matrices are read once.
 READ_ONCE = ("file", "mass", "stiffness", "labels", "mesh")
@@ -136,9 +137,11 @@ def varied_keys(tables: dict[str, Any], keys: Sequence[str], sets: Sequence[Sequ
         twin = next((one.key for one in found if one.path == path), None)
         if twin is not None:
             raise ScenarioError([f"key must be varied once, got {twin!r} and {key!r}, which both mean {full}"])
-        is_reduced = path[0] == "bodies" and outline.look_up(changed, (*path[:2], "kind")) == "reduced"
-        if is_reduced and path[-1] in READ_ONCE:
+        body = outline.look_up(changed, path[:2]) if path[0] == "bodies" else None
+        if outline.look_up(body, ("kind",)) == "reduced" and path[-1] in READ_ONCE:
             raise ScenarioError([f"key must not be {full}: matrices are read once for all points, got {brief(key)}"])
+        if names_files(body) and path[2] in MESHES:
+            raise ScenarioError([f"key must not be {full}: meshes are read once for all points, got {brief(key)}"])
         node = _node(path, changed)
         units = {UNIT_OF_PATTERN[pattern] for pattern in outline.patterns(node) if pattern in UNIT_OF_PATTERN}
         found.append(Varied(key, path, full, units.pop() if len(units) == 1 else None, node))
