@@ -47,6 +47,7 @@ _HOME = {
         "RigidTrack",
         "StaticKinetic",
         "Stribeck",
+        "SurfaceContact",
     ),
     "checks": ("ArgumentError",),
     "connections": ("Dashpot", "Spring"),

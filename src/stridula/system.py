@@ -10,10 +10,12 @@ from typing import Any, TypeVar
 
 from .checks import ArgumentError, instance
 from .connections import CONNECTIONS, Connection, ends, unit
-from .contact import PointContact
+from .contact import PointContact, SurfaceContact
+from .contact.surface_contact import all_contacts
 from .drives import DRIVES, Drive, ImposedVelocity, InitialEquilibrium
 
 T = TypeVar("T")
+PLACES = (PointContact, SurfaceContact)
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,7 @@ class System:
 
     Parameters
     ----------
-    contact : PointContact or sequence of PointContact
+    contact : PointContact, SurfaceContact or sequence of these
         Where they touch. The first one names the slider (its tip's body) and the track.
     drives : sequence of Force, ImposedVelocity, Gravity, InitialVelocity, InitialState or InitialEquilibrium, optional
         What pushes, and how it starts.
@@ -36,13 +38,13 @@ class System:
         than one equilibrium asked for, or if a body is supported so that its root cannot follow an imposed velocity.
     """
 
-    contact: PointContact | Sequence[PointContact]
+    contact: PointContact | SurfaceContact | Sequence[PointContact | SurfaceContact]
     drives: Sequence[Drive] = ()
     connections: Sequence[Connection] = ()
 
     def __post_init__(self) -> None:
-        if not isinstance(self.contact, PointContact):
-            object.__setattr__(self, "contact", _listed("contact", self.contact, (PointContact,)))
+        if not isinstance(self.contact, PLACES):
+            object.__setattr__(self, "contact", _listed("contact", self.contact, PLACES))
             if not self.contacts:
                 raise ArgumentError("contact", "hold at least one PointContact", self.contact, got="none")
         object.__setattr__(self, "drives", _listed("drives", self.drives, DRIVES))
@@ -59,8 +61,17 @@ class System:
 
     @cached_property
     def contacts(self) -> tuple[PointContact, ...]:
-        """All contacts."""
-        return (self.contact,) if isinstance(self.contact, PointContact) else tuple(self.contact)
+        """All contacts, those of surfaces point by point."""
+        return all_contacts(self._places)
+
+    @property
+    def surfaces(self) -> tuple[SurfaceContact, ...]:
+        """The surfaces in contact."""
+        return tuple(one for one in self._places if isinstance(one, SurfaceContact))
+
+    @property
+    def _places(self) -> tuple[PointContact | SurfaceContact, ...]:
+        return (self.contact,) if isinstance(self.contact, PLACES) else tuple(self.contact)
 
     @cached_property
     def bodies(self) -> tuple[Any, ...]:

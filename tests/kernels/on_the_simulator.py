@@ -116,7 +116,9 @@ FLOORS = {
         at.CONTACT_GAP: LENGTH,
         at.SLIP_VELOCITY: VELOCITY,
     },
-    "carried": dict.fromkeys((at.MATERIAL, at.ANCHOR, at.ABSCISSA, at.LAST_SLIP, at.EARLIER_SLIP, at.LAST_GAP), LENGTH),
+    "carried": dict.fromkeys(
+        (at.MATERIAL, at.ANCHOR, at.ABSCISSA, at.LAST_SLIP, at.EARLIER_SLIP, at.LAST_GAP, at.EARLIER_GAP), LENGTH
+    ),
 }
 
 

@@ -146,7 +146,7 @@ def test_several_contacts_obey_their_laws_at_every_step(scheme):
         steady = np.abs(indented[2:] - indented[:-2]) < 0.05 * mean
         known = np.array([force_at(contact.yields, one) for one in mean])
         known = np.maximum(known * (1.0 + rate * change) + damping * change, 0.0)
-        assert steady.sum() > 100
+        assert steady.sum() > 30
         np.testing.assert_allclose(normal[2:, k][steady], known[steady], rtol=1e-3)
     terms = ["kinetic_and_elastic", "damping_loss", "drive_work", "contact_work"]
     largest = max(np.abs(run[term].values).max() for term in terms)

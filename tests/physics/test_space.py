@@ -321,7 +321,8 @@ def test_contacts_in_space_obey_their_laws_at_every_step(law, scheme):
         highest = float(law.coefficient_at(0.0))
         assert (pulled <= highest * normal + 1e-9 * size).all()
         held = (status[1:] == STICKING) & (status[:-1] == STICKING)
-        assert np.abs(slip[1:][held]).max(initial=0.0) < 1e-9 * np.abs(slip).max()
+        # Abscissas are rounded.
+        assert np.abs(slip[1:][held]).max(initial=0.0) < 3e-9 * np.abs(slip).max()
     if isinstance(law, st.Coulomb):
         sliding = (status[2:] == SLIDING) & (status[1:-1] == SLIDING) & (status[:-2] == SLIDING)
         velocity = 9.0 * slip[2:] + 6.0 * slip[1:-1] + slip[:-2]

@@ -86,8 +86,11 @@ def stick_or_slide(gap, slip, strayed, w, law, laws, i, before, let_go, step):
     elif law > at.STATIC_KINETIC:
         velocity, ratio = sliding_velocity(gap, slip, w, law, laws, i, before, sense, step)
         if sense * slip_at(velocity, before, step) < 0.0:
-            # Viscous friction above the static one brings it to rest within the step.
-            return normal, tangential, STICKING, False
+            # Friction brings it to rest within the step, viscous friction with more than the static one.
+            most = max(held, abs(ratio))
+            if abs(tangential) <= most * normal:
+                return normal, tangential, STICKING, False
+            ratio = sense * most
     normal = -gap / (w[0] - ratio * w[1])
     return normal, ratio * normal, SLIDING, False
 

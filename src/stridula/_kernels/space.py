@@ -207,10 +207,14 @@ def searched(first, second, may_hold, free, law, laws, number, before, let_go, s
     turn, low, high = 0.0, -math.inf, math.inf
     turn_before, across_before = math.nan, math.nan
     c, s, normal, tangential, status, jammed = first, second, 0.0, 0.0, 0.0, 0.0
+    # What is not held along the force that would hold it is not held along any other.
+    freed = let_go
     for trial in range(TRIALS):
         cosine, sine = math.cos(turn), math.sin(turn)
         c, s = first * cosine - second * sine, second * cosine + first * sine
-        normal, tangential, status, jammed = solve_along(c, s, free, law, laws, number, before, let_go, step)
+        normal, tangential, status, jammed = solve_along(c, s, free, law, laws, number, before, freed, step)
+        if may_hold and abs(before[0] - STICKING) < 0.5:
+            freed = 1.0
         if trial == 0 and may_hold and abs(status - STICKING) < 0.5:
             break
         # The direction is that of the velocity that laws of the speed see, see `contact.velocity_at`.

@@ -12,6 +12,7 @@ from .spectra import (
     spectrum,
     tones,
 )
+from .surfaces import surface
 
 __all__ = [
     "REGIMES",
@@ -33,6 +34,7 @@ __all__ = [
     "spectrum",
     "status_share",
     "stops",
+    "surface",
     "swing",
     "tones",
 ]

@@ -22,12 +22,13 @@ from .damping import DampingLaw, checked_damping
 from .factorisation import dissection
 from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
 from .matrix_input import check_finite, numbers
-from .modes import Modes
+from .modes import BodyPoint, Modes
 from .named_points import NamedPoints
 from .ordinary import of_ordinary_size
 from .sections import Material
 from .solid_elements import assembled
-from .solid_mesh import Face, SolidMesh
+from .solid_mesh import Face, SolidMesh, place_of
+from .solid_places import FacePoints, face_points, located
 from .sparse_reduction import SparseProblem, modes_of, reduce_sparse
 
 DIRECTIONS = "xyz"
@@ -86,6 +87,8 @@ class SolidBody(NamedPoints):
         so that the body is as soft there as all its modes make it.
     linear : bool, optional
         Whether elements without nodes in the middle of their edges stay as they are.
+    contact_faces : sequence of str, optional
+        Groups of faces whose points of integration touch others: they yield as the points do.
     name : str, optional
         What it is called in records; tells equal bodies apart.
 
@@ -106,6 +109,7 @@ class SolidBody(NamedPoints):
     damping: Annotated[float | Sequence[float] | Array | DampingLaw, Own("damping")] = 0.0
     residual_flexibility: bool = True
     linear: bool = False
+    contact_faces: Sequence[str] = ()
     name: str = ""
 
     def __post_init__(self) -> None:
@@ -122,6 +126,9 @@ class SolidBody(NamedPoints):
             self._set("mesh", self.mesh.quadratic())
         self._set("points", MappingProxyType(_points(self.points, self.mesh)))
         self._set("fixed", MappingProxyType(_fixed(self.fixed, self.mesh)))
+        given = (self.contact_faces,) if isinstance(self.contact_faces, str) else tuple(self.contact_faces)
+        names = [choice(f"contact_faces[{k}]", one, self.face_names or ("none",)) for k, one in enumerate(given)]
+        self._set("contact_faces", tuple(names))
         size = int(self._free.sum())
         if not size:
             raise ArgumentError("fixed", "leave something free", got="all nodes held")
@@ -190,6 +197,21 @@ class SolidBody(NamedPoints):
         """Return a named part of its surface: nodes, areas and normals."""
         return self.mesh.face(name)
 
+    def face_points(self, name: str) -> FacePoints:
+        """Return the points of integration on a named part of its surface: places, areas and normals."""
+        return face_points(self.mesh, name)
+
+    def at(self, position: str | Sequence[float]) -> BodyPoint:
+        """Return the point of a name, or the place (x, y, z) within the mesh [m]."""
+        return BodyPoint(self, position if isinstance(position, str) else place_of("position", position))
+
+    def check_position(self, position: Any) -> None:
+        """Raise ValueError unless `position` is the name of a point or (x, y, z) within the mesh."""
+        if isinstance(position, str):
+            choice("position", position, self.point_names)
+        else:
+            located(self.mesh, place_of("position", position))
+
     @property
     def axes(self) -> Array:
         """World components of its axes, which are x, y and z, shape (3, 3)."""
@@ -227,12 +249,15 @@ class SolidBody(NamedPoints):
             raise ArgumentError("held_x", "be False for a SolidBody: it has no driven end", held_x)
         return self._reduction.modes
 
-    def trace(self, position: str, held_x: bool = False) -> Array:
+    def trace(self, position: Any, held_x: bool = False) -> Array:
         """Return the rows that give the displacement (x, y, z) of a point from the modes, shape (3, modes)."""
         self.check_position(position)
         self.modes(held_x)
-        node = self.points[position]
-        return self.shapes[3 * node : 3 * node + 3]
+        if isinstance(position, str):
+            node = self.points[position]
+            return self.shapes[3 * node : 3 * node + 3]
+        nodes, shares = located(self.mesh, place_of("position", position))
+        return np.einsum("n,nim->im", shares, self.shapes.reshape(len(self.mesh.nodes), 3, -1)[nodes])
 
     def modal_coordinates(self, vector: Any) -> Array:
         """Return ``Phi^T M x`` of displacements or velocities x of all nodes, shape (nodes, 3), as shape (modes,).
@@ -314,7 +339,7 @@ def _reduced(body: SolidBody) -> SolidReduction:
     if body.residual_flexibility:
         at_points = np.zeros((free.size, 3 * nodes.size))
         at_points[(3 * nodes[:, None] + np.arange(3)).ravel(), np.arange(3 * nodes.size)] = 1.0
-        forces = np.hstack([at_points[free], forces])
+        forces = np.hstack([at_points[free], _on_faces(body)[free], forces])
     else:
         forces = forces[:, :0]
     own_mass = mass[free][:, free]
@@ -326,6 +351,17 @@ def _reduced(body: SolidBody) -> SolidReduction:
     shapes[free] = found.shapes
     shapes.flags.writeable = False
     return SolidReduction(modes_of(found, body.damping, pulled.T @ shapes), shapes, node_mass)
+
+
+def _on_faces(body: SolidBody) -> Array:
+    """Return unit forces at the points of faces that touch, along x, y and z each, shape (3 nodes, forces)."""
+    places = [place for name in body.contact_faces for place in body.face_points(name).place.tolist()]
+    forces = np.zeros((len(body.mesh.nodes), 3, len(places), 3))
+    for number, place in enumerate(places):
+        nodes, shares = located(body.mesh, tuple(place))
+        for direction in range(3):
+            forces[nodes, direction, number, direction] = shares
+    return forces.reshape(3 * len(body.mesh.nodes), -1)
 
 
 def _rigid(mesh: SolidMesh, free: Array, mass: Any) -> Array:

@@ -41,6 +41,31 @@ def check_elements(kind: ElementKind, nodes: Array, elements: Array) -> None:
         )
 
 
+def shape_functions(kind: ElementKind, places: Array) -> tuple[Array, Array]:
+    """Return shape functions and their derivatives at coordinates in the unit element.
+
+    Parameters
+    ----------
+    kind : ElementKind
+        Kind of the elements.
+    places : ndarray, shape (places, 3)
+        Coordinates.
+
+    Returns
+    -------
+    values : ndarray, shape (places, nodes of one)
+        Values, nodes in the order of VTK.
+    slopes : ndarray, shape (places, nodes of one, 3)
+        Derivatives along the coordinates.
+    """
+    element = _finite_element(kind)
+    values, slopes = np.zeros((len(places), len(kind.nodes))), np.zeros((len(places), len(kind.nodes), 3))
+    for number, ours in enumerate(_order(kind, element)):
+        value, slope = element.lbasis(np.ascontiguousarray(places.T), number)
+        values[:, ours], slopes[:, ours] = value, np.asarray(slope).T
+    return values, slopes
+
+
 def assembled(
     kind: ElementKind, nodes: Array, elements: Array, materials: list[tuple[Material, Array]]
 ) -> tuple[Any, Any]:

@@ -430,6 +430,11 @@ def _divisions(values: Any) -> tuple[int, int, int]:
     return parts
 
 
+def place_of(word: str, values: Any) -> tuple[float, float, float]:
+    """Return coordinates as three finite numbers."""
+    return _three(word, values, finite)
+
+
 def _two(word: str, values: Any) -> tuple[float, float]:
     if isinstance(values, str) or not isinstance(values, (Sequence, np.ndarray)) or len(values) != 2:
         raise ArgumentError(word, "be two numbers", values)

@@ -8,6 +8,7 @@ from .point_contact import PointContact
 from .rate_and_state import RateAndState
 from .rigid_track import RigidTrack
 from .stiffness import STIFFNESSES, ContactStiffness, HertzStiffness, LinearStiffness, PowerStiffness
+from .surface_contact import SurfaceContact
 from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
 
 __all__ = [
@@ -27,4 +28,5 @@ __all__ = [
     "RigidTrack",
     "StaticKinetic",
     "Stribeck",
+    "SurfaceContact",
 ]

@@ -61,6 +61,12 @@ def tangent_of(stiffness: ContactStiffness, indentation: float) -> tuple[float, 
     return give, indentation - give * force
 
 
+def per_area(stiffness: ContactStiffness, area: float) -> ContactStiffness:
+    """Return the stiffness of an area [m²] of one that is for a unit of area."""
+    k, p, damping, rate = stiffness.numbers
+    return LinearStiffness(area * k, area * damping) if p == 1.0 and not rate else PowerStiffness(area * k, p, rate)
+
+
 def slopes_at(stiffness: ContactStiffness, force: float) -> tuple[float, float]:
     """Return how the force changes with the indentation [N/m] and with its velocity [N s/m] about one that stays."""
     k, p, damping, rate = stiffness.numbers

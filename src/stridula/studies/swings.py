@@ -63,7 +63,7 @@ def linear_time(rest: ModesAtRest, number: int, amplitude: float) -> float:
         Its start over its reach [1].
     """
     growth = rest.exponents.real
-    lasts = np.log(max(LINEAR / amplitude, np.e)) / growth[number]
+    lasts = max(np.log(LINEAR / amplitude), 1.0) / growth[number]
     ahead = float(growth.max() - growth[number])
     if ahead > 0.0:
         lasts = min(lasts, np.log(FOREIGN * amplitude / ROUNDING) / ahead)

@@ -1,0 +1,126 @@
+"""Places within meshes and points of integration on their faces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from ..checks import ArgumentError
+from .solid_elements import shape_functions
+from .solid_kinds import ElementKind
+
+if TYPE_CHECKING:
+    from .solid_mesh import SolidMesh
+
+# Share of the size of an element by which curved sides may lie outside of its nodes, and a place outside of it.
+BULGE, OUTSIDE = 0.2, 1e-6
+STEPS = 30
+# Points of integration that are exact for a uniform pressure on faces of second degree, and their weights.
+_LINE = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)
+_SQUARE = np.array([(x, y) for x in _LINE for y in _LINE]), np.full(4, 0.25)
+_TRIANGLE = np.array([(1.0, 1.0), (4.0, 1.0), (1.0, 4.0)]) / 6.0, np.full(3, 1.0 / 6.0)
+
+
+@dataclass(frozen=True)
+class FacePoints:
+    """Points of integration on a part of the surface of a mesh.
+
+    Attributes
+    ----------
+    place : ndarray, shape (points, 3)
+        Coordinates [m].
+    area : ndarray, shape (points,)
+        Areas that they stand for [m²].
+    normal : ndarray, shape (points, 3)
+        Outward unit normals.
+    """
+
+    place: Array
+    area: Array
+    normal: Array
+
+
+@lru_cache(maxsize=32)
+def face_points(mesh: SolidMesh, name: str) -> FacePoints:
+    """Return the points of integration on a group of faces: four on each quadrilateral, three on each triangle."""
+    mesh.face(name)
+    kind, found = mesh.element_kind, []
+    for element, side in mesh.faces[name]:
+        corners = kind.nodes[kind.face_nodes[side]][: len(kind.faces[side])]
+        (u, v), weights = (_SQUARE if len(corners) == 4 else _TRIANGLE)[0].T, (_SQUARE, _TRIANGLE)[len(corners) == 3][1]
+        shares, along, across = _on_face(u, v, len(corners))
+        values, slopes = shape_functions(kind, shares @ corners)
+        nodes = mesh.nodes[mesh.elements[element]]
+        jacobian = np.einsum("pni,nj->pij", slopes, nodes)
+        first = np.einsum("pi,pij->pj", along @ corners, jacobian)
+        second = np.einsum("pi,pij->pj", across @ corners, jacobian)
+        vectors = np.cross(first, second)
+        size = np.linalg.norm(vectors, axis=1)
+        found.append((values @ nodes, weights * size, vectors / size[:, None]))
+    return FacePoints(*(np.concatenate(one) for one in zip(*found, strict=True)))
+
+
+def _on_face(u: Array, v: Array, corners: int) -> tuple[Array, Array, Array]:
+    """Return the shares of the corners at points of a face, and their derivatives along both sides."""
+    one = np.ones_like(u)
+    if corners == 3:
+        return np.array([1.0 - u - v, u, v]).T, np.array([-one, one, 0.0 * u]).T, np.array([-one, 0.0 * u, one]).T
+    shares = np.array([(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v]).T
+    return shares, np.array([v - 1.0, 1.0 - v, v, -v]).T, np.array([u - 1.0, -u, u, 1.0 - u]).T
+
+
+@lru_cache(maxsize=4096)
+def located(mesh: SolidMesh, place: tuple[float, float, float]) -> tuple[Array, Array]:
+    """Return the nodes that move a place of a mesh, and their shares.
+
+    Raises
+    ------
+    ValueError
+        If it is outside of the mesh.
+    """
+    kind, there = mesh.element_kind, np.array(place)
+    low, high = _boxes(mesh)
+    size = (high - low).max(axis=1)
+    near = np.flatnonzero(
+        ((there >= low - BULGE * size[:, None]) & (there <= high + BULGE * size[:, None])).all(axis=1)
+    )
+    best, outside = None, np.inf
+    for element in near:
+        local = _local(kind, mesh.nodes[mesh.elements[element]], there)
+        beyond = _beyond(kind, local)
+        if beyond < outside:
+            best, outside = (element, local), beyond
+        if beyond <= 0.0:
+            break
+    if best is None or outside > OUTSIDE:
+        raise ArgumentError("position", "be the name of a point or (x, y, z) within the mesh", place)
+    element, local = best
+    return mesh.elements[element], shape_functions(kind, local[None])[0][0]
+
+
+@lru_cache(maxsize=8)
+def _boxes(mesh: SolidMesh) -> tuple[Array, Array]:
+    nodes = mesh.nodes[mesh.elements]
+    return nodes.min(axis=1), nodes.max(axis=1)
+
+
+def _local(kind: ElementKind, nodes: Array, place: Array) -> Array:
+    """Return the coordinates of a place in the unit element, by Newton's method."""
+    local = kind.nodes.mean(axis=0)
+    for _ in range(STEPS):
+        values, slopes = shape_functions(kind, local[None])
+        step = np.linalg.lstsq((slopes[0].T @ nodes).T, place - values[0] @ nodes, rcond=None)[0]
+        local = np.clip(local + step, -1.0, 2.0)
+        if np.abs(step).max() < 1e-14:
+            break
+    return np.asarray(local)
+
+
+def _beyond(kind: ElementKind, local: Array) -> float:
+    """Return how far coordinates are outside of the unit element, not above zero within it."""
+    far = local.sum() if len(kind.corners) == 4 else local.max()
+    return float(max(-local.min(), far - 1.0))
