@@ -236,6 +236,8 @@ def test_a_run_goes_on_to_the_last_bit_and_runs_again(tmp_path):
     again = st.load_scenario(whole).simulate()
     for name in ("normal_force", "tangential_force", "velocity", "acceleration"):
         np.testing.assert_array_equal(again[name], whole[name])
+    # And what is written of a body given by its modes is what was read.
+    assert again.attrs["scenario"] == whole.attrs["scenario"]
 
 
 def test_runs_side_by_side_are_those_alone():

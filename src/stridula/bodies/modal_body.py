@@ -101,7 +101,7 @@ class ModalBody(NamedPoints):
             check_finite(f"velocities[{name!r}]", velocity)
             velocity.flags.writeable = False
             velocities[name] = velocity
-        self._set("velocities", MappingProxyType(velocities))
+        self._set("velocities", MappingProxyType(velocities) if velocities else None)
 
     @property
     def is_spatial(self) -> bool:

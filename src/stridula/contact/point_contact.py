@@ -65,6 +65,8 @@ class PointContact:
         about its axis while its vibration is seen from where it stands: along the tangent, in space along both.
     stiffness : float, LinearStiffness, PowerStiffness or HertzStiffness, optional
         Stiffness of the contact itself, a number in N/m; rigid if left out.
+    surface : str, optional
+        Name of the surface that it is a point of: a part of its points may lift off in equilibrium.
 
     Notes
     -----
@@ -82,6 +84,7 @@ class PointContact:
     tangent: Annotated[Sequence[float], Each(Number())] | None = None
     surface_velocity: Annotated[float | Sequence[float], OneOrEach(Number("m/s"))] = 0.0
     stiffness: ContactStiffness | float | None = None
+    surface: str = ""
 
     def __post_init__(self) -> None:
         instance("tip", self.tip, BodyPoint)
@@ -101,7 +104,8 @@ class PointContact:
             instance("friction", self.friction, LAWS)
         if abs(self.inclination) > 2.0 * math.pi:
             raise ArgumentError("inclination", "be from -2 pi to 2 pi rad", self.inclination)
-        instance("name", self.name, str)
+        for word in ("name", "surface"):
+            instance(word, getattr(self, word), str)
         if self.stiffness is not None and not isinstance(self.stiffness, STIFFNESSES):
             instance("stiffness", self.stiffness, (Real, *STIFFNESSES))
             number: Any = self.stiffness

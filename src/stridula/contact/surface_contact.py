@@ -135,6 +135,7 @@ class SurfaceContact:
                 tangent=self._tangent(track, facing),
                 stiffness=None if self.stiffness is None else per_area(self.stiffness, area),  # type: ignore[arg-type]
                 name=f"{self.name} {number + 1}",
+                surface=self.name,
             )
             found.append(contact)
         return tuple(found)

@@ -30,8 +30,8 @@ class Equilibrium:
     Attributes
     ----------
     kind : str
-        ``sliding``; ``held``: friction stops a contact; ``lifted off``: a contact does not stay closed; ``jammed``:
-        a contact neither slides on nor opens.
+        ``sliding``; ``held``: friction stops a contact; ``lifted off``: a contact, or a surface as a whole, is not
+        closed; ``jammed``: a contact neither slides on nor opens.
     status : tuple of str
         Status of each contact.
     sense : ndarray, shape (contacts,)
@@ -89,12 +89,19 @@ def find_equilibrium(structure: Structure, velocity: Array, status: Sequence[str
         found = _at(structure, velocity, tried)
         wrong = _wrong(structure, found)
         if wrong is None:
-            kind = LIFTED_OFF if SEPARATED in tried else HELD if STICKING in tried else SLIDING
+            kind = LIFTED_OFF if _lifted(structure, tried) else HELD if STICKING in tried else SLIDING
             return _equilibrium(kind, tried, found)
         contact, kind = wrong
         if status is not None or kind == JAMMED:
             return _equilibrium(kind, tried, found)
         tried[contact] = STICKING if kind == HELD else SEPARATED
+
+
+def _lifted(structure: Structure, status: Sequence[str]) -> bool:
+    """Return whether a contact is open that should not be: one by itself, or a surface as a whole."""
+    surfaces = [contact.surface for contact in structure.system.contacts]
+    closed = {name for name, one in zip(surfaces, status, strict=True) if name and one != SEPARATED}
+    return any(one == SEPARATED and name not in closed for name, one in zip(surfaces, status, strict=True))
 
 
 @dataclass(frozen=True)

@@ -94,22 +94,25 @@ def _creeping(motion: Vibration, split: _Split) -> Exponents:
     bent, states = heavy[:, rigid:], len(motion.state)
     sizes = np.cumsum([0, bent.shape[1], heavy.shape[1], states, light.shape[1]])
     x, v, z, y = (slice(*pair) for pair in pairwise(sizes.tolist()))
+    # In units of time in which the fastest mode turns by one: numbers of one size.
+    rate = float(np.sqrt(np.diag(motion.stiffness)[motion.mass > 0.0].max(initial=1.0)))
+    stiffness, damping = motion.stiffness / rate**2, motion.damping / rate
     left, right = np.zeros((2, sizes[-1], sizes[-1]))
     left[x, x], right[x, sizes[1] + rigid : sizes[2]] = np.eye(bent.shape[1]), np.eye(bent.shape[1])
     for rows, test in ((v, split.with_mass), (y, split.without)):
-        right[rows, x], right[rows, y] = -test.T @ motion.stiffness @ bent, -test.T @ motion.stiffness @ light
-        right[rows, v], left[rows, y] = -test.T @ motion.damping @ heavy, test.T @ motion.damping @ light
-        right[rows, z] = -test.T @ motion.by_state
+        right[rows, x], right[rows, y] = -test.T @ stiffness @ bent, -test.T @ stiffness @ light
+        right[rows, v], left[rows, y] = -test.T @ damping @ heavy, test.T @ damping @ light
+        right[rows, z] = -test.T @ motion.by_state / rate**2
     left[v, v] = split.with_mass.T @ (motion.mass[:, None] * heavy)
     left[z, z], left[z, y] = np.eye(states), -motion.from_velocity @ light
-    right[z, x], right[z, y] = motion.from_displacement @ bent, motion.from_displacement @ light
-    right[z, v], right[z, z] = motion.from_velocity @ heavy, np.diag(motion.state)
+    right[z, x], right[z, y] = motion.from_displacement @ bent / rate, motion.from_displacement @ light / rate
+    right[z, v], right[z, z] = motion.from_velocity @ heavy, np.diag(motion.state) / rate
     pairs, vectors = scipy.linalg.eig(right, left, check_finite=False, homogeneous_eigvals=True)
     finite = np.abs(pairs[1]) > ENDLESS * np.abs(pairs).max(axis=0)
-    values, vectors = pairs[0, finite] / pairs[1, finite], vectors[:, finite]
+    values, vectors = rate * pairs[0, finite] / pairs[1, finite], vectors[:, finite]
     chosen = values.imag >= 0.0
     values, vectors = values[chosen], vectors[:, chosen]
-    drift = vectors[sizes[1] : sizes[1] + rigid] / np.where(values == 0.0, 1.0, values)
+    drift = rate * vectors[sizes[1] : sizes[1] + rigid] / np.where(values == 0.0, 1.0, values)
     return Exponents(values, heavy @ np.concatenate([drift, vectors[x]]) + light @ vectors[y])
 
 

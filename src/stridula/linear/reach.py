@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..checks import ArgumentError
 from ..drives import InitialEquilibrium
 from ..system import System
 from .equilibrium import Equilibrium, find_equilibrium
@@ -61,6 +62,10 @@ def equilibrium_at_start(system: System, asked: InitialEquilibrium) -> tuple[str
         If a slip velocity is needed, or contacts hold the same motion twice.
     """
     structure = Structure(system, 0.0)
+    if not structure.load.any() and any(drive.push is not None for drive in system.drives):
+        raise ArgumentError(
+            "drives", "press from the start, where runs begin in equilibrium", got="loads that rise later"
+        )
     status = given_status(asked.status, system)
     found = find_equilibrium(structure, given_velocity(asked.velocity, structure, status), status)
     return found.kind, found.status

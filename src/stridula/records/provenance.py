@@ -101,7 +101,7 @@ def _general(system: System, probed: Sequence[BodyPoint]) -> dict[str, Any]:
 
 def _contact(contact: PointContact) -> dict[str, Any]:
     given = {"at": _value(contact.at), "gap": _value(contact.gap)}
-    for name in ("inclination", "name", "normal", "tangent", "surface_velocity"):
+    for name in ("inclination", "name", "normal", "tangent", "surface_velocity", "surface"):
         if getattr(contact, name):
             given[name] = _value(getattr(contact, name))
     if contact.yields is not None:
@@ -147,7 +147,9 @@ def _value(value: Any) -> Any:
 
 
 def _body(body: Any) -> dict[str, Any]:
-    given = _plain(body, "material", "section", "points")
+    given = _plain(body, "material", "section", "points", "turning")
+    if getattr(body, "turning", None) is not None:
+        given["turning"] = _turning_table(body.turning)
     if hasattr(body, "material"):
         given["material"] = _plain(body.material)
     if hasattr(body, "points"):
@@ -209,11 +211,15 @@ def _turning(turning: Turning | None, points: dict[str, BodyPoint]) -> dict[str,
     """Return how a body turns and how fast it passes its points, nothing if it does not."""
     if turning is None:
         return {}
+    velocities = {name: _value(point.turning_velocity) for name, point in points.items()}
+    return {"turning": _turning_table(turning), "velocities": velocities}
+
+
+def _turning_table(turning: Turning) -> dict[str, Any]:
     table = _plain(turning, "history")
     if turning.history.kind != Constant.kind:
         table["history"] = _history(turning.history)
-    velocities = {name: _value(point.turning_velocity) for name, point in points.items()}
-    return {"turning": table, "velocities": velocities}
+    return table
 
 
 def _points_in(system: System) -> list[BodyPoint]:

@@ -88,6 +88,7 @@ else:
         "track": (one_of("kind", [BeamTrack, PlateTrack, _rigid, PointTrack]), ..., "what it slides on"),
     }
     _friction = {"friction": (Friction | None, None, "friction between tip and track, none if left out")}
+    _friction["surface"] = (str, "", "name of the surface that it is a point of, which may lift off in part")
     _friction["stiffness"] = (is_.Stiffness | Stiffness | None, None, YIELDS)
     Contact = table_of(PointContact, title="Contact", before=_sides, after=_friction)
     Connection = one_of(
