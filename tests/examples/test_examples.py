@@ -96,6 +96,25 @@ def check_brake_pad(names: Mapping[str, Any], printed: str, folder: Path) -> Non
     assert (folder / "brake-pad.png").read_bytes().startswith(b"\x89PNG")
 
 
+def check_brake(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """More friction lets modes grow, the one that grows most fills the run, and both pads carry their load."""
+    growing = re.findall(r"^friction (\S+): sliding, growing below 7 kHz: (.+)$", printed, re.MULTILINE)
+    assert [friction for friction, _ in growing] == ["0.3", "0.5"]
+    assert growing[0][1] == "none"
+    assert growing[1][1] != "none"
+    run, found = names["run"], names["found"]
+    assert int(run.unsolved_steps.sum()) == 0
+    largest = max(float(np.abs(run[term]).max()) for term in ("drive_work", "contact_work", "kinetic_and_elastic"))
+    assert float(np.abs(run.ledger_residual).max()) < 1e-11 * largest
+    early, late = (float(np.abs(run.velocity[part]).max()) for part in (slice(None, 50), slice(-500, None)))
+    assert late > 100.0 * early
+    for one, side in zip(found, (1.0, -1.0), strict=True):
+        # Springs carry a little; the pad's mass gives back its momentum on the whole.
+        assert side * float(one.force.sel(axis="y").mean()) == pytest.approx(2000.0, rel=0.05)
+        assert float(one.closed_area.max()) <= float(one.area.sum()) * (1.0 + 1e-12)
+    assert (folder / "brake.png").read_bytes().startswith(b"\x89PNG")
+
+
 def check_pin_on_disc(names: Mapping[str, Any], printed: str, folder: Path) -> None:
     """One mode grows, in one sense of turning, near the published 2215 Hz; in time it grows as theory has it.
 
@@ -122,6 +141,7 @@ def check_pin_on_disc(names: Mapping[str, Any], printed: str, folder: Path) -> N
 
 # One check for every example: it takes the example's names, what it printed and the folder it ran in.
 CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
+    "brake.py": check_brake,
     "brake_pad.py": check_brake_pad,
     "cut_off_modes.py": check_cut_off_modes,
     "mass_on_a_belt.py": check_mass_on_a_belt,

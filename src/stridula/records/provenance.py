@@ -147,14 +147,15 @@ def _value(value: Any) -> Any:
 
 
 def _body(body: Any) -> dict[str, Any]:
-    given = _plain(body, "material", "section", "points", "turning")
-    if getattr(body, "turning", None) is not None:
-        given["turning"] = _turning_table(body.turning)
+    given = _plain(body, "material", "section", "points", "turning", "velocities")
     if hasattr(body, "material"):
         given["material"] = _plain(body.material)
     if hasattr(body, "points"):
         places = body.kind == "rigid body"
         given["points"] = {name: _value(rows) if places else _rows(rows) for name, rows in body.points.items()}
+    if getattr(body, "turning", None) is not None:
+        velocities = {name: body.turning_velocity(name) for name in body.points}
+        given |= {"turning": _turning_table(body.turning), "velocities": _value(velocities)}
     if not hasattr(body, "section"):
         return given
     return {**given, "section": {"shape": body.section.shape, **_plain(body.section)}}
