@@ -23,6 +23,7 @@ import peer_speed
 import real_time
 import scaling
 import short_runs
+import space
 import speed_and_memory
 import startup
 from ratios import arguments, as_markdown, as_text, write_between
@@ -36,6 +37,7 @@ SECTIONS = (
     real_time,
     many_runs,
     short_runs,
+    space,
     maps,
     scaling,
     startup,
