@@ -162,6 +162,12 @@ def test_a_part_of_a_face_may_lift_off_and_the_run_runs_again(tmp_path):
     np.testing.assert_array_equal(again.normal_force, run.normal_force)
 
 
+def test_a_rigid_face_whose_forces_are_not_found_says_what_helps():
+    system, _ = brake(0.4, stiffness=None)
+    with pytest.raises(st.Diverged, match="a rigid surface of so many points wants a stiffness of its own"):
+        st.simulate(system, 1e-3, probes=[])
+
+
 def test_a_curved_face_has_gaps_over_a_plane():
     """The outside of a sector on a plane: gaps are the heights over its lowest points."""
     sector = st.SolidMesh.sector((0.08, 0.12), (-0.2, 0.2), 0.02, (1, 4, 1), axis="y")
