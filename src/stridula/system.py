@@ -11,7 +11,6 @@ from typing import Any, TypeVar
 from .checks import ArgumentError, instance
 from .connections import CONNECTIONS, Connection, ends, unit
 from .contact import PointContact, SurfaceContact
-from .contact.surface_contact import all_contacts
 from .drives import DRIVES, Drive, ImposedVelocity, InitialEquilibrium
 
 T = TypeVar("T")
@@ -62,16 +61,8 @@ class System:
     @cached_property
     def contacts(self) -> tuple[PointContact, ...]:
         """All contacts, those of surfaces point by point."""
-        return all_contacts(self._places)
-
-    @property
-    def surfaces(self) -> tuple[SurfaceContact, ...]:
-        """The surfaces in contact."""
-        return tuple(one for one in self._places if isinstance(one, SurfaceContact))
-
-    @property
-    def _places(self) -> tuple[PointContact | SurfaceContact, ...]:
-        return (self.contact,) if isinstance(self.contact, PLACES) else tuple(self.contact)
+        given = (self.contact,) if isinstance(self.contact, PLACES) else tuple(self.contact)
+        return tuple(point for one in given for point in one.contacts)
 
     @cached_property
     def bodies(self) -> tuple[Any, ...]:

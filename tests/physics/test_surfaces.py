@@ -201,7 +201,10 @@ BAD = {
         ),
         "track must lie before the whole face",
     ),
-    "overlay": (lambda: st.SurfaceContact(flipped()[0], "top", st.RigidTrack(), overlay=True), "overlay must be False"),
+    "overlay": (
+        lambda: st.SurfaceContact(flipped()[0], "top", st.RigidTrack(), overlay=True),
+        "overlay must be left out but on a SolidBody",
+    ),
     "outside": (lambda: flipped()[0].at((1.0, 0.0, 0.0)), "within the mesh"),
 }
 

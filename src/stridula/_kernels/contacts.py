@@ -92,8 +92,9 @@ def forces_of_this(i, gap, slip, w, forces, contacts, carried, let_go, step, run
     if not yields_anywhere(yields):
         return forces_of_one(gap, slip, away, w, law, contacts.laws, number, at_rest, before, let_go, step, zero)
     earlier = -held(carried, i * at.CARRIED + at.EARLIER_GAP, run, zero)
+    friction = (law, contacts.laws, number, at_rest)
     normal, tangential, status, jammed, give, beyond = forces_yielding(
-        gap, slip, away, w, law, contacts.laws, number, at_rest, before, let_go, step, yields, earlier, zero
+        (gap, slip, away, w), friction, before, let_go, step, yields, earlier, zero
     )
     hold(contacts.now, i * at.IN_STEP + at.GIVE, run, give)
     hold(contacts.now, i * at.IN_STEP + at.BEYOND, run, beyond)
@@ -110,7 +111,7 @@ def forces_of_this_in_space(i, contacts, carried, let_go, step, run, runs, zero)
         return solve_in_space(gap, slips, strays, w, law, laws, number, before, let_go, step)
     earlier = -held(carried, i * at.CARRIED + at.EARLIER_GAP, run, zero)
     normal, first, second, status, jammed, give, beyond = forces_yielding_in_space(
-        gap, slips, strays, w, law, laws, number, before, let_go, step, yields, earlier, zero
+        (gap, slips, strays, w), (law, laws, number), before, let_go, step, yields, earlier, zero
     )
     hold(contacts.now, i * at.IN_STEP + at.GIVE, run, give)
     hold(contacts.now, i * at.IN_STEP + at.BEYOND, run, beyond)

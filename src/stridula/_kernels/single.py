@@ -26,8 +26,9 @@ def solve_single(free, contacts, carried, w, timing, run, zero):
     yields = yields_of(0, contacts.constants, run, zero)
     if yields_anywhere(yields):
         earlier = -held(carried, at.EARLIER_GAP, run, zero)
+        friction = (law, contacts.laws, run, at_rest)
         normal, tangential, status, jammed, give, beyond = forces_yielding(
-            gap, slip, away, w, law, contacts.laws, run, at_rest, before, zero, timing.step, yields, earlier, zero
+            (gap, slip, away, w), friction, before, zero, timing.step, yields, earlier, zero
         )
         hold(contacts.now, at.GIVE, run, give)
         hold(contacts.now, at.BEYOND, run, beyond)

@@ -152,12 +152,15 @@ def is_settled(reached, x, gap, yields):
 
 
 @numba.njit(**OPTIONS)
-def forces_yielding(gap, slip, away, w, law, laws, number, at_rest, before, let_go, step, yields, earlier, zero):
+def forces_yielding(free, friction, before, let_go, step, yields, earlier, zero):
     """Return what `forces_of_one` does of a contact that yields, and how it does: more for a force, and beyond that.
 
     Newton's method for the indentation from where it would be without force: the force bends upwards, so that it falls
-    on what is sought from above.
+    on what is sought from above. `free` are gap, slip, how far a stick is from its anchor, and compliance; `friction` the
+    law, all laws, the number among these and the ratio at rest.
     """
+    gap, slip, away, w = free
+    law, laws, number, at_rest = friction
     x, done = -gap, zero
     normal, tangential, status, jammed, give, beyond = zero, zero, zero, zero, zero, zero
     for _ in range(STEPS):
@@ -189,8 +192,10 @@ def forces_yielding(gap, slip, away, w, law, laws, number, at_rest, before, let_
 
 
 @numba.njit(**OPTIONS)
-def forces_yielding_in_space(gap, slips, strays, w, law, laws, number, before, let_go, step, yields, earlier, zero):
+def forces_yielding_in_space(free, friction, before, let_go, step, yields, earlier, zero):
     """Do `forces_yielding` for a contact in space, as `solve_in_space`."""
+    gap, slips, strays, w = free
+    law, laws, number = friction
     x, done = -gap, zero
     normal, first, second, status, jammed, give, beyond = zero, zero, zero, zero, zero, zero, zero
     for _ in range(STEPS):

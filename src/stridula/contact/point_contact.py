@@ -157,6 +157,11 @@ class PointContact:
             raise ArgumentError("surface_velocity", words, self.surface_velocity)
 
     @property
+    def contacts(self) -> tuple[PointContact]:
+        """Itself: the one contact of a point."""
+        return (self,)
+
+    @property
     def surface_velocities(self) -> tuple[float, float]:
         """Velocities of the touched surface along both tangents [m/s]."""
         first, *others = np.atleast_1d(self.surface_velocity).tolist()

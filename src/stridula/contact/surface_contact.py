@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..bodies import AxisymmetricBody, BodyPoint, SolidBody
+from ..bodies import AxisymmetricBody, SolidBody
 from ..bodies.solid_overlays import overlaid
 from ..bodies.solid_places import FacePoints
 from ..checks import ArgumentError, choice, finite, instance
 from .coulomb import Coulomb
+from .facing import BEFORE, words_of
 from .friction_law import FrictionLaw
 from .point_contact import PointContact
 from .rigid_track import RigidTrack
@@ -24,8 +25,6 @@ from .stiffness import STIFFNESSES, ContactStiffness, LinearStiffness, per_area
 FACING = 0.5
 # Overlap of faces, relative to the size of the one that slides, that is rounding of their coordinates.
 OVERLAP = 1e-6
-# Beyond the ends of a side of a profile, relative to it, that still belongs to it.
-BEYOND = 1e-9
 
 
 @dataclass(frozen=True)
@@ -82,13 +81,13 @@ class SurfaceContact:
         instance("body", self.body, SolidBody)
         choice("face", self.face, self.body.face_names or ("none",))
         instance("track", self.track, (AxisymmetricBody, SolidBody, RigidTrack))
-        if isinstance(self.track, SolidBody):
-            choice("track_face", self.track_face, self.track.face_names or ("none",))
-        elif self.track_face:
-            raise ArgumentError("track_face", "be left out but on a SolidBody", self.track_face)
         instance("overlay", self.overlay, bool)
-        if self.overlay and not isinstance(self.track, SolidBody):
-            raise ArgumentError("overlay", "be False but on a SolidBody", self.overlay)
+        if self.track.kind == SolidBody.kind:
+            choice("track_face", self.track_face, self.track.face_names or ("none",))
+        else:
+            for name, given in (("track_face", self.track_face), ("overlay", self.overlay)):
+                if given:
+                    raise ArgumentError(name, "be left out but on a SolidBody", given)
         instance("name", self.name, str)
         object.__setattr__(self, "gap", finite("gap", self.gap))
         if isinstance(self.stiffness, (int, float)):
@@ -119,12 +118,12 @@ class SurfaceContact:
         for number, (place, area, normal) in enumerate(
             zip(points.place, points.area.tolist(), points.normal, strict=True)
         ):
-            track, facing, gap = self._before(place, normal)
+            track, facing, gap = BEFORE[self.track.kind](self.track, self.track_face, place, normal, points)
             if facing @ normal > -FACING:
                 got = f"an angle of {np.degrees(np.arccos(-facing @ normal)):.3g} degrees"
-                raise ArgumentError("track", f"face the {self.face!r} of the body", got=f"{got} at {_words(place)}")
+                raise ArgumentError("track", f"face the {self.face!r} of the body", got=f"{got} at {words_of(place)}")
             if gap + self.gap < -OVERLAP * size:
-                got = f"an overlap of {-gap - self.gap:.3g} m at {_words(place)}"
+                got = f"an overlap of {-gap - self.gap:.3g} m at {words_of(place)}"
                 raise ArgumentError("gap", "leave the faces apart", self.gap, got=got)
             contact = PointContact(
                 self.body.at(place.tolist()),
@@ -143,77 +142,5 @@ class SurfaceContact:
     def _tangent(self, track: Any, facing: Array) -> tuple[float, ...] | None:
         if self.tangent is not None:
             return tuple(self.tangent)
-        moved = track.turning_velocity if isinstance(track, BodyPoint) else np.zeros(3)
+        moved = getattr(track, "turning_velocity", np.zeros(3))
         return tuple(moved.tolist()) if moved.any() else None
-
-    def _before(self, place: Array, normal: Array) -> tuple[Any, Array, float]:
-        """Return what lies before a point of the face, its normal, and how far away it is [m]."""
-        if isinstance(self.track, RigidTrack):
-            facing = -(self.points.area @ self.points.normal)
-            facing = facing / np.linalg.norm(facing)
-            heights = self.points.place @ facing
-            return self.track, facing, float(place @ facing - heights.min())
-        if isinstance(self.track, SolidBody):
-            return _on_solid(self.track, self.track_face, place, normal)
-        return _on_revolution(self.track, place, normal)
-
-
-def _on_solid(body: SolidBody, face: str, place: Array, normal: Array) -> tuple[BodyPoint, Array, float]:
-    """Return the point of a face of a meshed body before a place, along its normal."""
-    faces = body.face(face)
-    corners = len(body.mesh.element_kind.faces[0])
-    nodes = body.mesh.nodes[faces.nodes[:, :corners]]
-    best: tuple[float, int] | None = None
-    for second in range(1, corners - 1):
-        first, along, across = nodes[:, 0], nodes[:, second] - nodes[:, 0], nodes[:, second + 1] - nodes[:, 0]
-        square = np.cross(along, across)
-        toward = square @ normal
-        with np.errstate(divide="ignore", invalid="ignore"):
-            far = ((first - place) * square).sum(axis=1) / toward
-            there = place + far[:, None] * normal - first
-            u = (np.cross(there, across) * square).sum(axis=1) / (square**2).sum(axis=1)
-            v = (np.cross(along, there) * square).sum(axis=1) / (square**2).sum(axis=1)
-        inside = (np.minimum(u, v) >= -BEYOND) & (u + v <= 1.0 + BEYOND) & (np.abs(toward) > 0.0)
-        for number in np.flatnonzero(inside).tolist():
-            if best is None or abs(far[number]) < abs(best[0]):
-                best = float(far[number]), number
-    if best is None:
-        raise ArgumentError("track_face", "lie before the whole face", face, got=f"nothing before {_words(place)}")
-    far, number = best
-    return body.at((place + far * normal).tolist()), -normal if faces.normal[number] @ normal < 0.0 else normal, far
-
-
-def _on_revolution(body: AxisymmetricBody, place: Array, normal: Array) -> tuple[BodyPoint, Array, float]:
-    """Return the point of the surface of a body of revolution before a place, along the normal there."""
-    frame, mesh = body.frame, body.mesh
-    x, y, z = frame @ (place - np.asarray(body.origin))
-    r, theta = float(np.hypot(x, y)), float(np.arctan2(y, x))
-    directions = np.array([np.cos(theta), np.sin(theta), 0.0]) @ frame, frame[2]
-    way = np.array([one @ normal for one in directions])
-    start, along = mesh.nodes[mesh.outline[:, 0]], mesh.nodes[mesh.outline[:, 1]] - mesh.nodes[mesh.outline[:, 0]]
-    toward = along[:, 0] * way[1] - along[:, 1] * way[0]
-    apart = start - np.array([r, z])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        far = (along[:, 0] * apart[:, 1] - along[:, 1] * apart[:, 0]) / toward
-        share = (way[0] * apart[:, 1] - way[1] * apart[:, 0]) / toward
-    met = np.flatnonzero((share >= -BEYOND) & (share <= 1.0 + BEYOND) & (np.abs(toward) > 0.0) & np.isfinite(far))
-    if not met.size:
-        raise ArgumentError("track", "lie before the whole face", got=f"nothing before {_words(place)}")
-    side = int(met[np.abs(far[met]).argmin()])
-    found = start[side] + np.clip(share[side], 0.0, 1.0) * along[side]
-    # The profile is to the left of its outline.
-    outward = np.array([along[side, 1], -along[side, 0]]) / np.hypot(*along[side])
-    facing = outward @ np.stack(directions)
-    return body.at((float(found[0]), theta, float(found[1]))), facing, float(far[side])
-
-
-def _words(place: Array) -> str:
-    return f"({', '.join(f'{one:.4g}' for one in place)})"
-
-
-def all_contacts(given: Sequence[Any]) -> tuple[PointContact, ...]:
-    """Return the contacts of points, those of surfaces one by one."""
-    found: list[PointContact] = []
-    for one in given:
-        found += one.contacts if isinstance(one, SurfaceContact) else [one]
-    return tuple(found)
