@@ -156,7 +156,7 @@ def forces_yielding(free, friction, before, let_go, step, yields, earlier, zero)
     """Return what `forces_of_one` does of a contact that yields, and how it does: more for a force, and beyond that.
 
     Newton's method for the indentation from where it would be without force: the force bends upwards, so that it falls
-    on what is sought from above. `free` are gap, slip, how far a stick is from its anchor, and compliance; `friction` the
+    on what is sought from above. `free` are gap, slip, how far a stick is from its anchor, compliance; `friction` the
     law, all laws, the number among these and the ratio at rest.
     """
     gap, slip, away, w = free
