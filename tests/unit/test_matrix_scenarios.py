@@ -72,7 +72,7 @@ WRONG = {
     "node": (
         CALCULIX,
         "end = 8",
-        r"bodies.chain: points\['end'\] must name a node in the files that moves \(no node 8",
+        r"bodies.chain.points.end must name a node in the files that moves \(no node 8",
     ),
     "words": (
         CALCULIX,

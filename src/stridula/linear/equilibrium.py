@@ -220,8 +220,9 @@ def _solved(
     structure: Structure, status: Sequence[str], share: Array, load: Array, anchors: Array
 ) -> tuple[_Equations, list[Array]]:
     """Solve the equations under a load, again where contacts yield otherwise than they were thought to."""
-    normal = np.full(len(status), _force(structure) or 1.0)
-    for _ in range(YIELDING):
+    yields = not all(structure.is_rigid(k) for k in range(len(status)))
+    normal = np.full(len(status), (_force(structure) if yields else 0.0) or 1.0)
+    for _ in range(YIELDING if yields else 1):
         give, beyond = yielding_at(structure, normal)
         equations = _Equations(structure, status, share, give)
         closed, stuck = equations.closed, equations.stuck
@@ -229,7 +230,7 @@ def _solved(
         before, normal[closed] = normal[closed], found[2][: len(closed)]
         if np.abs(normal[closed] - before).max(initial=0.0) <= SETTLED * np.abs(before).max(initial=0.0):
             break
-        if not any(structure.system.contacts[k].yields for k in closed) or not np.isfinite(normal).all():
+        if not np.isfinite(normal).all():
             break
     return equations, found
 
@@ -292,9 +293,9 @@ def travelling(structure: Structure, at: Equilibrium, speed: Array) -> Array:
 def yielding_at(structure: Structure, normal: Array) -> tuple[Array, Array]:
     """Return by how much more contacts yield for a unit of force about normal forces, and beyond that, (contacts,)."""
     give, beyond = np.zeros((2, len(normal)))
-    least = ROUND_OFF * (_force(structure) or 1.0)
     for k, contact in enumerate(structure.system.contacts):
         if contact.yields is not None:
+            least = ROUND_OFF * (_force(structure) or 1.0)
             indented = indentation_under(contact.yields, max(float(normal[k]), least))
             give[k], beyond[k] = tangent_of(contact.yields, indented)
     return give, beyond
