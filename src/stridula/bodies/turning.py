@@ -11,10 +11,8 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, count, finite, instance
 from ..histories import HISTORIES, Constant, History
-from .modes import hashed_once
 
 
-@hashed_once
 @dataclass(frozen=True)
 class Turning:
     """How the pairs of modes of a body that turns are carried round its axis.
