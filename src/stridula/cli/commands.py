@@ -26,6 +26,29 @@ TextFile = Annotated[
     str | None, typer.Option("--out", metavar="FILE", help="Write it to a file, in UTF-8, instead of printing it.")
 ]
 
+# What commands that compute many points share.
+Vary = Annotated[
+    list[str] | None,
+    typer.Option(metavar="KEY=START:STOP:COUNT", help="Vary a value, ends included, or KEY=A,B,C; may be repeated."),
+]
+Sample = Annotated[
+    int | None, typer.Option(metavar="N", help="Spread N points over the ranges KEY=START:STOP, a Latin hypercube.")
+]
+SampleSeed = Annotated[int | None, typer.Option(metavar="S", help="Seed of --sample; default: 0.")]
+PointsFile = Annotated[
+    str | None,
+    typer.Option(metavar="FILE.csv", help="Read the points from a table: a row of keys, then one point in each row."),
+]
+SetEverywhere = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point; may be repeated."),
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(metavar="ADDRESS", help="Compute on other machines, by a dask scheduler, tcp://host:port."),
+]
+ManyPoints = Annotated[bool, typer.Option("--yes", help="Confirm more than 10 000 points.")]
+
 
 @app.callback(invoke_without_command=True)
 def start(
@@ -145,36 +168,18 @@ def sweep(
     name: NameOrFile,
     measure: Annotated[list[str], typer.Option(metavar="NAME", help="A measure of each run; may be repeated.")],
     out: Annotated[str, typer.Option(metavar="FILE", help="Write the measures of all points, as NetCDF.")],
-    vary: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="KEY=START:STOP:COUNT", help="Vary a value, ends included, or KEY=A,B,C; may be repeated."
-        ),
-    ] = None,
-    sample: Annotated[
-        int | None, typer.Option(metavar="N", help="Spread N points over the ranges KEY=START:STOP, a Latin hypercube.")
-    ] = None,
-    seed: Annotated[int | None, typer.Option(metavar="S", help="Seed of --sample; default: 0.")] = None,
-    points: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FILE.csv", help="Read the points from a table: a row of keys, then one point in each row."
-        ),
-    ] = None,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point; may be repeated."),
-    ] = None,
+    vary: Vary = None,
+    sample: Sample = None,
+    seed: SampleSeed = None,
+    points: PointsFile = None,
+    set_: SetEverywhere = None,
     duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the map of the regimes over two keys.")] = None,
     workers: Annotated[
         int | None, typer.Option(metavar="N", help="Parts computed at a time; default: one on each processor.")
     ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(metavar="ADDRESS", help="Compute on other machines, by a dask scheduler, tcp://host:port."),
-    ] = None,
-    yes: Annotated[bool, typer.Option("--yes", help="Confirm more than 10 000 points.")] = False,
+    scheduler: Scheduler = None,
+    yes: ManyPoints = False,
 ) -> None:
     """Run a scenario at many points of its parameters and keep measures of each run; resumes after an interruption."""
     with _importing():
@@ -190,26 +195,11 @@ def sweep(
 def survey(
     name: NameOrFile,
     out: Annotated[str, typer.Option("--out", "-o", metavar="FILE", help="Write modes and fates, as NetCDF.")],
-    vary: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="KEY=START:STOP:COUNT", help="Vary a value, ends included, or KEY=A,B,C; may be repeated."
-        ),
-    ] = None,
-    sample: Annotated[
-        int | None, typer.Option(metavar="N", help="Spread N points over the ranges KEY=START:STOP, a Latin hypercube.")
-    ] = None,
-    seed: Annotated[int | None, typer.Option(metavar="S", help="Seed of --sample; default: 0.")] = None,
-    points: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FILE.csv", help="Read the points from a table: a row of keys, then one point in each row."
-        ),
-    ] = None,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point; may be repeated."),
-    ] = None,
+    vary: Vary = None,
+    sample: Sample = None,
+    seed: SampleSeed = None,
+    points: PointsFile = None,
+    set_: SetEverywhere = None,
     duration: Annotated[
         str | None, typer.Option(metavar="S", help="Time of each run; default: from the growth rate.")
     ] = None,
@@ -235,11 +225,8 @@ def survey(
     workers: Annotated[
         int | None, typer.Option(metavar="N", help="Points computed at a time; default: one on each processor.")
     ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(metavar="ADDRESS", help="Compute on other machines, by a dask scheduler, tcp://host:port."),
-    ] = None,
-    yes: Annotated[bool, typer.Option("--yes", help="Confirm more than 10 000 points.")] = False,
+    scheduler: Scheduler = None,
+    yes: ManyPoints = False,
 ) -> None:
     """Find the modes of sliding that grow over parameters and follow each in time; resumes after an interruption."""
     with _importing():
@@ -380,10 +367,7 @@ def calibrate_(
             help="Bounds of a measure, of which one may be left out, or NAME=WORD; may be repeated.",
         ),
     ],
-    set_: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point; may be repeated."),
-    ] = None,
+    set_: SetEverywhere = None,
     duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
     population: Annotated[int, typer.Option(metavar="N", help="Sets of parameters in a generation.")] = 32,
     generations: Annotated[int, typer.Option(metavar="N", help="Largest number of generations.")] = 50,
@@ -421,10 +405,7 @@ def sensitivity_(
         list[str] | None,
         typer.Option(metavar="NAME", help="A measure of each run; default: the regime; may be repeated."),
     ] = None,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change a value at every point; may be repeated."),
-    ] = None,
+    set_: SetEverywhere = None,
     duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
     samples: Annotated[
         int, typer.Option(metavar="N", help="A power of 2; N (parameters + 2) runs are computed.")
@@ -432,7 +413,7 @@ def sensitivity_(
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the points.")] = 0,
     out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the indices, as NetCDF.")] = None,
     workers: Annotated[int | None, typer.Option(metavar="N", help="Parts computed at a time.")] = None,
-    yes: Annotated[bool, typer.Option("--yes", help="Confirm more than 10 000 points.")] = False,
+    yes: ManyPoints = False,
 ) -> None:
     """Rank uncertain parameters by their effect, and print the probability of each regime."""
     from .points import check_count, ranges_of
