@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from numbers import Real
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from .coulomb import Coulomb
 from .friction_law import FrictionLaw
 from .laws import LAWS
 from .rigid_track import RigidTrack
-from .stiffness import STIFFNESSES, ContactStiffness, LinearStiffness
+from .stiffness import ContactStiffness, checked_stiffness
 
 # Sine or cosine that rounding leaves of a right angle.
 ALONG_AN_AXIS = 1e-15
@@ -106,10 +105,7 @@ class PointContact:
             raise ArgumentError("inclination", "be from -2 pi to 2 pi rad", self.inclination)
         for word in ("name", "surface"):
             instance(word, getattr(self, word), str)
-        if self.stiffness is not None and not isinstance(self.stiffness, STIFFNESSES):
-            instance("stiffness", self.stiffness, (Real, *STIFFNESSES))
-            number: Any = self.stiffness
-            object.__setattr__(self, "stiffness", LinearStiffness(float(number)))
+        object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
         self._check_directions()
 
     def _check_directions(self) -> None:

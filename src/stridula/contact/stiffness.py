@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, Protocol
+from numbers import Real
+from typing import Annotated, Any, ClassVar, Protocol
 
 from ..bodies import Material
 from ..checks import instance
@@ -175,3 +176,17 @@ class HertzStiffness:
 
 
 STIFFNESSES = (LinearStiffness, PowerStiffness, HertzStiffness)
+
+
+def checked_stiffness(given: Any) -> ContactStiffness | None:
+    """Return the stiffness of a contact, of a number [N/m] a linear one, None where it is rigid.
+
+    Raises
+    ------
+    ValueError
+        If it is neither.
+    """
+    if given is None or isinstance(given, STIFFNESSES):
+        return given
+    instance("stiffness", given, (Real, *STIFFNESSES))
+    return LinearStiffness(float(given))

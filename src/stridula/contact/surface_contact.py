@@ -19,7 +19,7 @@ from .facing import BEFORE, words_of
 from .friction_law import FrictionLaw
 from .point_contact import PointContact
 from .rigid_track import RigidTrack
-from .stiffness import STIFFNESSES, ContactStiffness, LinearStiffness, per_area
+from .stiffness import ContactStiffness, checked_stiffness, per_area
 
 # Cosine between a face and what it touches, from which the two face each other.
 FACING = 0.5
@@ -90,10 +90,7 @@ class SurfaceContact:
                     raise ArgumentError(name, "be left out but on a SolidBody", given)
         instance("name", self.name, str)
         object.__setattr__(self, "gap", finite("gap", self.gap))
-        if isinstance(self.stiffness, (int, float)):
-            object.__setattr__(self, "stiffness", LinearStiffness(float(self.stiffness)))
-        elif self.stiffness is not None:
-            instance("stiffness", self.stiffness, STIFFNESSES)
+        object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
         self.contacts  # noqa: B018, found now, so that what is wrong is said here
 
     @cached_property

@@ -242,7 +242,7 @@ class _Equations:
         held, pushes, self.closed, self.stuck = held_rows(structure, status, share)
         self.lateral = held_across(structure, self.stuck)
         who = [*self.closed, *self.stuck, *self.lateral]
-        rigid = [row for row, k in enumerate(who) if row >= len(self.closed) or structure.is_rigid(k)]
+        rigid = rigid_rows(structure, self.closed, len(held))
         structure.once(("checked", *status), lambda: _check_held(structure, held[rigid], [who[row] for row in rigid]))
         self.free, modes = structure.free_motions(held), structure.mode_count
         _check_unbraked(structure, self.free)
@@ -332,6 +332,11 @@ def held_rows(structure: Structure, status: Sequence[str], share: Array) -> tupl
     return held, np.array([*normals, *(-row for row in tangents)]).reshape(size), closed, stuck
 
 
+def rigid_rows(structure: Structure, closed: Sequence[int], count: int) -> list[int]:
+    """Return which of the rows of `held_rows`, `count` in all, hold for good: all but the normals of what yields."""
+    return [row for row in range(count) if row >= len(closed) or structure.is_rigid(closed[row])]
+
+
 def held_across(structure: Structure, stuck: Sequence[int]) -> list[int]:
     """Return the sticking contacts that are held across their tangent, too: those in space that can move so."""
     return [k for k in stuck if np.abs(structure.lines[k].across).any()]
@@ -392,7 +397,7 @@ def _wrong(structure: Structure, found: tuple[_Balance, _Balance]) -> tuple[int,
 def _is_held(structure: Structure, status: Sequence[str], contact: int) -> bool:
     """Return whether what other contacts hold keeps a contact from slipping, too."""
     held, _, closed, _ = held_rows(structure, status, np.zeros(len(status)))
-    rigid = [row for row in range(len(held)) if row >= len(closed) or structure.is_rigid(closed[row])]
+    rigid = rigid_rows(structure, closed, len(held))
     return _rank_is_short(np.vstack([held[rigid], structure.lines[contact].tangent]))
 
 
@@ -414,7 +419,7 @@ def slides_on(structure: Structure, status: Sequence[str], share: Array) -> bool
     """
     held, pushes, closed, _ = held_rows(structure, status, share)
     # What yields answers to any impulse.
-    rigid = [row for row in range(len(held)) if row >= len(closed) or structure.is_rigid(closed[row])]
+    rigid = rigid_rows(structure, closed, len(held))
     held, pushes, size = held[rigid], pushes[rigid], sum(structure.is_rigid(k) for k in closed)
     whole = held * structure.promptness @ pushes.T
     compliance = whole[:size, :size]

@@ -16,7 +16,7 @@ from ..arrays import Array
 from ..checks import ArgumentError
 from ..contact.linearised import Linearised
 from ..contact.stiffness import slopes_at
-from .equilibrium import Equilibrium, held_rows
+from .equilibrium import Equilibrium, held_rows, rigid_rows
 from .structure import SLIDING, STICKING, Structure
 
 # Relative imaginary part that rounding gives to a real exponent.
@@ -105,7 +105,7 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
             slope, rate = slopes_at(yields, float(equilibrium.normal_force[k]))
             stiffness += slope * np.outer(pushes[row], held[row])
             damping += rate * np.outer(pushes[row], held[row])
-    rigid = [row for row in range(len(held)) if row >= len(closed) or structure.is_rigid(closed[row])]
+    rigid = rigid_rows(structure, closed, len(held))
     held, pushes = held[rigid], pushes[rigid]
     by_state, from_velocity, state = _states(answers, structure)
     moved = from_velocity, from_velocity @ passing
