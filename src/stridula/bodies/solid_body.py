@@ -28,7 +28,7 @@ from .ordinary import of_ordinary_size
 from .sections import Material
 from .solid_elements import assembled
 from .solid_mesh import Face, SolidMesh, place_of
-from .solid_places import FacePoints, face_points, located
+from .solid_places import FacePoints, face_mean, face_points, located
 from .sparse_reduction import SparseProblem, modes_of, reduce_sparse
 
 DIRECTIONS = "xyz"
@@ -202,13 +202,16 @@ class SolidBody(NamedPoints):
         return face_points(self.mesh, name)
 
     def at(self, position: str | Sequence[float]) -> BodyPoint:
-        """Return the point of a name, or the place (x, y, z) within the mesh [m]."""
+        """Return the point of a name, the mean over the face of a name, or the place (x, y, z) within the mesh [m].
+
+        A force on the mean over a face is spread evenly over it, along a direction that stays.
+        """
         return BodyPoint(self, position if isinstance(position, str) else place_of("position", position))
 
     def check_position(self, position: Any) -> None:
-        """Raise ValueError unless `position` is the name of a point or (x, y, z) within the mesh."""
+        """Raise ValueError unless `position` is the name of a point or of a face, or (x, y, z) within the mesh."""
         if isinstance(position, str):
-            choice("position", position, self.point_names)
+            choice("position", position, (*self.point_names, *self.face_names))
         else:
             located(self.mesh, place_of("position", position))
 
@@ -253,9 +256,13 @@ class SolidBody(NamedPoints):
         """Return the rows that give the displacement (x, y, z) of a point from the modes, shape (3, modes)."""
         self.check_position(position)
         self.modes(held_x)
-        if isinstance(position, str):
+        if position in self.points:
             node = self.points[position]
             return self.shapes[3 * node : 3 * node + 3]
+        if isinstance(position, str):
+            mean = face_mean(self.mesh, position)
+            nodes = np.flatnonzero(mean)
+            return np.einsum("n,nim->im", mean[nodes], self.shapes.reshape(mean.size, 3, -1)[nodes])
         nodes, shares = located(self.mesh, place_of("position", position))
         return np.einsum("n,nim->im", shares, self.shapes.reshape(len(self.mesh.nodes), 3, -1)[nodes])
 

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse
+from scipy.spatial.transform import Rotation
 
 from ..arrays import Array
 from ..checks import ArgumentError, choice, count, finite, instance, listed, positive
@@ -160,7 +161,7 @@ class SolidMesh:
         cls,
         radii: Sequence[float],
         angles: Sequence[float],
-        height: float,
+        height: float | Mapping[str, float],
         divisions: Sequence[int],
         axis: str = "y",
     ) -> SolidMesh:
@@ -175,10 +176,10 @@ class SolidMesh:
             Inner and outer radius [m].
         angles : sequence of float, length 2
             Angles of start and end [rad], counted about the axis from the next one: from z where the axis is y.
-        height : float
-            Length along the axis [m].
+        height : float or mapping
+            Length along the axis [m], or that of each layer by its name from the bottom up, which becomes a volume.
         divisions : sequence of int, length 3
-            Numbers of elements along radius, angle and axis.
+            Numbers of elements along radius, angle and axis, there through each layer.
         axis : str, optional
             "x", "y" or "z".
         """
@@ -191,10 +192,13 @@ class SolidMesh:
         start, end = _two("angles", angles)
         if not start < end <= start + 2.0 * np.pi * (1.0 + 1e-12):
             raise ArgumentError("angles", "rise by at most 2 pi", angles)
-        return cls(**solid_shapes.sector((inner, outer), (start, end), positive("height", height), parts, axis))
+        heights = _heights(height)
+        return cls(**solid_shapes.sector((inner, outer), (start, end), heights, parts, axis))
 
     @classmethod
-    def extrusion(cls, nodes: Any, quadrilaterals: Any, height: float, layers: int, axis: str = "z") -> SolidMesh:
+    def extrusion(
+        cls, nodes: Any, quadrilaterals: Any, height: float | Mapping[str, float], layers: int, axis: str = "z"
+    ) -> SolidMesh:
         """Return a plane mesh of quadrilaterals drawn along an axis, of hexahedra of 20 nodes.
 
         The plane mesh is in the next two coordinates: x and y for z, z and x for y. Its faces are ``bottom``, ``top``
@@ -206,10 +210,10 @@ class SolidMesh:
             Coordinates in the plane [m].
         quadrilaterals : array_like of int, shape (elements, 4)
             Numbers from 0 of the corners of each, counterclockwise.
-        height : float
-            Length along the axis [m].
+        height : float or mapping
+            Length along the axis [m], or that of each layer by its name from the bottom up, which becomes a volume.
         layers : int
-            Number of elements along the axis.
+            Number of elements along the axis, through each such layer.
         axis : str, optional
             "x", "y" or "z".
         """
@@ -221,8 +225,9 @@ class SolidMesh:
         corners = whole("quadrilaterals", quadrilaterals, len(places))
         if corners.ndim != 2 or corners.shape[1] != 4 or not len(corners):
             raise ArgumentError("quadrilaterals", "have the shape (elements, 4)", quadrilaterals, got=corners.shape)
-        height, layers = positive("height", height), count("layers", layers, high=MOST_NODES // len(corners))
-        return cls(**solid_shapes.extrusion(places, corners, height, layers, axis))
+        heights = _heights(height)
+        layers = count("layers", layers, high=MOST_NODES // len(corners) // len(heights))
+        return cls(**solid_shapes.extrusion(places, corners, heights, layers, axis))
 
     @property
     def element_kind(self) -> ElementKind:
@@ -242,6 +247,21 @@ class SolidMesh:
         if self.element_kind.middles:
             return self
         return replace(self, **solid_shapes.with_middles(self._values))
+
+    def moved(
+        self, offset: Sequence[float] = (0.0, 0.0, 0.0), rotation: Sequence[float] = (0.0, 0.0, 0.0)
+    ) -> SolidMesh:
+        """Return the mesh turned about the origin, then shifted.
+
+        Parameters
+        ----------
+        offset : sequence of float, length 3, optional
+            How far it is shifted along x, y and z [m].
+        rotation : sequence of float, length 3, optional
+            Components along x, y and z of the axis of the turn times its angle [rad]: (0, 0, pi) is upside down.
+        """
+        shift, turn = (_three(word, those, finite) for word, those in (("offset", offset), ("rotation", rotation)))
+        return replace(self, nodes=self.nodes @ Rotation.from_rotvec(turn).as_matrix().T + np.array(shift))
 
     def named(self, name: str, nodes: Any) -> SolidMesh:
         """Return the mesh with one more set of nodes, such as ``np.flatnonzero(mesh.nodes[:, 2] == 0.0)``."""
@@ -419,6 +439,15 @@ def _three(word: str, values: Any, check: Any) -> tuple[Any, Any, Any]:
         raise ArgumentError(word, "be three numbers, along x, y and z", values)
     first, second, third = (check(f"{word}[{number}]", value) for number, value in enumerate(values))
     return first, second, third
+
+
+def _heights(given: Any) -> dict[str, float]:
+    """Return the thickness of each layer by its name, empty for the only one."""
+    if not isinstance(given, Mapping):
+        return {"": positive("height", given)}
+    if not given or not all(isinstance(name, str) and name for name in given):
+        raise ArgumentError("height", "be a length or lengths of layers by their names", given)
+    return {name: positive(f"height[{name!r}]", thickness) for name, thickness in given.items()}
 
 
 def _divisions(values: Any) -> tuple[int, int, int]:

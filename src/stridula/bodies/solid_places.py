@@ -47,6 +47,20 @@ class FacePoints:
 @lru_cache(maxsize=32)
 def face_points(mesh: SolidMesh, name: str) -> FacePoints:
     """Return the points of integration on a group of faces: four on each quadrilateral, three on each triangle."""
+    return _integrated(mesh, name)[0]
+
+
+@lru_cache(maxsize=32)
+def face_mean(mesh: SolidMesh, name: str) -> Array:
+    """Return the share of each node in the mean over a group of faces, shape (nodes,)."""
+    points, nodes, values = _integrated(mesh, name)
+    shares = np.zeros(len(mesh.nodes))
+    np.add.at(shares, nodes, points.area[:, None] * values)
+    return shares / points.area.sum()
+
+
+def _integrated(mesh: SolidMesh, name: str) -> tuple[FacePoints, Array, Array]:
+    """Return the points of integration, the nodes of their elements and the values of the shapes there."""
     mesh.face(name)
     kind, found = mesh.element_kind, []
     for element, side in mesh.faces[name]:
@@ -60,8 +74,10 @@ def face_points(mesh: SolidMesh, name: str) -> FacePoints:
         second = np.einsum("pi,pij->pj", across @ corners, jacobian)
         vectors = np.cross(first, second)
         size = np.linalg.norm(vectors, axis=1)
-        found.append((values @ nodes, weights * size, vectors / size[:, None]))
-    return FacePoints(*(np.concatenate(one) for one in zip(*found, strict=True)))
+        of_element = np.broadcast_to(mesh.elements[element], values.shape)
+        found.append((values @ nodes, weights * size, vectors / size[:, None], of_element, values))
+    *points, numbers, values = (np.concatenate(one) for one in zip(*found, strict=True))
+    return FacePoints(*points), numbers, values
 
 
 def _on_face(u: Array, v: Array, corners: int) -> tuple[Array, Array, Array]:

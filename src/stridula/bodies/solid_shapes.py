@@ -43,10 +43,17 @@ def block(lengths: tuple[float, float, float], divisions: tuple[int, int, int]) 
 
 
 def sector(
-    radii: tuple[float, float], angles: tuple[float, float], height: float, divisions: tuple[int, int, int], axis: str
+    radii: tuple[float, float],
+    angles: tuple[float, float],
+    heights: Mapping[str, float],
+    divisions: tuple[int, int, int],
+    axis: str,
 ) -> dict[str, Any]:
     """Return a sector of a ring of hexahedra of 20 nodes, which lie on circles, as arguments of `SolidMesh`."""
-    unit = _grid(divisions)
+    unit = _grid((*divisions[:2], divisions[2] * len(heights)))
+    count = len(unit["elements"])
+    unit["volumes"] = _layers(heights, np.arange(count) // divisions[2] % len(heights))
+    unit["nodes"][:, 2] = np.interp(unit["nodes"][:, 2], *_levels(heights))
     is_ring = angles[1] - angles[0] >= 2.0 * math.pi * (1.0 - 1e-12)
     names = dict(zip(_SIDES, ("inner", "outer", "start", "end", "bottom", "top"), strict=True))
     unit["faces"] = {names[side]: faces for side, faces in unit["faces"].items()}
@@ -56,15 +63,18 @@ def sector(
     bent = with_middles(unit)
     radius = radii[0] + (radii[1] - radii[0]) * bent["nodes"][:, 0]
     angle = angles[0] + (angles[1] - angles[0]) * bent["nodes"][:, 1]
-    places = np.stack([radius * np.cos(angle), radius * np.sin(angle), height * bent["nodes"][:, 2]], axis=1)
+    places = np.stack([radius * np.cos(angle), radius * np.sin(angle), bent["nodes"][:, 2]], axis=1)
     if is_ring:
         places, bent = _closed(places, bent)
     return {**bent, "nodes": _about(places, axis)}
 
 
-def extrusion(places: Array, quadrilaterals: Array, height: float, layers: int, axis: str) -> dict[str, Any]:
+def extrusion(
+    places: Array, quadrilaterals: Array, heights: Mapping[str, float], through_each: int, axis: str
+) -> dict[str, Any]:
     """Return a plane mesh of quadrilaterals drawn along an axis, as arguments of `SolidMesh`."""
-    level = np.repeat(np.linspace(0.0, height, layers + 1), len(places))
+    layers = through_each * len(heights)
+    level = np.repeat(np.interp(np.linspace(0.0, 1.0, layers + 1), *_levels(heights)), len(places))
     nodes = np.column_stack([np.tile(places, (layers + 1, 1)), level])
     lower = quadrilaterals[None] + len(places) * np.arange(layers)[:, None, None]
     elements = np.concatenate([lower, lower + len(places)], axis=2).reshape(-1, 8)
@@ -80,8 +90,21 @@ def extrusion(places: Array, quadrilaterals: Array, height: float, layers: int, 
         "top": np.column_stack([np.arange(count) + count * (layers - 1), np.full(count, 5)]),
         "side": every,
     }
-    drawn = with_middles({"nodes": nodes, "elements": elements, "kind": "hexahedron", "faces": faces})
+    volumes = _layers(heights, np.arange(len(elements)) // (count * through_each))
+    drawn = with_middles(
+        {"nodes": nodes, "elements": elements, "kind": "hexahedron", "faces": faces, "volumes": volumes}
+    )
     return {**drawn, "nodes": _about(drawn["nodes"], axis)}
+
+
+def _levels(heights: Mapping[str, float]) -> tuple[Array, Array]:
+    """Return ends of layers of equal thickness within 0 and 1, and where they are [m]."""
+    return np.linspace(0.0, 1.0, len(heights) + 1), np.append(0.0, np.cumsum(list(heights.values())))
+
+
+def _layers(heights: Mapping[str, float], of_element: Array) -> dict[str, Array]:
+    """Return the elements of each layer that has a name."""
+    return {name: np.flatnonzero(of_element == number) for number, name in enumerate(heights) if name}
 
 
 def _grid(divisions: tuple[int, int, int]) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -13,7 +13,8 @@ from ..arrays import Array
 from ..bodies import AxisymmetricBody, SolidBody
 from ..bodies.solid_overlays import overlaid
 from ..bodies.solid_places import FacePoints
-from ..checks import ArgumentError, choice, finite, instance
+from ..checks import ArgumentError, choice, instance
+from ..declared import Each, Number, Position, check_declared
 from .coulomb import Coulomb
 from .facing import BEFORE, words_of
 from .friction_law import FrictionLaw
@@ -71,9 +72,9 @@ class SurfaceContact:
     track: Any
     track_face: str = ""
     friction: FrictionLaw = field(default_factory=lambda: Coulomb(0.0))
-    gap: float = 0.0
+    gap: Position = 0.0
     stiffness: ContactStiffness | float | None = None
-    tangent: Sequence[float] | None = None
+    tangent: Annotated[Sequence[float], Each(Number())] | None = None
     overlay: bool = False
     name: str = "surface"
 
@@ -89,7 +90,7 @@ class SurfaceContact:
                 if given:
                     raise ArgumentError(name, "be left out but on a SolidBody", given)
         instance("name", self.name, str)
-        object.__setattr__(self, "gap", finite("gap", self.gap))
+        check_declared(self)
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
         self.contacts  # noqa: B018, found now, so that what is wrong is said here
 

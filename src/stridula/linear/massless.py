@@ -21,6 +21,8 @@ from .vibration import Exponents, Vibration
 MASSLESS = 1e-9
 # Damping of motions without mass over their stiffness, at the highest frequency, that rounding leaves.
 UNDAMPED = 1e-9
+# About which exponents are found, over the highest angular frequency.
+BESIDE = 0.3
 # Relative inverse of an exponent that rounding gives to endless ones.
 ENDLESS = 1e-13
 
@@ -107,9 +109,10 @@ def _creeping(motion: Vibration, split: _Split) -> Exponents:
     left[z, z], left[z, y] = np.eye(states), -motion.from_velocity @ light
     right[z, x], right[z, y] = motion.from_displacement @ bent / rate, motion.from_displacement @ light / rate
     right[z, v], right[z, z] = motion.from_velocity @ heavy, np.diag(motion.state) / rate
-    pairs, vectors = scipy.linalg.eig(right, left, check_finite=False, homogeneous_eigvals=True)
-    finite = np.abs(pairs[1]) > ENDLESS * np.abs(pairs).max(axis=0)
-    values, vectors = rate * pairs[0, finite] / pairs[1, finite], vectors[:, finite]
+    # The inverse about a place beside the imaginary axis: exponents without end are zeros of it.
+    inverse, vectors = scipy.linalg.eig(np.linalg.solve(right - BESIDE * left, left), check_finite=False)
+    finite = np.abs(inverse) > ENDLESS * np.abs(inverse).max(initial=0.0)
+    values, vectors = rate * (BESIDE + 1.0 / inverse[finite]), vectors[:, finite]
     chosen = values.imag >= 0.0
     values, vectors = values[chosen], vectors[:, chosen]
     drift = rate * vectors[sizes[1] : sizes[1] + rigid] / np.where(values == 0.0, 1.0, values)

@@ -28,7 +28,7 @@ def modes_of(structure: Structure, motion: Vibration, modes: int | None = None, 
     motion : Vibration
         Its small motions.
     modes : int, optional
-        How many; all if left out, or the lowest 100 of more than 600 degrees of freedom.
+        How many; all if left out, or the lowest 100 of more than 600 modes.
     near : float, optional
         Frequency [Hz] about which a limited number is found.
     """
@@ -39,7 +39,7 @@ def modes_of(structure: Structure, motion: Vibration, modes: int | None = None, 
 
 def exponents_alone(structure: Structure, motion: Vibration) -> Array:
     """Return the exponents [1/s] of the same modes without their shapes, in any order."""
-    if structure.mode_count > LARGEST_DENSE:
+    if _moving(structure) > LARGEST_DENSE:
         return _nearest(structure, motion, COUNT, 0.0).values
     return _all(motion, shapes=False).values
 
@@ -49,14 +49,20 @@ def round_off(structure: Structure) -> float:
     return ROUND_OFF * float(np.sqrt(_moving_stiffness(structure).max(initial=0.0)))
 
 
+def _moving(structure: Structure) -> int:
+    """Return the number of modes that have a mass: only these have exponents for sure."""
+    return int(np.count_nonzero(structure.mass))
+
+
 def _moving_stiffness(structure: Structure) -> Array:
     """Return the stiffness of each mode that has a mass [1/s²]."""
     return np.maximum(np.diag(structure.stiffness)[structure.mass > 0.0], 0.0)
 
 
 def _chosen(structure: Structure, motion: Vibration, modes: int | None, near: float) -> Exponents:
-    wanted = COUNT if modes is None and structure.mode_count > LARGEST_DENSE else modes
-    if wanted is not None and 4 * wanted < structure.mode_count and structure.stiffness.any():
+    moving = _moving(structure)
+    wanted = COUNT if modes is None and moving > LARGEST_DENSE else modes
+    if wanted is not None and 4 * wanted < moving and structure.stiffness.any():
         return _nearest(structure, motion, wanted, near)
     found = _all(motion)
     if wanted is None:
@@ -75,7 +81,7 @@ def _nearest(structure: Structure, motion: Vibration, wanted: int, near: float) 
     lowest = float(elastic[elastic > 0.0].min(initial=np.inf))
     centre = 2.0 * np.pi * near
     # Both of each pair may be found, and in another order than about the frequency itself.
-    sought = min(2 * wanted + SPARE, 2 * structure.mode_count - 2)
+    sought = min(2 * wanted + SPARE, 2 * _moving(structure) - 2)
     found = nearest_exponents(motion, sought, complex(0.1 * lowest, centre))
     order = np.argsort(np.abs(found.values - 1.0j * centre), kind="stable")[:wanted]
     return Exponents(found.values[order], found.shapes[:, order])

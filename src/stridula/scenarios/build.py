@@ -31,7 +31,7 @@ from ..bodies.ordinary import NotOrdinary
 from ..bodies.sections import SECTIONS
 from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, listed, suggestion
-from ..contact import LAWS, STIFFNESSES, PointContact, RigidTrack
+from ..contact import LAWS, STIFFNESSES, PointContact, RigidTrack, SurfaceContact
 from ..disk import is_there
 from ..drives import Drive
 from ..integration import GaussSeidel
@@ -41,6 +41,7 @@ from .build_meshed import axisymmetric_body, solid_body
 from .errors import ScenarioError
 from .quantities import quantity
 from .read import FILES
+from .schema import TOUCHING
 
 OF_SPACE: dict[str, Callable[..., Any]] = {one.kind: one for one in (RigidBody, ModalBody)}
 MESHED: dict[str, Callable[..., Any]] = {AxisymmetricBody.kind: axisymmetric_body, SolidBody.kind: solid_body}
@@ -141,21 +142,27 @@ class Builder:
         built = {k: replace(b, name=k) if not b.name and bodies.count(b) > 1 else b for k, b in built.items()}
         aliases = {body.name: name for name, body in built.items() if body.name}
         aliases |= {"slider": used[0]}
-        if self.tables["contacts"][0]["track"]["kind"] != "rigid":
-            aliases |= {"track": self.tables["contacts"][0]["track"]["body"]}
+        if self._first_track.get("body"):
+            aliases |= {"track": self._first_track["body"]}
         self.bodies = {alias: built[name] for alias, name in aliases.items()} | built
         self.places = {alias: ("bodies", name) for alias, name in aliases.items()} | self.places
-        contacts = [self._contact(number, dict(table)) for number, table in enumerate(self.tables["contacts"])]
+        contacts = [
+            self._contact(number, dict(table)) for number, table in enumerate(self.tables.get("contacts") or [])
+        ]
+        contacts += [
+            self._surface(number, dict(table)) for number, table in enumerate(self.tables.get("surfaces") or [])
+        ]
         joined = self.tables.get("connections") or []
         return contacts, [self._connection(number, dict(table)) for number, table in enumerate(joined)]
 
     def _check_used(self) -> list[str]:
         """Return the names of the bodies in the order in which contacts and connections name them."""
         named: dict[Place, str] = {}
-        for number, contact in enumerate(self.tables["contacts"]):
-            named[("contacts", number, "tip", "body")] = contact["tip"]["body"]
+        for path, contact in self._touching():
+            tip: Place = ("tip",) if "tip" in contact else ()
+            named[(*path, *tip, "body")] = contact.get("tip", contact)["body"]
             if contact["track"]["kind"] != "rigid":
-                named[("contacts", number, "track", "body")] = contact["track"]["body"]
+                named[(*path, "track", "body")] = contact["track"]["body"]
         for number, connection in enumerate(self.tables.get("connections") or []):
             for end in ("first", "second"):
                 if connection.get(end) is not None:
@@ -170,6 +177,17 @@ class Builder:
                     f"{self.words(('bodies', name))} must be in a contact or a connection, got neither"
                 )
         return list(dict.fromkeys(named.values()))
+
+    def _touching(self) -> Iterator[tuple[Place, Tables]]:
+        """Go through the tables of contacts, then through those of surfaces."""
+        for key in TOUCHING:
+            for number, table in enumerate(self.tables.get(key) or []):
+                yield (key, number), table
+
+    @property
+    def _first_track(self) -> Tables:
+        """The table of the first track."""
+        return dict(next(self._touching())[1]["track"])
 
     def _body(self, name: str, table: Tables, used: list[str]) -> Any:
         path = ("bodies", name)
@@ -198,10 +216,9 @@ class Builder:
 
     def _default_name(self, name: str, used: list[str]) -> str:
         """Return what a body is called that has no name of its own, so that records can leave it without one."""
-        track = self.tables["contacts"][0]["track"]
         if name == used[0]:
             return "slider"
-        return "track" if name == track.get("body") else f"body {used.index(name) + 1}"
+        return "track" if name == self._first_track.get("body") else f"body {used.index(name) + 1}"
 
     def _reduced(self, path: Place, table: Tables) -> Any:
         files = {key: table[key] for key in FILES if isinstance(table.get(key), str)}
@@ -274,6 +291,32 @@ class Builder:
         track = self._track((*path, "track"), dict(table.pop("track")))
         with self._within(*path):
             return PointContact(tip, track, **friction, **table)
+
+    def _surface(self, number: int, table: Tables) -> Any:
+        path = ("surfaces", number)
+        given = self._friction(path, table) | self._stiffness(path, table)
+        body = self._body_of_kind((*path, "body"), table.pop("body"), SolidBody.kind)
+        track = dict(table.pop("track"))
+        kind, face = track["kind"], track.pop("face", "")
+        if kind == RigidTrack.kind:
+            met = self._track((*path, "track"), track)
+        else:
+            met = self._body_of_kind((*path, "track", "body"), track["body"], kind)
+        if body is None or met is None:
+            return None
+        with self._within(*path):
+            try:
+                return SurfaceContact(body, table.pop("face"), met, face, **given, **table)
+            except ArgumentError as error:
+                raise (error.renamed("track.face") if error.argument == "track_face" else error) from None
+
+    def _body_of_kind(self, path: Place, name: str, kind: str) -> Any:
+        """Return the body of a name, None with a problem where it is of another kind."""
+        body = self.bodies[name]
+        if body.kind == kind:
+            return body
+        self.problems.append(f"{self.words(path)} must be a body of the kind {kind}, got {brief(name)}")
+        return None
 
     def _track(self, path: Place, table: Tables) -> Any:
         kind = table.pop("kind")
@@ -375,7 +418,7 @@ class Builder:
         if place in names:
             point: BodyPoint = getattr(body, str(place)) if body.has_positions else BodyPoint(body, str(place))
             return point
-        if body.has_positions:
+        if body.has_positions or (place is not None and body.kind == SolidBody.kind):
             return self._between(path, body, place)
         if place is None:
             self.problems.append(f"{self.words(path)} must be given: one of {listed(names)}")
@@ -387,7 +430,8 @@ class Builder:
         """Return a point between the named ones."""
         key = self.words(path)
         try:
-            return body.at(place if isinstance(place, tuple) else quantity(place, "m"))
+            is_place = isinstance(place, tuple) or not body.has_positions
+            return body.at(place if is_place else quantity(place, "m"))
         except ArgumentError as error:
             if error.argument == "position":
                 self.problems.append(str(error.renamed(key)))

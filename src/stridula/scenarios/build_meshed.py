@@ -128,9 +128,12 @@ def _box(sides: Tables, least: float = 0.0) -> tuple[tuple[float, float], tuple[
 def _mesh(given: Tables) -> SolidMesh:
     table = _given(given)
     shape = table.pop("shape")
+    place = {key: table.pop(key) for key in ("rotation", "offset") if key in table}
     if shape == "file":
-        return _read(SolidMesh.read, table)
-    return SolidMesh(**table) if shape == "elements" else MADE[shape](**table)
+        mesh = _read(SolidMesh.read, table)
+    else:
+        mesh = SolidMesh(**table) if shape == "elements" else MADE[shape](**table)
+    return mesh.moved(**place) if place else mesh
 
 
 def _read(read: Callable[..., Any], table: Tables) -> Any:

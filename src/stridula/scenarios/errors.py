@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from ..checks import LONGEST, listed, suggestion
 from . import outline
 from .outline import Path
-from .schema import GENERAL, PAIR
+from .schema import GENERAL, PAIR, TOUCHING
 
 # Problems that are told one by one; the rest is counted.
 MOST_PROBLEMS = 20
@@ -73,6 +73,7 @@ def wrong_form(tables: dict[str, Any]) -> list[str]:
     """
     is_general = any(key in tables for key in (*GENERAL, "connections"))
     wanted, others = (GENERAL, PAIR) if is_general else (PAIR, GENERAL)
+    left_out = TOUCHING if any(key in tables for key in TOUCHING) else TOUCHING[1:]
     problems = [
         f"{key} must be left out where there are bodies and contacts, got both" for key in others if key in tables
     ]
@@ -87,9 +88,9 @@ def wrong_form(tables: dict[str, Any]) -> list[str]:
         if isinstance(held, (dict, list)) and len(held) > MOST_TABLES:
             problems.append(f"{key} must hold at most {MOST_TABLES}, got {len(held)}")
     for key in wanted:
-        if key not in tables:
+        if key not in tables and key not in left_out:
             problems.append(f"{key} must be given: {(outline.node_at((key,), tables) or {})['description']}")
-        elif key in GENERAL and not tables[key]:
+        elif key in GENERAL and key in tables and not tables[key]:
             problems.append(f"{key} must not be empty, got {shown(tables[key])}")
     return problems
 

@@ -138,6 +138,28 @@ class OneOrEach(_Kind):
 
 
 @dataclass(frozen=True)
+class OneOrByName(_Kind):
+    """One quantity, or one for each name.
+
+    Attributes
+    ----------
+    one : Quantity
+        What each is.
+    """
+
+    one: Quantity
+
+    def read(self, value: Any) -> Any:
+        if not isinstance(value, dict):
+            return self.one.read(value)
+        return {name: self.one.read(each) for name, each in value.items()}
+
+    def json_schema(self) -> dict[str, Any]:
+        one = self.one.json_schema()
+        return {"anyOf": [*one["anyOf"], {"type": "object", "additionalProperties": one}]}
+
+
+@dataclass(frozen=True)
 class DampingTable(_Kind):
     """A law of damping: its name and its parameters."""
 
@@ -595,12 +617,16 @@ ReducedDamping = Annotated[Any, Numbers((0, 1, 2), file=True, damping=True)]
 Vector = Annotated[Any, Numbers((1,))]
 Rows = Annotated[Any, Numbers((2,))]
 Stiffness = Annotated[float, Quantity("N/m", above=0.0)]
+StiffnessOfArea = Annotated[float, Quantity("N/m3", above=0.0)]
 AngularVelocity = Annotated[float, Quantity("rad/s")]
 PointTable = Annotated[Any, Points()]
 PlaceTable = Annotated[Any, Places()]
 Inertia = Annotated[Any, Numbers((0, 1, 2))]
 Translation = Annotated[Any, Motion()]
 Lengths = Annotated[tuple[float, float, float], Row((Quantity("m", above=0.0),) * 3, "three lengths")]
+Offset = Annotated[tuple[float, float, float], Row((Quantity("m"),) * 3, "three lengths")]
+Rotation = Annotated[tuple[float, float, float], Row((Quantity("rad"),) * 3, "three angles")]
+LengthOrLayers = Annotated[Any, OneOrByName(Quantity("m", above=0.0))]
 Radii = Annotated[tuple[float, float], Row((Quantity("m", above=0.0),) * 2, "two radii")]
 Angles = Annotated[tuple[float, float], Row((Quantity("rad"),) * 2, "two angles")]
 OfProfile = Annotated[tuple[float, float], Row((Quantity("m"),) * 2, "(r, z), two distances")]

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from .fields import BY_NAME, ONE, TEXT, holds_tables
-from .schema import json_schema
+from .schema import TOUCHING, json_schema
 
 Node = dict[str, Any]
 Path = tuple[str | int, ...]
@@ -74,11 +74,10 @@ def beams(tables: Any) -> list[Path]:
 
 def contacts(tables: Any) -> list[Path]:
     """Return the paths of contacts, which take the friction that stands at the top."""
-    listed = look_up(tables, ("contacts",))
-    places: list[Path] = [
-        ("contact",),
-        *(("contacts", number) for number in range(len(listed) if isinstance(listed, list) else 0)),
-    ]
+    places: list[Path] = [("contact",)]
+    for key in TOUCHING:
+        listed = look_up(tables, (key,))
+        places += [(key, number) for number in range(len(listed) if isinstance(listed, list) else 0)]
     return [path for path in places if isinstance(look_up(tables, path), dict)]
 
 

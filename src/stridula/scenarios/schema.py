@@ -11,7 +11,7 @@ from ..integration import GaussSeidel
 from . import fields as is_
 from .fields import Table
 from .schema_bodies import Body, Material, Section, Slider, Track
-from .schema_contacts import Connection, Contact, Friction, PairContact
+from .schema_contacts import Connection, Contact, Friction, PairContact, Surface
 from .schema_drives import Drive
 
 
@@ -101,6 +101,8 @@ class ScenarioTable(Table):
     """what vibrates, by name, in place of slider and track"""
     contacts: list[Contact] | None = None
     """where bodies touch, in place of contact"""
+    surfaces: list[Surface] | None = None
+    """where faces of meshed bodies touch, beside contacts or in their place"""
     connections: list[Connection] | None = None
     """springs and dashpots between bodies"""
     drives: list[Drive] = Field(default_factory=list)
@@ -110,7 +112,8 @@ class ScenarioTable(Table):
 
 
 PAIR = ("slider", "track", "contact")
-GENERAL = ("bodies", "contacts")
+TOUCHING = ("contacts", "surfaces")
+GENERAL = ("bodies", *TOUCHING)
 
 
 @cache

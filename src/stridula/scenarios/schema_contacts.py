@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 from ..connections import CONNECTIONS
-from ..contact import LAWS, STIFFNESSES, Coulomb, PointContact, RigidTrack
+from ..contact import LAWS, STIFFNESSES, Coulomb, PointContact, RigidTrack, SurfaceContact
 from . import fields as is_
 from .derived import Keys, one_of, table_of
 from .fields import Table
@@ -21,6 +21,7 @@ else:
     Stiffness = one_of(
         "kind", (table_of(kind, "kind", kind.kind, "linear, power law or hertz") for kind in STIFFNESSES)
     )
+OF_AREA = "stiffness of the contact for a unit of area: a number [N/m3] or a table, rigid if left out"
 YIELDS = "stiffness of the contact itself: a number [N/m] or a table, rigid if left out"
 
 
@@ -69,10 +70,27 @@ class PointTrack(Table):
     """which point of it; its tip, centre or only point if left out"""
 
 
+class RevolvedTrack(Table):
+    kind: Literal["axisymmetric"]
+    """axisymmetric, solid or rigid"""
+    body: str
+    """body of revolution that is touched: its name among the bodies"""
+
+
+class SolidTrack(Table):
+    kind: Literal["solid"]
+    """axisymmetric, solid or rigid"""
+    body: str
+    """meshed body that is touched: its name among the bodies"""
+    face: str
+    """name of its face"""
+
+
 ENDS: Keys = {"first": (Place, ..., "one end"), "second": (Place | None, None, "other end, the ground if left out")}
 
 if TYPE_CHECKING:
     Contact = Any
+    Surface = Any
     Connection = Any
 else:
     _history = "factor over time on the acceleration where one is given, else on the velocity; constant if left out"
@@ -90,6 +108,19 @@ else:
     _friction = {"friction": (Friction | None, None, "friction between tip and track, none if left out")}
     _friction["surface"] = (str, "", "name of the surface that it is a point of, which may lift off in part")
     _friction["stiffness"] = (is_.Stiffness | Stiffness | None, None, YIELDS)
+    _plane = table_of(RigidTrack, "kind", "rigid", "axisymmetric, solid or rigid", title="Plane", after=_moved)
+    _faces = {
+        "name": (str, ..., "what it is called in records, where its points have numbers, too"),
+        "body": (str, ..., "meshed body whose face touches: its name among the bodies"),
+        "face": (str, ..., "name of the face"),
+        "track": (one_of("kind", [RevolvedTrack, SolidTrack, _plane]), ..., "what it slides on"),
+    }
+    _layer = {
+        "friction": _friction["friction"],
+        "stiffness": (is_.StiffnessOfArea | Stiffness | None, None, OF_AREA),
+        "overlay": (bool, False, "whether points are those of the pieces into which flat faces of both cut each other"),
+    }
+    Surface = table_of(SurfaceContact, title="Surface", before=_faces, after=_layer)
     Contact = table_of(PointContact, title="Contact", before=_sides, after=_friction)
     Connection = one_of(
         "kind", [table_of(kind, "kind", kind.kind, "spring or dashpot", before=ENDS) for kind in CONNECTIONS]

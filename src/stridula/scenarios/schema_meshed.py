@@ -95,7 +95,14 @@ class CellsProfile(Table):
     """pairs of nodes of edges that can be held by their names"""
 
 
-class BlockMesh(Table):
+class Placed(Table):
+    rotation: is_.Rotation | None = None
+    """axis of a turn about the origin times its angle, along x, y and z [rad]"""
+    offset: is_.Offset | None = None
+    """shift along x, y and z, after the turn [m]"""
+
+
+class BlockMesh(Placed):
     shape: Literal["block"]
     """block, sector, extrusion, file or elements"""
     lengths: is_.Lengths
@@ -104,37 +111,37 @@ class BlockMesh(Table):
     """numbers of elements along x, y and z"""
 
 
-class SectorMesh(Table):
+class SectorMesh(Placed):
     shape: Literal["sector"]
     """block, sector, extrusion, file or elements"""
     radii: is_.Radii
     """inner and outer radius [m]"""
     angles: is_.Angles
     """angles of start and end, from z where the axis is y [rad]"""
-    height: is_.Length
-    """length along the axis [m]"""
+    height: is_.LengthOrLayers
+    """length along the axis, or that of each layer by its name from the bottom up [m]"""
     divisions: is_.Divisions
-    """numbers of elements along radius, angle and axis"""
+    """numbers of elements along radius, angle and axis, there through each layer"""
     axis: Literal["x", "y", "z"] = "y"
     """x, y or z"""
 
 
-class ExtrusionMesh(Table):
+class ExtrusionMesh(Placed):
     shape: Literal["extrusion"]
     """block, sector, extrusion, file or elements"""
     nodes: is_.Rows
     """coordinates of each node in the plane [m]"""
     quadrilaterals: is_.Rows
     """corners of each quadrilateral, counterclockwise, from 0 on"""
-    height: is_.Length
-    """length along the axis [m]"""
+    height: is_.LengthOrLayers
+    """length along the axis, or that of each layer by its name from the bottom up [m]"""
     layers: is_.Count
-    """number of elements along the axis"""
+    """number of elements along the axis, through each such layer"""
     axis: Literal["x", "y", "z"] = "z"
     """x, y or z"""
 
 
-class FileMesh(Table):
+class FileMesh(Placed):
     shape: Literal["file"]
     """block, sector, extrusion, file or elements"""
     file: str
@@ -143,7 +150,7 @@ class FileMesh(Table):
     """length of the file's unit [m]"""
 
 
-class ElementsMesh(Table):
+class ElementsMesh(Placed):
     shape: Literal["elements"]
     """block, sector, extrusion, file or elements"""
     kind: Element
@@ -197,6 +204,7 @@ def meshed_tables(kinds: str, material: Any, name: Keys) -> list[type[Table]]:
         "fixed": (is_.FixedGroups, (), "groups of faces or nodes that are held: their names, or directions by name"),
     }
     flags: Keys = {
+        "contact_faces": (list[str], (), "faces that touch others: the body yields at their points"),
         "residual_flexibility": (bool, True, "whether modes beyond the cutoff yield statically at the points"),
         "linear": (bool, False, "whether elements without nodes in the middle of their edges stay as they are"),
     }
