@@ -238,13 +238,14 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
         before = change
         # In space the directions of friction still turn, and later it finds ever other forces of contacts that hold the
         # same motions.
-        early = sweep + 1 == FIRST_DIRECT_SOLVE and not sizes.space
+        early = sweep + 1 <= 8 if sizes.space else sweep + 1 == FIRST_DIRECT_SOLVE
         late = sizes.space and sweep + 1 > PATIENCE
         if early or ((sweep + 1) % SWEEPS_PER_DIRECT_SOLVE == 0 and not late):
             tried = choose(done < 0.5, settled, zero)
             if anywhere(tried > 0.5):
                 solve_states(contacts, carried, sizes, run, tried, zero)
-                before = choose(tried > 0.5, math.inf, before)
+                again = sizes.space and sweep > 0 and early
+                before = choose(tried > 0.5, change if again else zero + math.inf, before)
         if sweep + 1 == PATIENCE:
             for i in range(sizes.contacts):
                 here = i * at.IN_STEP

@@ -1,6 +1,9 @@
 """The forces of contacts whose states are given: one linear system.
 
-It lies in blocks like the compliance, ``scratch[block, row, lane]``: a row for each equation, one more for right sides.
+Unknown are the normal forces of those that are closed and the tangential forces of those that are held; where a contact
+slides, its tangential force is the ratio found last times its normal force. The system lies in blocks like the
+compliance, ``scratch[block, row, lane]``: a row for each equation, one more for right sides. Runs side by side have the
+equations of all of them.
 """
 
 import numba
@@ -10,7 +13,7 @@ from .block_rows import COMPLIANCE
 from .contact import STICKING
 from .faces import displace
 from .friction import set_valued
-from .lanes import anywhere, choose, entry, fused, held, hold, load, magnitude, set_entry, store
+from .lanes import anywhere, choose, entry, fused, held, hold, lane, load, magnitude, set_entry, store
 from .modes import OPTIONS
 from .solves import strayed
 from .space import is_second
@@ -25,59 +28,164 @@ def solve_states(contacts, carried, sizes, run, tried, zero):
 
     `tried` says in which runs. Where the states admit no forces nothing is changed.
     """
-    now, faces, scratch = contacts.now, contacts.faces, contacts.scratch
-    size = 2 * sizes.contacts
-    for i in range(sizes.contacts):
-        set_equations(contacts, carried, sizes, i, size, run, zero)
-    regular = eliminate(scratch, size, sizes.faces, sizes.per_block, run, tried, zero)
-    for i in range(sizes.contacts):
-        pressed = entry(scratch, 2 * i, size, run, zero)
-        regular = choose(pressed >= 0.0, regular, zero)
-        # Where more contacts stick than bodies have motions, elimination divides by round-off.
-        if set_valued(contacts.codes[i]):
-            most = BEYOND * held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero) * pressed
-            pulled = magnitude(entry(scratch, 2 * i + 1, size, run, zero))
-            regular = choose(pulled > most, zero, regular)
-    for i in range(sizes.contacts):
-        here = i * at.IN_STEP
-        normal, tangential = held(now, here + at.NORMAL_NOW, run, zero), held(now, here + at.TANGENTIAL_NOW, run, zero)
-        pressed, pulled = entry(scratch, 2 * i, size, run, zero), -entry(scratch, 2 * i + 1, size, run, zero)
-        pressed, pulled = choose(regular > 0.5, pressed, normal), choose(regular > 0.5, pulled, tangential)
-        hold(now, here + at.NORMAL_NOW, run, pressed)
-        hold(now, here + at.TANGENTIAL_NOW, run, pulled)
-        displace(faces, sizes.faces, i, run, pressed - normal, pulled - tangential)
+    now, codes, scratch = contacts.now, contacts.codes, contacts.scratch
+    size = number_equations(now, codes, sizes.contacts, run, zero)
+    for j in range(sizes.contacts):
+        if equation(now, j, at.NORMAL_EQUATION, run, zero) >= 0:
+            in_space = sizes.space and is_second(codes, j + 1)
+            put_columns(contacts, sizes, j, in_space, run, zero)
+            put_rights(contacts, carried, j, in_space, size, run, zero)
+    blocks = (size + sizes.per_block - 1) // sizes.per_block
+    regular = eliminate(scratch, size, blocks, sizes.per_block, run, tried, zero)
+    for j in range(sizes.contacts):
+        if equation(now, j, at.NORMAL_EQUATION, run, zero) >= 0:
+            in_space = sizes.space and is_second(codes, j + 1)
+            regular = admitted(contacts, j, in_space, size, regular, run, zero)
+    for j in range(sizes.contacts):
+        if equation(now, j, at.NORMAL_EQUATION, run, zero) >= 0:
+            take(contacts, sizes, j, j, size, regular, run, zero)
+            if sizes.space and is_second(codes, j + 1):
+                take(contacts, sizes, j, j + 1, size, regular, run, zero)
 
 
 @numba.njit(**OPTIONS)
-def set_equations(contacts, carried, sizes, i, size, run, zero):
-    """Put the two equations of contact `i`: gap and slip undone, or forces at a known ratio, or none."""
+def equation(now, i, which, run, zero):
+    """Return the number of an equation of contact `i`, the same in all runs, below 0 without one."""
+    return int(lane(held(now, i * at.IN_STEP + which, run, zero), 0))
+
+
+@numba.njit(**OPTIONS)
+def number_equations(now, codes, count, run, zero):
+    """Number the equations of all contacts and put their ratios; return how many equations there are."""
+    size = 0
+    for i in range(count):
+        here = i * at.IN_STEP
+        of_normal, of_tangential = -1, -1
+        status = held(now, here + at.STATUS_NOW, run, zero)
+        closed, sticks = status > 0.5 * STICKING, magnitude(status - STICKING) < 0.5
+        mirrors = is_second(codes, i)
+        law = codes[i - 1] if mirrors else codes[i]
+        holds = choose(sticks, 1.0, zero) if set_valued(law) else zero
+        if not mirrors and anywhere(closed):
+            of_normal, size = size, size + 1
+        if anywhere(holds > 0.5):
+            of_tangential, size = size, size + 1
+        normal, tangential = (
+            held(now, here + at.NORMAL_NOW, run, zero),
+            held(now, here + at.TANGENTIAL_NOW, run, zero),
+        )
+        ratio = choose(normal > 0.0, tangential, zero) / choose(normal > 0.0, normal, 1.0)
+        hold(now, here + at.NORMAL_EQUATION, run, zero + float(of_normal))
+        hold(now, here + at.TANGENTIAL_EQUATION, run, zero + float(of_tangential))
+        hold(now, here + at.RATIO, run, choose(holds > 0.5, zero, ratio))
+    return size
+
+
+@numba.njit(**OPTIONS)
+def is_closed(now, i, run, zero):
+    """Return whether contact `i` is closed."""
+    return held(now, i * at.IN_STEP + at.STATUS_NOW, run, zero) > 0.5 * STICKING
+
+
+@numba.njit(**OPTIONS)
+def is_held(now, codes, i, run, zero):
+    """Return whether contact `i` of a law that sticks exactly sticks."""
+    sticks = magnitude(held(now, i * at.IN_STEP + at.STATUS_NOW, run, zero) - STICKING) < 0.5
+    return choose(sticks, 1.0, zero) > 0.5
+
+
+@numba.njit(**OPTIONS)
+def put_columns(contacts, sizes, j, in_space, run, zero):
+    """Put the columns of the forces of contact `j`: what they displace at every equation."""
     now, faces, scratch = contacts.now, contacts.faces, contacts.scratch
-    n, t = 2 * i, 2 * i + 1
-    here = i * at.IN_STEP
-    status = held(now, here + at.STATUS_NOW, run, zero)
+    column = equation(now, j, at.NORMAL_EQUATION, run, zero)
+    first = equation(now, j, at.TANGENTIAL_EQUATION, run, zero)
+    ratio, swerve, second = held(now, j * at.IN_STEP + at.RATIO, run, zero), zero, -1
+    if in_space:
+        swerve = held(now, (j + 1) * at.IN_STEP + at.RATIO, run, zero)
+        second = equation(now, j + 1, at.TANGENTIAL_EQUATION, run, zero)
+    n, t, b = COMPLIANCE + 2 * j, COMPLIANCE + 2 * j + 1, COMPLIANCE + 2 * j + 3
+    give = held(now, j * at.IN_STEP + at.GIVE, run, zero)
+    for i in range(sizes.contacts):
+        for k in range(2):
+            which = at.NORMAL_EQUATION if k == 0 else at.TANGENTIAL_EQUATION
+            row = equation(now, i, which, run, zero)
+            if row < 0:
+                continue
+            moves = is_closed(now, i, run, zero) if k == 0 else is_held(now, contacts.codes, i, run, zero)
+            # Where this run has no such equation, the unknown is zero.
+            idle = zero + 1.0
+            pulled = entry(faces, 2 * i + k, t, run, zero)
+            along = fused(-ratio, pulled, entry(faces, 2 * i + k, n, run, zero))
+            if in_space:
+                across = entry(faces, 2 * i + k, b, run, zero)
+                along = fused(-swerve, across, along)
+                if second >= 0:
+                    set_entry(scratch, second, row, run, choose(moves, across, idle if row == second else zero))
+            if row == column:
+                along += give
+            set_entry(scratch, column, row, run, choose(moves, along, idle if row == column else zero))
+            if first >= 0:
+                set_entry(scratch, first, row, run, choose(moves, pulled, idle if row == first else zero))
+
+
+@numba.njit(**OPTIONS)
+def put_rights(contacts, carried, j, in_space, size, run, zero):
+    """Put the right sides of contact `j`: gap and slip undone."""
+    now, scratch, here = contacts.now, contacts.scratch, j * at.IN_STEP
+    gap, beyond = held(now, here + at.FREE_GAP, run, zero), held(now, here + at.BEYOND, run, zero)
+    of_normal = equation(now, j, at.NORMAL_EQUATION, run, zero)
+    set_entry(scratch, of_normal, size, run, choose(is_closed(now, j, run, zero), -gap - beyond, zero))
+    for i in range(j, j + 2 if in_space else j + 1):
+        of_tangential = equation(now, i, at.TANGENTIAL_EQUATION, run, zero)
+        if of_tangential >= 0:
+            slip = held(now, i * at.IN_STEP + at.FREE_SLIP, run, zero) + strayed(carried, i, run, zero)
+            holds = is_held(now, contacts.codes, i, run, zero)
+            set_entry(scratch, of_tangential, size, run, choose(holds, -slip, zero))
+
+
+@numba.njit(**OPTIONS)
+def found_forces(contacts, j, i, size, run, zero):
+    """Return the normal force of contact `j` and the tangential one of its pair `i` that were found."""
+    now, scratch = contacts.now, contacts.scratch
+    normal = entry(scratch, equation(now, j, at.NORMAL_EQUATION, run, zero), size, run, zero)
+    tangential = held(now, i * at.IN_STEP + at.RATIO, run, zero) * normal
+    of_tangential = equation(now, i, at.TANGENTIAL_EQUATION, run, zero)
+    if of_tangential >= 0:
+        pulled = -entry(scratch, of_tangential, size, run, zero)
+        tangential = choose(is_held(now, contacts.codes, i, run, zero), pulled, tangential)
+    return normal, tangential
+
+
+@numba.njit(**OPTIONS)
+def admitted(contacts, j, in_space, size, regular, run, zero):
+    """Return in which runs the forces found for contact `j` press and, where it is held, lie in the cone.
+
+    Where more contacts stick than bodies have motions, elimination divides by round-off.
+    """
+    normal, tangential = found_forces(contacts, j, j, size, run, zero)
+    regular = choose(normal >= 0.0, regular, zero)
+    if set_valued(contacts.codes[j]):
+        most = BEYOND * held(contacts.constants, j * at.CONTACT_CONSTANTS + at.AT_REST, run, zero) * normal
+        squared = tangential * tangential
+        if in_space:
+            across = found_forces(contacts, j, j + 1, size, run, zero)[1]
+            squared += across * across
+        regular = choose(squared > most * most, zero, regular)
+    return regular
+
+
+@numba.njit(**OPTIONS)
+def take(contacts, sizes, j, i, size, regular, run, zero):
+    """Take the forces found for pair `i` of contact `j` in runs that are `regular`."""
+    now, here = contacts.now, i * at.IN_STEP
     normal, tangential = held(now, here + at.NORMAL_NOW, run, zero), held(now, here + at.TANGENTIAL_NOW, run, zero)
-    closed, sticks = status > 0.5 * STICKING, magnitude(status - STICKING) < 0.5
-    ratio = choose(normal > 0.0, tangential, zero) / choose(normal > 0.0, normal, 1.0)
-    holds = choose(sticks, 1.0, zero) if set_valued(contacts.codes[i]) else zero
-    own_n, own_t = entry(faces, n, COMPLIANCE + n, run, zero), entry(faces, t, COMPLIANCE + t, run, zero)
-    give, beyond = held(now, here + at.GIVE, run, zero), held(now, here + at.BEYOND, run, zero)
-    mirrors = sizes.space and is_second(contacts.codes, i)
-    own_n = zero + 1.0 if mirrors else own_n
-    for j in range(size):
-        upright, level = entry(faces, n, COMPLIANCE + j, run, zero), entry(faces, t, COMPLIANCE + j, run, zero)
-        diagonal_n, diagonal_t = (own_n if j == n else zero), (own_t if j == t else zero)
-        if mirrors:
-            # The second pair of rows has the normal force of the first.
-            upright = zero - 1.0 if j == n - 2 else diagonal_n
-        elif j == n:
-            upright = upright + give
-        if j == n:
-            diagonal_t = choose(closed, ratio * own_t, zero)
-        set_entry(scratch, j, n, run, choose(closed, upright, diagonal_n))
-        set_entry(scratch, j, t, run, choose(holds > 0.5, level, diagonal_t))
-    gap, slip = held(now, here + at.FREE_GAP, run, zero), held(now, here + at.FREE_SLIP, run, zero)
-    set_entry(scratch, n, size, run, zero if mirrors else choose(closed, -gap - beyond, zero))
-    set_entry(scratch, t, size, run, choose(holds > 0.5, -slip - strayed(carried, i, run, zero), zero))
+    pressed, pulled = found_forces(contacts, j, i, size, run, zero)
+    pressed, pulled = choose(regular > 0.5, pressed, normal), choose(regular > 0.5, pulled, tangential)
+    hold(now, here + at.NORMAL_NOW, run, pressed)
+    hold(now, here + at.TANGENTIAL_NOW, run, pulled)
+    # The pair without a normal has the force of its contact, which displaces nothing there.
+    displace(contacts.faces, sizes.faces, i, run, pressed - normal if i == j else zero, pulled - tangential)
 
 
 @numba.njit(**OPTIONS)

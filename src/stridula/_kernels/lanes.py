@@ -160,5 +160,6 @@ def _hold(array, row, run, value):
 
 _for_numbers(read, lambda array, row, column, like: _is_number(like))
 _for_numbers(write, lambda array, row, column, value: _is_number(value))
+_for_numbers(lane, lambda value, i: _is_number(value))
 for _function in (choose, magnitude, anywhere, everywhere):
     _for_numbers(_function, _is_number)

@@ -73,7 +73,8 @@ CARRIED = 13
 
 # What a contact is in a step: gap, slip and abscissa, without its forces, then with them; forces, status, whether it is
 # jammed; while the contacts are solved together whether it may touch, has broken away, has been let go. How much more
-# it yields for a unit of force than the bodies, and beyond that.
+# it yields for a unit of force than the bodies, and beyond that. In the system of all contacts: numbers of the
+# equations of its normal and its tangential force, below 0 without one, and the ratio of these where it slides.
 (
     FREE_GAP,
     FREE_SLIP,
@@ -89,8 +90,11 @@ CARRIED = 13
     LET_GO,
     GIVE,
     BEYOND,
-) = range(14)
-IN_STEP = 14
+    NORMAL_EQUATION,
+    TANGENTIAL_EQUATION,
+    RATIO,
+) = range(17)
+IN_STEP = 17
 
 # Sums over the steps of a sample, of each contact, and where it was at its beginning.
 (
