@@ -139,6 +139,26 @@ def check_pin_on_disc(names: Mapping[str, Any], printed: str, folder: Path) -> N
     assert (folder / "pin-on-disc.png").read_bytes().startswith(b"\x89PNG")
 
 
+def check_wine_glass(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """It sings just below the mode of two waves, which is in space still while a point of the glass sees it beat."""
+    mode = float(re.search(r"2 waves: (\d+) Hz", printed)[1])
+    assert 0.995 * mode < names["tone"] < mode + 0.5
+    assert 0.1 < -float(names["onset"].value) < 0.12
+    seen, still = (names["sizes"][word][names["rubbed"]] for word in ("glass", "space"))
+    assert seen.min() < 0.05 * seen.max()
+    assert still.min() > 0.95 * still.max()
+    assert (folder / "glass.png").read_bytes().startswith(b"\x89PNG")
+
+
+def check_railway_wheel(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """Each axial pair grows once standing, twice rolling; a wave against the turning squeals below its mode."""
+    rows = re.findall(r"^\d nodal diameters: (\d+) Hz; standing (.+); rolling (.+)$", printed, re.MULTILINE)
+    assert [(one.count("Hz"), two.count("Hz")) for _, one, two in rows] == [(1, 2)] * 4
+    assert 0.96 * float(rows[0][0]) < names["tone"] < float(rows[0][0])
+    assert names["back"] > 3.0 * names["ahead"]
+    assert (folder / "wheel.png").read_bytes().startswith(b"\x89PNG")
+
+
 # One check for every example: it takes the example's names, what it printed and the folder it ran in.
 CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
     "brake.py": check_brake,
@@ -146,7 +166,9 @@ CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
     "cut_off_modes.py": check_cut_off_modes,
     "mass_on_a_belt.py": check_mass_on_a_belt,
     "pin_on_disc.py": check_pin_on_disc,
+    "railway_wheel.py": check_railway_wheel,
     "ten_lines.py": check_ten_lines,
+    "wine_glass.py": check_wine_glass,
 }
 
 

@@ -23,7 +23,7 @@ from stridula.scenarios.quantities import quantity
 CASES = ["axial-sliding", "judder", "squeal", "stable-sliding", "strong-pressure", "weak-pressure"]
 MASSES = ["belt", "lugre"]
 PLATES = ["judder-on-plate", "squeal-on-plate"]
-MESHED = ["brake", "pad-on-disc", "pin-on-disc"]
+MESHED = ["brake", "glass", "pad-on-disc", "pin-on-disc", "wheel"]
 STEEL = st.Material(young=2.1e11, density=7800.0)
 SIMULATION = {"duration": 0.5, "scheme": "central difference", "step": 1e-6, "sample_rate": 5e4}
 

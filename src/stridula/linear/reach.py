@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError
+from ..contact.stiffness import slopes_at
 from ..drives import InitialEquilibrium
 from ..system import System
 from .equilibrium import Equilibrium, find_equilibrium
@@ -102,7 +103,7 @@ def _reach(
     largest = abs(largest_displacement(structure, shape))
     if not largest:
         return float("nan")
-    normal, stuck = _forces(motion, at, exponent, shape)
+    normal, stuck = _forces(structure, motion, at, exponent, shape)
     rooms = [_room(float(room), abs(change)) for room, change in _slides(structure, at, exponent, shape)]
     moved = np.abs([line.normal @ shape for line in structure.lines])
     for k, status in enumerate(at.status):
@@ -123,7 +124,9 @@ def _room(room: float, change: float, least: float = 0.0) -> float:
     return max(room, 0.0) / change if change > least else float("inf")
 
 
-def _forces(motion: Vibration, at: Equilibrium, exponent: complex, shape: Array) -> tuple[Array, Array]:
+def _forces(
+    structure: Structure, motion: Vibration, at: Equilibrium, exponent: complex, shape: Array
+) -> tuple[Array, Array]:
     """Return normal forces of all contacts, and forces that hold those that stick, in a mode [N]."""
     states = motion.from_velocity @ (exponent * shape) / (exponent - motion.state)
     moving = motion.mass * exponent**2 * shape + exponent * (motion.damping @ shape) + motion.stiffness @ shape
@@ -131,8 +134,15 @@ def _forces(motion: Vibration, at: Equilibrium, exponent: complex, shape: Array)
     normal, stuck = np.zeros((2, len(at.status)), dtype=complex)
     closed = [k for k, status in enumerate(at.status) if status != SEPARATED]
     held = [k for k in closed if at.status[k] == STICKING]
-    normal[closed] = forces[: len(closed)]
-    stuck[held] = forces[len(closed) : len(closed) + len(held)]
+    rigid = [k for k in closed if structure.is_rigid(k)]
+    normal[rigid] = forces[: len(rigid)]
+    stuck[held] = forces[len(rigid) : len(rigid) + len(held)]
+    for k in closed:
+        yields, line = structure.system.contacts[k].yields, structure.lines[k]
+        if yields is not None:
+            slope, rate = slopes_at(yields, float(at.normal_force[k]))
+            opens = line.normal - (line.normal_slope @ at.displacement) * line.along
+            normal[k] = -(slope + rate * exponent) * (opens @ shape)
     return normal, stuck
 
 

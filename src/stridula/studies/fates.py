@@ -223,7 +223,7 @@ def fate_of(runs: Runs, number: int) -> dict[str, Any]:
     contact, force = _of_contact(end, which), float(rest.normal_force[which])
     signal = contact["normal_force"]
     if swing(signal.values[:, None]) < 1e-6 * force:
-        signal = contact["slip_velocity"]
+        signal = _liveliest_slip(contact)
     grows = np.array(list(rest.reach))
     is_dead = runs.is_dead(run, number)
     found = [] if is_dead else tones_of(signal, rest.exponents, grows, runs.options.resolution)
@@ -267,6 +267,12 @@ def _liveliest(end: xr.Dataset, rest: ModesAtRest) -> int:
     """Return the number of the contact whose normal force swings most, of those that press at rest."""
     forces = end["normal_force"].values.reshape(end.sizes["time"], -1)
     return int(np.where(rest.normal_force > 0.0, forces.std(axis=0), -1.0).argmax())
+
+
+def _liveliest_slip(contact: xr.Dataset) -> xr.DataArray:
+    """Return the slip velocity of a contact, in space along the tangent along which it swings most."""
+    slip = contact["slip_velocity"]
+    return slip.isel(tangent=int(slip.std("time").values.argmax())) if "tangent" in slip.dims else slip
 
 
 def _of_contact(run: xr.Dataset, number: int) -> xr.Dataset:

@@ -17,8 +17,9 @@ FOREIGN = 1e-3
 ROUNDING = 1e-12
 # Periods, and times over which a mode grows by e, from which growth can be told; samples of a period that are compared.
 FEWEST_PERIODS, LEAST_GROWTH, SAMPLES_OF_A_PERIOD = 1.0, 0.5, 7.0
-# Share of the motion that one mode leaves unexplained, from which there is no one mode to measure.
-UNEXPLAINED = 0.1
+# Share of the growth that what one mode leaves unexplained may hide: a share u of the motion lets the roots of the
+# recurrence decay by about u² in each of its intervals.
+HIDDEN = 0.02
 
 
 def relative(run: xr.Dataset, rest: ModesAtRest) -> Array:
@@ -101,7 +102,8 @@ def growth_in_time(run: xr.Dataset, still: xr.Dataset, rest: ModesAtRest, number
     past, last, now = (away[k * every : len(away) - (2 - k) * every] * shrunk for k in range(3))
     weights, *_ = np.linalg.lstsq(np.stack([last.ravel(), past.ravel()], axis=1), now.ravel(), rcond=None)
     left = now - weights[0] * last - weights[1] * past
-    if np.linalg.norm(left) > UNEXPLAINED * np.linalg.norm(now):
+    hidden = float(np.linalg.norm(left) / np.linalg.norm(now)) ** 2
+    if hidden > HIDDEN * known.real * every * interval:
         return complex(np.nan, np.nan)
     roots = np.log(np.roots([1.0, *-weights]).astype(complex)) / (every * interval)
     seen = roots[np.argmin(np.abs(roots - known))]
