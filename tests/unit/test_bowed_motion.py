@@ -51,7 +51,7 @@ def test_motions(motion):
     assert found.motion == motion
     assert found.slips_per_period == pytest.approx(rate, rel=0.01)
     assert found.frequency == pytest.approx(frequency, rel=1e-4)
-    assert found.slip_share == pytest.approx(slips.mean(), abs=1e-3)
+    assert found.slip_share == pytest.approx(slips[slips.size // 2 :].mean(), abs=1e-3)
 
 
 def test_two_slips_half_a_period_apart_are_a_double_slip_an_octave_higher():
@@ -88,8 +88,8 @@ def test_slips_at_one_edge_of_the_bow_do_not_count_and_those_of_most_hairs_do():
 
 def test_the_start_is_left_aside():
     late = np.where(TIME < 100.0, at(0.0, 0.4), at(0.0))
-    assert analysis.bowed_motion(bowed(late), PITCH).motion == "raucous"
-    assert analysis.bowed_motion(bowed(late), PITCH, start=0.5).motion == "Helmholtz"
+    assert analysis.bowed_motion(bowed(late), PITCH, start=0.0).motion == "raucous"
+    assert analysis.bowed_motion(bowed(late), PITCH).motion == "Helmholtz"
 
 
 @pytest.mark.parametrize(

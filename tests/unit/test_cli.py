@@ -244,6 +244,15 @@ def pad(tmp_path):
     (tmp_path / "pad.toml").write_text(PAD)
 
 
+def test_the_card_of_the_violin_says_its_motion(stridula):
+    code, out, _ = stridula("run", "violin")
+    assert code == 0
+    lines = " ".join(out.replace("│", " ").split())
+    assert "regime stick-slip at 195" in lines
+    assert "bowed string Helmholtz at 195" in lines
+    assert "slips in a period of 196 Hz" in lines
+
+
 @pytest.mark.usefixtures("pad")
 def test_a_reduced_body_on_two_contacts_runs_exports_and_compares(stridula, tmp_path):
     code, out, err = stridula("run", "pad.toml", "--out", "run.nc", "--plot", "run.png")

@@ -9,12 +9,14 @@ import xarray as xr
 
 from ..arrays import Array
 from ..checks import positive, within
-from .regimes import LIMITS, TRANSIENT, signals_of
+from .regimes import LIMITS, signals_of
 from .several_contacts import loads, together
 from .status_changes import slips
 
 MOTIONS = ("Helmholtz", "double slip", "multiple slip", "anomalous low", "raucous", "sticking", "sliding")
 HELMHOLTZ, DOUBLE, MULTIPLE, LOW, RAUCOUS, STICKING, SLIDING = MOTIONS
+# Share of the record that is left aside where no start is given: the attack of a note.
+ATTACK = 0.5
 # Steps of the march of which a stick or a slip may be noise.
 NOISY_STEPS = 2.0
 # Periods within which slips that follow each other are one.
@@ -70,7 +72,7 @@ def bowed_motion(
     frequency : float
         Fundamental frequency of the string [Hz].
     start : float, optional
-        Time at the beginning that is left aside [s]; a tenth of the record if left out.
+        Time at the beginning that is left aside [s]; half of the record if left out.
     tolerance : float, optional
         Share by which the period of Helmholtz motion may differ from that of the string [1].
     steady : float, optional
@@ -113,7 +115,7 @@ def bowed_motion(
 def _slips(run: xr.Dataset, frequency: float, start: float | None) -> Slips:
     signals = signals_of(run)
     length = signals.interval * len(signals.share)
-    left_aside = TRANSIENT * length if start is None else within("start", start, 0.0, length)
+    left_aside = ATTACK * length if start is None else within("start", start, 0.0, length)
     first = min(round(left_aside / signals.interval), len(signals.share) - 1)
     sticking = together(signals.share[first:, :, 1], loads(signals.normal[first:], LIMITS.rare))
     period = 1.0 / (frequency * signals.interval)

@@ -143,7 +143,7 @@ def _surface(record: xr.Dataset) -> dict[str, str]:
 
 def _status(shares: Array) -> str:
     """Return the shares of the time in each status."""
-    return ", ".join(f"{word} {100 * share:.1f} %" for word, share in zip(STATUS_WORDS, shares, strict=True))
+    return ", ".join(f"{word} {100 * max(share, 0.0):.1f} %" for word, share in zip(STATUS_WORDS, shares, strict=True))
 
 
 def _one_contact(record: xr.Dataset) -> dict[str, str]:
