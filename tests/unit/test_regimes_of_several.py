@@ -238,7 +238,7 @@ def test_three_belts_are_one_belt():
         assert found[word] == pytest.approx(float(expected[word]), rel=1e-6)
 
 
-# Of the pin the mode that grows, near 2273 Hz, and of the pad the one of the disc at 1719 Hz, both shifted by the cycle.
+# Of the pin the mode that grows, near 2273 Hz; of the pad that of the disc at 1719 Hz; both shifted by the cycle.
 RIGS = {"pin-on-disc": (2240.0, 2340.0), "pad-on-disc": (1690.0, 1725.0)}
 
 
