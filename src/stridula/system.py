@@ -123,6 +123,12 @@ class System:
         """Names of the contacts: their own, or ``contact 1``, ``contact 2``, ..."""
         return tuple(contact.name or f"contact {number}" for number, contact in enumerate(self.contacts, 1))
 
+    @cached_property
+    def surface_names(self) -> tuple[str, ...]:
+        """Name of the surface that each of several contacts is a point of, empty for none; nothing without surfaces."""
+        names = tuple(contact.surface for contact in self.contacts)
+        return names if len(names) > 1 and any(names) else ()
+
     def body_name(self, body: Any) -> str:
         """Return what a body is called: its own name, slider or track, or ``body 3`` in the order of `bodies`."""
         if body.name:

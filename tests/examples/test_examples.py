@@ -12,6 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+import stridula as st
+from stridula import analysis
+
 from .growing import unstable_frequencies
 from .pages import blocks
 
@@ -159,6 +162,23 @@ def check_railway_wheel(names: Mapping[str, Any], printed: str, folder: Path) ->
     assert (folder / "wheel.png").read_bytes().startswith(b"\x89PNG")
 
 
+def check_violin(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """Slips as theory has them; Schelleng's maximal force to within a step of the forces, and one half more."""
+    assert printed.startswith("Helmholtz motion at 195.4 Hz")
+    assert names["slip"] == pytest.approx(-0.2 * 0.88 / 0.12, rel=0.02)
+    step = float(names["SHARES"][1] / names["SHARES"][0])
+    assert all(1.0 / step < highest < 1.5 for highest in names["highest"])
+    assert names["right"] >= 0.95 * len(names["helmholtz"])
+    assert names["right"] >= 0.75 * len(names["between"])
+    # The wedge closes towards the bridge.
+    columns = zip(names["PLACES"], names["highest"], names["lowest"], strict=True)
+    width = [high * names["most"](place) / (low * names["least"](place)) for place, high, low in columns]
+    assert width[0] < 0.5 * width[-1]
+    back = st.read_wav(folder / "violin.wav")
+    assert analysis.dominant_frequency(back[24_000:, 0]) == pytest.approx(195.4, abs=1.0)
+    assert (folder / "violin.png").read_bytes().startswith(b"\x89PNG")
+
+
 # One check for every example: it takes the example's names, what it printed and the folder it ran in.
 CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
     "brake.py": check_brake,
@@ -169,6 +189,7 @@ CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
     "railway_wheel.py": check_railway_wheel,
     "ten_lines.py": check_ten_lines,
     "wine_glass.py": check_wine_glass,
+    "violin.py": check_violin,
 }
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import stridula as st
+from stridula import analysis
 
 LENGTH, TENSION = 0.33, 60.0
 LIGHT = st.Material(1e9, 1000.0)
@@ -113,3 +114,80 @@ def test_support_forces_go_on_in_a_run_that_is_continued():
     rest = st.simulate(system, 2e-3, start=half, **words)
     assert np.abs(whole.support_force.values).max() > 1e-3
     np.testing.assert_array_equal(whole.support_force.values[100:], rest.support_force.values)
+
+
+# The violin.
+
+
+@pytest.fixture(scope="module")
+def violin():
+    """The shipped scenario, at its own step, and its record."""
+    case = st.load_scenario("violin")
+    return case, case.simulate()
+
+
+def test_the_string_of_the_violin_is_a_g_string(violin):
+    case, _ = violin
+    string = case.system.contacts[0].track.body
+    # G3, in equal temperament from an A of 440 Hz.
+    assert string.modes().frequency[0] == pytest.approx(440.0 * 2.0 ** (-14.0 / 12.0), rel=1e-3)
+    ratios = string.modes().damping_rate / (2.0 * string.modes().angular_frequency)
+    assert 1.0 / (2.0 * ratios[0]) == pytest.approx(500.0, rel=0.05)
+    places = np.array([contact.track.position for contact in case.system.contacts])
+    assert places.mean() / string.length == pytest.approx(0.12)
+    assert np.ptp(places) * 5.0 / 4.0 == pytest.approx(8e-3)
+
+
+def test_the_violin_settles_in_helmholtz_motion(violin):
+    """One slip in each period of the string, for some more than beta of it.
+
+    Under a bow of finite width the string slips for beta, and while the corner passes from its one edge to the other:
+    at most its width, 8 mm of 325, more. The velocity of the slips of an ideal string is ``-(1 - beta) / beta`` of the
+    bow's.
+    """
+    _, run = violin
+    assert int(run.unsolved_steps.sum()) == 0
+    found = analysis.bowed_motion(run, 196.0)
+    assert found.motion == "Helmholtz"
+    # A slip more or less at the end.
+    assert found.slips_per_period == pytest.approx(1.0, abs=1.0 / 98.0)
+    # Flat by no more than a tenth of a semitone, for the bow holds the corner back a little.
+    assert 0.994 * 196.0 < found.frequency < 196.0
+    assert 0.12 < found.slip_share < 0.12 + 8.0 / 325.0
+    late = run.sel(time=slice(0.5, None))
+    share = late.status_share.sel(contact="hair 3")
+    slips, sticks = (share.sel(contact_status=word).values > 0.99 for word in ("sliding", "sticking"))
+    velocity = late.velocity.values[:, 0]
+    assert np.median(velocity[slips]) == pytest.approx(-0.2 * 0.88 / 0.12, rel=0.02)
+    assert np.median(velocity[sticks]) == pytest.approx(0.2, rel=0.02)
+    regime = st.regime(run, start=0.5)
+    assert regime.regime == "stick-slip"
+    assert regime.frequency == pytest.approx(float(found.frequency), rel=1e-3)
+    assert regime.periodicity > 0.999
+
+
+def test_the_bridge_of_the_violin_feels_a_sawtooth_of_its_height(violin):
+    """In Helmholtz motion the force on the bridge rises by ``2 Z v / beta`` in a period (Schelleng 1973)."""
+    case, run = violin
+    string = case.system.contacts[0].track.body
+    impedance = np.sqrt(string.tension * string.total_mass / string.length)
+    force = run.sel(time=slice(0.5, None)).support_force.values[:, 0]
+    # Waves between bridge and bow ripple on it: a mean over their period.
+    smooth = np.convolve(force, np.full(29, 1.0 / 29.0), "valid")
+    assert np.ptp(smooth) == pytest.approx(2.0 * impedance * 0.2 / 0.12, rel=0.15)
+
+
+def test_a_light_bow_lets_the_string_slip_more_than_once():
+    lighter = {f"drives.{number}.x": 0.1 for number in range(5)}
+    run = st.load_scenario("violin", lighter).simulate(duration=0.6)
+    assert analysis.bowed_motion(run, 196.0).slips_per_period > 1.5
+
+
+def test_regime_and_motion_do_not_depend_on_the_step(violin):
+    case, run = violin
+    finer = st.simulate(case.system, 0.6, step=5e-7, sample_rate=48e3, probes=[])
+    found, expected = analysis.bowed_motion(finer, 196.0), analysis.bowed_motion(run, 196.0)
+    assert found.motion == expected.motion
+    assert found.frequency == pytest.approx(float(expected.frequency), rel=1e-3)
+    # The last strip lets go a little sooner or later.
+    assert found.slip_share == pytest.approx(float(expected.slip_share), abs=2.0 / 325.0)

@@ -244,13 +244,23 @@ def pad(tmp_path):
     (tmp_path / "pad.toml").write_text(PAD)
 
 
+def test_the_card_of_the_violin_says_its_motion(stridula):
+    code, out, _ = stridula("run", "violin")
+    assert code == 0
+    lines = " ".join(out.replace("│", " ").split())
+    assert "regime stick-slip at 195" in lines
+    assert "bowed string Helmholtz at 195" in lines
+    assert "slips in a period of 196 Hz" in lines
+
+
 @pytest.mark.usefixtures("pad")
 def test_a_reduced_body_on_two_contacts_runs_exports_and_compares(stridula, tmp_path):
     code, out, err = stridula("run", "pad.toml", "--out", "run.nc", "--plot", "run.png")
     assert (code, err) == (0, "")
     lines = out.splitlines()
     assert sum("contact 1" in line for line in lines) == sum("heel" in line for line in lines) == 1
-    assert out.count("(confidence ") == 2
+    # Both together, and each.
+    assert out.count("(confidence ") == 3
     for path in (tmp_path / "matrices").iterdir():
         path.unlink()
     assert stridula("run", "run.nc", "--out", "again.nc")[0] == 0

@@ -24,6 +24,7 @@ CASES = ["axial-sliding", "judder", "squeal", "stable-sliding", "strong-pressure
 MASSES = ["belt", "lugre"]
 PLATES = ["judder-on-plate", "squeal-on-plate"]
 MESHED = ["brake", "glass", "pad-on-disc", "pin-on-disc", "wheel"]
+STRINGS = ["violin"]
 STEEL = st.Material(young=2.1e11, density=7800.0)
 SIMULATION = {"duration": 0.5, "scheme": "central difference", "step": 1e-6, "sample_rate": 5e4}
 
@@ -78,7 +79,7 @@ def test_a_quantity_must_be_finite(value):
 
 def test_the_cases_are_listed_by_their_sources():
     cases = st.list_scenarios()
-    assert sorted(case.name for case in cases) == sorted(CASES + MASSES + PLATES + MESHED)
+    assert sorted(case.name for case in cases) == sorted(CASES + MASSES + PLATES + MESHED + STRINGS)
     assert all(case.source for case in cases)
     assert [case.source for case in cases] == sorted(case.source for case in cases)
 
@@ -92,7 +93,7 @@ def test_all_cases_share_one_set_of_beams():
     assert len({(slider.length, slider.material, slider.section, slider.damping) for slider in sliders.values()}) == 1
 
 
-@pytest.mark.parametrize("name", CASES + MASSES + PLATES + MESHED)
+@pytest.mark.parametrize("name", CASES + MASSES + PLATES + MESHED + STRINGS)
 def test_what_is_shown_loads_as_the_same_scenario(name, tmp_path):
     path = tmp_path / "copy.toml"
     path.write_text(st.scenario_text(name), encoding="utf-8")

@@ -1,5 +1,6 @@
-"""What a record means: phases, frequencies, levels, regimes."""
+"""What a record means: phases, frequencies, levels, regimes, motions of bowed strings."""
 
+from .bowed import MOTIONS, bowed_motion
 from .levels import largest_jump, peak_level, swing
 from .phases import advance, bursts, complete, longest_unchanged, phases, settling_time, status_share, stops
 from .regime_measures import Thresholds
@@ -15,9 +16,11 @@ from .spectra import (
 from .surfaces import surface
 
 __all__ = [
+    "MOTIONS",
     "REGIMES",
     "Thresholds",
     "advance",
+    "bowed_motion",
     "bursts",
     "complete",
     "dominant_frequency",

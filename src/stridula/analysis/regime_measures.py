@@ -1,7 +1,8 @@
-"""The measures that decide the regime of a contact, from the plain arrays of its record."""
+"""The measures that decide the regime of a contact, or of several together, from the plain arrays of a record."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -11,18 +12,8 @@ from ..arrays import Array
 from ..checks import ArgumentError, at_least, positive, within
 from .heard import Frames, frames, strongest_tone
 from .phases import ROUND_OFF, SMOOTHING
-from .status_changes import (
-    MIXED,
-    between_stops,
-    changes,
-    last_rest,
-    least_landings,
-    prevailing,
-    regularity,
-    slips,
-    vibrations,
-    whole_status,
-)
+from .several_contacts import cycles, landings_of, loads, mean_shares, statuses, stretches, together
+from .status_changes import MIXED, between_stops, last_rest, prevailing, regularity, slips, vibrations
 
 STICKING = 1
 # Samples within which the status changes, from which the cycle lies inside the samples: one sampled eight times a
@@ -41,11 +32,15 @@ class Signals(NamedTuple):
     ----------
     interval : float
         Interval of the samples [s].
-    share : ndarray, shape (samples, 3)
+    share : ndarray, shape (samples, contacts, 3)
         Share of each status [1].
-    forces : ndarray, shape (2, samples)
-        Normal and tangential force [N].
-    landings : ndarray, shape (samples,), or None
+    normal : ndarray, shape (samples, contacts)
+        Normal force of each contact [N].
+    forces : ndarray, shape (forces, samples)
+        Normal forces of the groups of contacts that count as one, then tangential ones [N].
+    groups : int
+        How many such groups.
+    landings : ndarray, shape (samples, contacts), or None
         Landings in each sample [1]; counted from the shares where there are none.
     lost, rubbed : ndarray, shape (samples,)
         Energy lost to damping and impacts, and to friction, since the start [J].
@@ -55,7 +50,9 @@ class Signals(NamedTuple):
 
     interval: float
     share: Array
+    normal: Array
     forces: Array
+    groups: int
     landings: Array | None
     lost: Array
     rubbed: Array
@@ -134,7 +131,7 @@ class Measures:
         Energy lost to damping and impacts over that lost to friction in the later half of the time, and over that
         lost so in the earlier half [1].
     last_status : int
-        Status in which the run settles: 0 separated, 1 sticking, 2 sliding, -1 none.
+        Status in which the run settles: 0 separated, 1 sticking, 2 sliding if any contact does, -1 none.
     slips : int
         Slips, each of which ends in a stick phase.
     periods : float
@@ -182,18 +179,22 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     """
     interval, count = signals.interval, signals.share.shape[0]
     first = min(round(start / interval), count - 1)
-    status = whole_status(signals.share)
-    rest = last_rest(status)
+    carried = loads(signals.normal[first:], limits.rare)
+    status = statuses(signals.share, carried)
+    rest = last_rest(stretches(status))
     settles = rest <= limits.rest * count
     heard_from = min(max(first, rest), count - 1) if settles else first
     time = (count - first) * interval
 
-    mean = float(np.abs(signals.forces[0, first:]).mean()) or 1.0
+    normal = signals.forces[: signals.groups, first:]
+    mean = math.hypot(*np.abs(normal).mean(axis=1).tolist()) or 1.0
+    sticking = together(signals.share[..., STICKING], carried)
     noise, fastest = NOISY_STEPS * signals.step / interval, 1.0 / (limits.lowest_tone * interval)
-    found = slips(signals.share[first:, STICKING], noise * (1.0 + ROUND_OFF), fastest)
+    found = slips(sticking[first:], noise * (1.0 + ROUND_OFF), fastest)
     caught = found[found[:, 1] < (count - first) * (1.0 - ROUND_OFF), 1]
-    landed = _landings(signals, first)
-    change_rate = max(changes(status[first:]) / 2.0, landed) / time
+    landings = None if signals.landings is None else signals.landings[first:]
+    landed = landings_of(landings, signals.share[first:, :, 0])
+    change_rate = cycles(status[:, first:], landed[carried > 0.0]) / time
     loss, loss_growth = _losses(signals, heard_from)
     swing = float(np.sqrt(signals.forces[:, heard_from:].var(axis=1).sum())) / mean
     heard = _heard(signals.forces[:, heard_from:], interval, limits)
@@ -201,18 +202,18 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     audibility = counted.level / mean
     tonality, tone, cycle = counted.tonality, float("nan"), _cycle(caught, interval)
     is_loud = audibility >= limits.faint or change_rate >= limits.lowest_tone
-    if audibility < limits.faint and np.mean(status[first:] == MIXED) >= UNRESOLVED:
+    if audibility < limits.faint and np.mean(status[:, first:] == MIXED, axis=1).max() >= UNRESOLVED:
         tonality, tone, cycle = _likeness(signals.forces[:, first:], mean), change_rate, change_rate
     elif is_loud or (heard.growth > 1.0 and audibility >= BUDDING * limits.faint):
-        weight = between_stops(signals.share[heard_from:, STICKING], _odd(SMOOTHING / interval))
+        weight = between_stops(sticking[heard_from:], _odd(SMOOTHING / interval))
         tone = strongest_tone(weight * signals.forces[:, heard_from:], interval, limits.frame, limits.lowest_tone)
     elif settles and loss >= limits.lossy and swing < limits.faint:
         # What the samples do not show goes on at their rate, or a multiple of it.
         tonality, tone = 1.0, 1.0 / interval
-    separated, sticking, sliding = signals.share[first:].mean(axis=0).tolist()
+    separated, stuck, sliding = mean_shares(signals.share[first:], carried).tolist()
     return Measures(
         separated=separated,
-        sticking=sticking,
+        sticking=stuck,
         sliding=sliding,
         tonality=tonality,
         audibility=audibility,
@@ -220,16 +221,16 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         tone=tone,
         cycle=cycle,
         periodicity=regularity(caught),
-        impact_rate=landed / time,
+        impact_rate=float(landed.sum()) / time,
         slip_rate=caught.size / time,
         change_rate=change_rate,
         settle_time=rest * interval if rest < count else float("nan"),
-        level=float(signals.forces[0, first:].std()) / mean,
+        level=math.hypot(*normal.std(axis=1).tolist()) / mean,
         swing=swing,
         unsettled=rest / count,
         loss=loss,
         loss_growth=loss_growth,
-        last_status=int(status[-1]) if settles else MIXED,
+        last_status=int(status[:, -1].max()) if settles else MIXED,
         slips=int(caught.size),
         periods=prevailing(np.diff(vibrations(found, fastest), axis=1)[:, 0]) * interval * tone,
         is_short=(count - heard_from) * interval < 1.5 * limits.frame,
@@ -252,13 +253,6 @@ def _heard(forces: Array, interval: float, limits: Thresholds) -> Frames:
     return frames(means, ratio * interval, limits.frame, limits.lowest_tone)
 
 
-def _landings(signals: Signals, first: int) -> float:
-    """Return how often the contact lands from a sample on."""
-    if signals.landings is None:
-        return float(least_landings(signals.share[first:, 0]))
-    return float(signals.landings[first:].sum())
-
-
 def _cycle(caught: Array, interval: float) -> float:
     """Return the mean frequency of slips that end at some samples [Hz], NaN for fewer than two."""
     return (caught.size - 1) / (float(caught[-1] - caught[0]) * interval) if caught.size > 1 else float("nan")
@@ -266,7 +260,7 @@ def _cycle(caught: Array, interval: float) -> float:
 
 def _likeness(forces: Array, mean: float) -> float:
     """Return how alike successive samples are, 1 less the root mean square of their differences over the mean force."""
-    return max(0.0, 1.0 - float(np.sqrt(np.mean(np.diff(forces, axis=1) ** 2) * 2.0)) / mean)
+    return max(0.0, 1.0 - float(np.sqrt(np.mean(np.diff(forces, axis=1) ** 2) * len(forces))) / mean)
 
 
 def _losses(signals: Signals, first: int) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""The regime of a contact: whether it slides, sticks, slips, squeals, judders or has left its track."""
+"""The regime of a contact or of several: whether it slides, sticks, slips, squeals, judders or has left its track."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..checks import instance, within
+from ..checks import ArgumentError, instance, listed, within
 from ..records import checked
 from ..records.plain import PlainRecord, plain_of
 from .regime_measures import BUDDING, Measures, Signals, Thresholds, measures
-from .signals import record_of_one
+from .several_contacts import groups, sums
 
 REGIMES = ("stable sliding", "sticking", "stick-slip", "squeal", "judder", "off the track")
 SLIDES, STICKS, SLIPS, SQUEALS, JUDDERS, LEFT = REGIMES
@@ -36,6 +36,8 @@ NEEDED = (
     "impact_loss",
     "friction_loss",
 )
+# What is recorded of each contact.
+OF_CONTACTS = ("status_share", "normal_force", "tangential_force", "landings")
 # What it may have: landings are counted from the shares where it has none.
 TAKEN = (*NEEDED, "landings")
 MEANINGS = {
@@ -68,16 +70,21 @@ def regime(
     frame: float = Thresholds.frame,
     rate: float = Thresholds.rate,
 ) -> xr.Dataset:
-    """Return the regime of a run of one contact, and the measures that decide it.
+    """Return the regime of a run, and the measures that decide it: of its contact, or of all its contacts together.
 
     A run is at rest if its status does not change over the last half of it: then it slides stably, sticks, or has left
     its track, but squeals if it slides with a tone that does not die away. Else it squeals if what is heard is tonal;
     judders if it separates; and sticks and slips if it sticks. The documentation has the reasons.
 
+    Several contacts have one regime: shares of the time weigh each contact by what it carries, slips are those of
+    contacts that carry the better part of the load, forces are heard side by side, those of the points of a surface as
+    their sum. Choose some of them before to have theirs: ``run.sel(contact="a")``, ``run.isel(contact=run.surface ==
+    "pad")``.
+
     Parameters
     ----------
     run : xarray.Dataset
-        A record of `simulate`.
+        A record of `simulate`, or the part of some contacts.
     start : float, optional
         Time at its beginning that is left aside [s]; a tenth of the record if left out.
     rest : float, optional
@@ -109,7 +116,7 @@ def regime(
     Raises
     ------
     ValueError
-        If the record has several contacts or fewer than 2 samples, or an argument is out of its range.
+        If the record has fewer than 2 samples or no contact, or an argument is out of its range.
     """
     limits = Thresholds(rest, tonal, faint, lossy, rare, lowest_tone, frame, rate)
     values = regime_of(run, start=start, limits=limits)
@@ -125,7 +132,7 @@ def regime_of(
     Parameters
     ----------
     run : xarray.Dataset or PlainRecord
-        A record of `simulate`, of one contact.
+        A record of `simulate`.
     start : float, optional
         Time at its beginning that is left aside [s]; a tenth of the record if left out.
     limits : Thresholds, optional
@@ -145,13 +152,18 @@ def regime_of(
 def signals_of(run: xr.Dataset | PlainRecord) -> Signals:
     """Return the plain arrays of a record that decide its regime."""
     held = run if isinstance(run, PlainRecord) and _is_usable(run) else _checked(run)
-    time = held["time"]
+    time, members = held["time"], groups(held.contacts, held.surfaces)
+    normal, tangential = held.by_contact("normal_force"), held.by_contact("tangential_force")
+    # In space one row for each tangent.
+    along = tangential.reshape(*normal.shape, -1)
+    heard = [values for number in range(along.shape[2]) for values in sums(along[..., number], members)]
     return Signals(
         interval=float((time[-1] - time[0]) / (time.size - 1)),
-        share=held["status_share"],
-        # In space one row for each tangent.
-        forces=np.vstack([held["normal_force"], held["tangential_force"].T]),
-        landings=held.variables.get("landings"),
+        share=held.by_contact("status_share"),
+        normal=normal,
+        forces=np.vstack([*sums(normal, members), *heard]),
+        groups=len(members),
+        landings=held.by_contact("landings") if "landings" in held.variables else None,
         lost=held["damping_loss"] + held["impact_loss"],
         rubbed=held["friction_loss"],
         step=float(run.attrs.get("step", 0.0)),
@@ -159,16 +171,22 @@ def signals_of(run: xr.Dataset | PlainRecord) -> Signals:
 
 
 def _is_usable(run: PlainRecord) -> bool:
-    return len(run.contacts) == 1 and run.time.size > 1 and all(name in run for name in NEEDED)
+    return run.time.size > 1 and all(name in run for name in NEEDED)
 
 
 def _checked(run: Any) -> PlainRecord:
-    """Return the plain arrays of a record of one contact that has what is needed; ValueError if it is none."""
+    """Return the plain arrays of a record that has what is needed; ValueError if it is none."""
     given = run.labelled(*run.variables) if isinstance(run, PlainRecord) else run
-    held = checked.record("run", record_of_one(given, *NEEDED), least=2)
+    held = checked.record("run", given, *NEEDED, least=2)
     if "landings" in held.variables:
         checked.record("run", given, "landings")
-    return plain_of(held)
+    if not held.sizes.get("contact", 1):
+        raise ArgumentError("run", "have a contact", got="none")
+    for word in OF_CONTACTS:
+        if word in held.variables and held[word].dims[1:2] != ("contact",) and "contact" in held.dims:
+            dimensions = listed(map(str, held[word].dims))
+            raise ArgumentError("run", f"have a {word} of each contact", got=f"one over {dimensions}")
+    return plain_of(held.squeeze("contact") if held.sizes.get("contact") == 1 else held)
 
 
 def decide(found: Measures, limits: Thresholds, ended: str = "finished") -> tuple[str, float]:

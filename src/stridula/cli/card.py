@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -10,10 +12,13 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from ..analysis import bursts, dominant_frequency, regime_of
+from ..analysis import bowed_motion, bursts, dominant_frequency, regime_of
 from ..analysis.phases import inside
+from ..analysis.regimes import LIMITS
+from ..analysis.several_contacts import groups, loads, mean_shares
 from ..arrays import Array
 from ..records.variables import ENERGY, STATUS_WORDS
+from ..system import System
 from .counts import counted
 
 # Ends that are worth a line.
@@ -30,10 +35,15 @@ CYCLES = ("squeal", "stick-slip")
 STEADY = 1e-9
 
 
-def print_card(record: xr.Dataset, title: str, files: list[str], doubtful: list[str]) -> None:
-    """Print what came of a run, and which of its values are doubtful."""
+def print_card(
+    record: xr.Dataset, title: str, files: list[str], doubtful: list[str], system: System | None = None
+) -> None:
+    """Print what came of a run, of a bowed string the motion that it is in, and which of its values are doubtful."""
     table = Table(title=escape(title), show_header=False, title_justify="left")
-    for name, words in card(record).items():
+    lines = card(record)
+    # Beside the regime, which comes first.
+    shown = {name: lines.pop(name) for name in ("ended", "regime") if name in lines}
+    for name, words in (shown | _strings(record, system) | lines).items():
         table.add_row(name, escape(words))
     if doubtful:
         table.add_row("doubtful", escape("\n".join(doubtful)))
@@ -81,18 +91,59 @@ def _since(record: xr.Dataset) -> str:
     return f", from t = {first:.6g} s to {last:.6g} s"
 
 
+def _strings(record: xr.Dataset, system: System | None) -> dict[str, str]:
+    """Return the motion of the string that all contacts of a run touch, if they do."""
+    first = system.contacts[0] if system else None
+    stretched = [body for body in (first.tip.body, first.track_body) if getattr(body, "tension", 0.0)] if first else []
+    if system is None or len(stretched) != 1 or record.sizes["time"] < 2:
+        return {}
+    string: Any = stretched[0]
+    if not all(string in (contact.tip.body, contact.track_body) for contact in system.contacts):
+        return {}
+    fundamental = float(string.modes().frequency[0])
+    found = bowed_motion(record, fundamental)
+    rate, frequency = float(found["slips_per_period"]), float(found["frequency"])
+    words = f"{found['motion'].item()}{'' if math.isnan(frequency) else f' at {frequency:.4g} Hz'}"
+    slips = "" if math.isnan(rate) else f", {rate:.3g} slips in a period of {fundamental:.4g} Hz"
+    return {"bowed string": f"{words}{slips}, slips for {100.0 * float(found['slip_share']):.1f} % of the time"}
+
+
 def _contact(record: xr.Dataset) -> dict[str, str]:
-    """Return what came of the contact, or of each of several on a line of its own."""
+    """Return what came of the contact; of several, of all together and of each one or each surface on its own line."""
     if "contact" in record.dims:
-        names = [str(name) for name in record["contact"].values]
-        lines = {
-            name: "; ".join(words for words in _one_contact(record.sel(contact=name)).values() if words[:4] != "none")
-            for name in names
-        }
+        lines = {"regime": _regime(record)}
+        for name, part in _parts(record):
+            alone = _one_contact(part) if "contact" not in part.dims else _surface(part)
+            lines[name] = "; ".join(words for words in alone.values() if words[:4] != "none")
         unsolved = int(record["unsolved_steps"].sum())
         words = f"{counted(unsolved, 'step')} with contact forces out of tolerance"
         return lines | ({"unsolved": words} if unsolved else {})
     return _one_contact(record)
+
+
+def _parts(record: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
+    """Yield the record of each contact, those of the points of a surface as one, and what it is called."""
+    names = [str(name) for name in record["contact"].values]
+    surfaces = [str(name) for name in record["surface"].values] if "surface" in record.coords else []
+    for members in groups(names, surfaces):
+        whole = len(members) > 1
+        yield (surfaces if whole else names)[members[0]], record.isel(contact=members if whole else members[0])
+
+
+def _surface(record: xr.Dataset) -> dict[str, str]:
+    """Return what came of the points of a surface together."""
+    carried = loads(record["normal_force"].values, LIMITS.rare)
+    return {
+        "points": counted(carried.size, "point"),
+        "regime": _regime(record),
+        "normal force": _force(record["normal_force"].values.sum(axis=1)),
+        "status": _status(mean_shares(record["status_share"].values, carried)),
+    }
+
+
+def _status(shares: Array) -> str:
+    """Return the shares of the time in each status."""
+    return ", ".join(f"{word} {100 * max(share, 0.0):.1f} %" for word, share in zip(STATUS_WORDS, shares, strict=True))
 
 
 def _one_contact(record: xr.Dataset) -> dict[str, str]:
@@ -103,7 +154,7 @@ def _one_contact(record: xr.Dataset) -> dict[str, str]:
         "regime": _regime(record),
         "normal force": _force(force),
         "dominant frequency": _frequency(record),
-        "status": ", ".join(f"{word} {100 * share:.1f} %" for word, share in zip(STATUS_WORDS, shares, strict=True)),
+        "status": _status(shares),
         "tip": f"from {_place(place[0])} to {_place(place[-1])} along the track",
     }
     return lines | ({"jammed": f"{counted(jammed, 'step')} in which sliding would have jammed"} if jammed else {})

@@ -91,7 +91,7 @@ def _finish(record: xr.Dataset, scenario: Scenario, name: str, out: str | None, 
             _draw(record, plot)
             written.append(plot)
     finally:
-        print_card(record, scenario.title or name, written, doubts(scenario.system))
+        print_card(record, scenario.title or name, written, doubts(scenario.system), scenario.system)
     return written
 
 

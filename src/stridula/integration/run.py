@@ -185,7 +185,8 @@ class Run:
         """Return the record as plain arrays, in a fraction of the time."""
         over = over_time(self.system, *self._over_time(), self.wanted)
         variables = {name: values for name, (_, values) in over.items()}
-        return PlainRecord(self._time(), variables, self.system.contact_names, self._attributes(False, {}))
+        names, surfaces = self.system.contact_names, self.system.surface_names
+        return PlainRecord(self._time(), variables, names, self._attributes(False, {}), surfaces)
 
     @property
     def _last_step(self) -> int:

@@ -63,6 +63,8 @@ def to_dataset(
     data: dict[str, Any] = {name: (*given, _attributes(name, system)) for name, given in over.items()}
     if len(system.contacts) == 1:
         del coordinates["contact"]
+    elif system.surface_names:
+        coordinates["surface"] = ("contact", list(system.surface_names))
     if system.has_two_tangents:
         coordinates["tangent"] = ("tangent", list(TANGENTS))
     for kind, variable in PROBES.items():

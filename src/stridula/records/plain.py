@@ -33,12 +33,15 @@ class PlainRecord:
         Names of the contacts.
     attrs : dict
         Attributes of the record.
+    surfaces : sequence of str, optional
+        Name of the surface that each contact is a point of, empty for none; nothing where there are no surfaces.
     """
 
     time: Array
     variables: Mapping[str, Array]
     contacts: Sequence[str]
     attrs: dict[str, Any]
+    surfaces: Sequence[str] = ()
 
     def __getitem__(self, name: str) -> Array:
         """Return a variable."""
@@ -57,6 +60,11 @@ class PlainRecord:
         """Return whether there is a variable of a name."""
         return name == "time" or name in self.variables
 
+    def by_contact(self, name: str) -> Array:
+        """Return a variable of the contacts over time and contacts, also where there is one contact."""
+        values = self[name]
+        return values if len(self.contacts) > 1 else values[:, None]
+
     def labelled(self, *names: str) -> xr.Dataset:
         """Return some variables with the names of their dimensions, as functions of a record take them."""
         several = len(self.contacts) > 1
@@ -69,6 +77,8 @@ class PlainRecord:
         coordinates: dict[str, Any] = {"time": ("time", self.time)}
         if several:
             coordinates["contact"] = ("contact", list(self.contacts))
+            if self.surfaces:
+                coordinates["surface"] = ("contact", list(self.surfaces))
         return xr.Dataset(data, coordinates, self.attrs)
 
 
@@ -84,4 +94,5 @@ def plain_of(run: xr.Dataset) -> PlainRecord:
     over_time = {str(name): one.values for name, one in held.items() if name != "time" and one.dims[:1] == ("time",)}
     contacts = [str(name) for name in np.atleast_1d(held["contact"].values)] if "contact" in held else ["contact 1"]
     time = held["time"].values if "time" in held else np.empty(0)
-    return PlainRecord(time, over_time, contacts, dict(run.attrs))
+    surfaces = [str(name) for name in np.atleast_1d(held["surface"].values)] if "surface" in held else []
+    return PlainRecord(time, over_time, contacts, dict(run.attrs), surfaces)

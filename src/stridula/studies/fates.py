@@ -227,8 +227,7 @@ def fate_of(runs: Runs, number: int) -> dict[str, Any]:
     grows = np.array(list(rest.reach))
     is_dead = runs.is_dead(run, number)
     found = [] if is_dead else tones_of(signal, rest.exponents, grows, runs.options.resolution)
-    whole = _of_contact(run, which)
-    regime = regime_of(whole, start=max(0.0, _length(run) - measured))
+    regime = regime_of(run, start=max(0.0, _length(run) - measured))
     fate, joined = _fate(runs, run, number, found)
     shares = end["status_share"].mean([name for name in end["status_share"].dims if name != "contact_status"])
     return {

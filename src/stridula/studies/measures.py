@@ -12,7 +12,8 @@ import numpy as np
 import xarray as xr
 
 from ..analysis import advance, dominant_frequency, status_share
-from ..analysis.regimes import MEANINGS, TAKEN, regime_of
+from ..analysis.regimes import LIMITS, MEANINGS, TAKEN, regime_of
+from ..analysis.several_contacts import loads, mean_shares
 from ..analysis.signals import samples
 from ..analysis.stability import stability_of
 from ..checks import ArgumentError, brief, suggestion
@@ -83,12 +84,19 @@ def _labelled(run: Run, *names: str) -> xr.Dataset:
 
 
 def _shares(run: Run) -> Values:
-    known = _labelled(run, "status_share")
+    """Return the shares of the time, of several contacts those of each weighing as it carries."""
+    known = _labelled(run, "status_share", "normal_force")
+    if "contact" in known.dims:
+        carried = loads(known["normal_force"].values, LIMITS.rare)
+        found = mean_shares(known["status_share"].values, carried).tolist()
+        return {f"{status}_share": share for status, share in zip(STATUS_WORDS, found, strict=True)}
     return {f"{status}_share": status_share(known, status) for status in STATUS_WORDS}
 
 
 def _normal_force(run: Run) -> xr.DataArray:
-    return _labelled(run, "normal_force")["normal_force"]
+    """Return the normal force, of several contacts their sum."""
+    force = _labelled(run, "normal_force")["normal_force"]
+    return force.sum("contact") if "contact" in force.dims else force
 
 
 def _dominant_frequency(run: Run) -> Values:
@@ -128,7 +136,7 @@ MEASURES = {
                 Column("sliding_share", "1", "share of the time in which the contact slides"),
             ),
             _shares,
-            needs=("status_share",),
+            needs=("status_share", "normal_force"),
         ),
         Measure(
             "dominant_frequency",
