@@ -2,8 +2,9 @@
 
 Wave superposition (Koopmann, Song & Fahnline 1989, J. Acoust. Soc. Am. 86, 2433-2438): what a body sends out is the
 field of sources within it, whatever they are, once that field has the body's normal acceleration a all over the
-surface, ``dp/dn = -rho a``. Strengths are found by least squares, each with Tikhonov's term: sources that lie deep, or
-between two frequencies at which the inside of their surface resonates, would else grow without bound.
+surface, ``dp/dn = -rho a``. Strengths are found by least squares with Tikhonov's term, as sources that lie deep would
+else grow without bound. Every other source lies deeper: on one surface they could not make all fields at the
+frequencies at which the inside of that surface resonates.
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ from ..arrays import Array
 
 # Share of the largest singular value, that of columns of unit length, at which strengths are held back.
 HELD_BACK = 1e-7
-# Depth of sources: of the distance to their neighbours, and of the radius of the ball within the body, at most.
-DEPTH_OF_SPACING, DEPTH_OF_BALL = 1.5, 0.6
+# Depth of sources: of the distance to their neighbours, and of the radius of the ball within the body, at most; how
+# much deeper every other one is.
+DEPTH_OF_SPACING, DEPTH_OF_BALL, DEEPER = 1.5, 0.6, 1.2
 
 
 class Radiator(Protocol):
@@ -55,6 +57,12 @@ class Fit(NamedTuple):
 
     strengths: tuple[Array, ...]
     errors: Array
+
+
+def depths(spacing: Array, ball: Array) -> Array:
+    """Return how deep below the surface sources lie [m], by their spacing and the radii of balls that fit there [m]."""
+    deeper = np.where(np.arange(len(spacing)) % 2, DEEPER, 1.0)
+    return np.asarray(deeper * np.minimum(DEPTH_OF_SPACING * spacing, DEPTH_OF_BALL * ball))
 
 
 def fitted(matrix: Array, wanted: Array, areas: Array, spacing: Array) -> tuple[Array, Array]:

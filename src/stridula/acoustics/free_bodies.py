@@ -64,7 +64,7 @@ def free_sound(
     pressure, notes, errors = np.zeros((len(places), moved.samples)), [], {}
     spans = assemble(system).spans
     for body, surface, away in zip(heard, surfaces, distances, strict=True):
-        first, end = spans[system.body_name(body)]
+        first, _ = spans[system.body_name(body)]
         modes = first + np.flatnonzero(~body.modes().massless)
         sent = free_responses(surface, places, away, air, moved.interval, shift, bandwidth)
         pressure += _convolved(sent, moved, modes)

@@ -2,28 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
 from ..bodies.body_surfaces import BodySurface
 from .air import Air
 from .delays import Response
 from .equivalent_sources import Fit, Radiator
-from .point_sources import PointSources
+from .surface_pressures import SurfacePressures
 from .ring_sources import RingSources
 
 # Frequency above which nothing is left of a response, over the bandwidth.
 STOP = 1.2
 # Length of a response in times of travel through the body, and in periods of the width between bandwidth and stop.
-TRAVELS, PERIODS = 3.0, 8.0
+TRAVELS, PERIODS = 2.0, 6.0
 # Share of the largest value of a response that may be left at its end, before frequencies are taken twice as close, and
 # how often.
-LEFT, TIMES = 1e-3, 3
+LEFT, TIMES = 2e-3, 3
 # By its form.
-RADIATORS: dict[str, type[RingSources] | type[PointSources]] = {"rings": RingSources, "points": PointSources}
+RADIATORS: dict[str, Callable[[Any], Radiator]] = {"rings": RingSources, "points": SurfacePressures}
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +45,9 @@ class Fits:
     def at(self, wavenumber: float) -> Fit:
         """Return the fit at a wavenumber [rad/m]."""
         if wavenumber not in self.known:
-            self.known[wavenumber] = self.radiator.fit(wavenumber)
+            # Matrices are too small for threads to help.
+            with threadpool_limits(1):
+                self.known[wavenumber] = self.radiator.fit(wavenumber)
         return self.known[wavenumber]
 
 

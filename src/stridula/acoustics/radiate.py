@@ -62,8 +62,8 @@ def radiate(
     listener : tuple of float, or sequence of tuples, optional
         Where one listens, x, y, z [m]: x along the track from its left end, y across it in its surface, from the axis
         of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above the
-        middle of the track if left out. In space they are those of the world; the ears are then a metre above the middle
-        of what is heard, where the tip of the first contact is.
+        middle of the track if left out. In space they are those of the world; the ears are then a metre above the
+        middle of what is heard, on the side of the first contact's tip.
     bodies : sequence of AxisymmetricBody or SolidBody, optional
         Which bodies of a system are heard; all that have a surface if left out.
     baffled : bool, optional
@@ -88,16 +88,17 @@ def radiate(
     ------
     ValueError
         If the record diverged, holds NaN or fewer than 2 samples, or presses beyond the track; if its track was changed
-        while it was played; if a listener is in the
-        surface, behind the baffle, on the beam or in a body; if the sample rate is more than the record supports, or too
-        low; if a body has no surface, or the record is not one of the system.
+        while it was played; if a listener is in the surface, behind the baffle, on the beam or in a body; if the sample
+        rate is more than the record supports, or too low; if a body has no surface, or the record is not one of the
+        system.
     """
     if baffled is not None:
         instance("baffled", baffled, bool)
-    if hasattr(track, "contacts"):
+    system: Any = track
+    if hasattr(system, "contacts"):
         if baffled:
             raise ArgumentError("baffled", "be False, or left out, for bodies in space", baffled)
-        pressure, time, listeners, attributes = free_sound(run, track, listener, bodies, air, sample_rate)
+        pressure, time, listeners, attributes = free_sound(run, system, listener, bodies, air, sample_rate)
         return _labelled(pressure, time, listeners, attributes)
     if bodies is not None:
         raise ArgumentError("bodies", "be left out but for a System", bodies)

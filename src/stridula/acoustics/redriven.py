@@ -1,6 +1,6 @@
-"""Accelerations of the modes of bodies in space, driven again by the forces of a record at their contacts and by drives.
+"""Accelerations of the modes of bodies in space, driven again by the forces of a record and by drives.
 
-What `driven` does for a track, in three dimensions: forces act along the normal and both tangents, where contacts stand.
+What `driven` does for a track, in three dimensions: forces act along the normal and both tangents of each contact.
 Pairs of modes of a body that turns are plain oscillators where they move with their waves. Forces are turned into that
 frame and motion out of it, by the angle ``b`` of the waves, with ``J`` a quarter of a turn:
 
@@ -12,7 +12,6 @@ Modes that springs couple are taken together, as the modes that they have with t
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.linalg

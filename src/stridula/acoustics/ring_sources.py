@@ -19,7 +19,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies.body_surfaces import RingSurface, inscribed_radius
-from .equivalent_sources import DEPTH_OF_BALL, DEPTH_OF_SPACING, Fit, fitted
+from .equivalent_sources import Fit, depths, fitted
 
 # Angles round a ring: for a wave of its sharpest part, and for each radian of the waves of sound, beyond the order.
 SHARPEST, SMOOTH, MORE = 12.0, 1.4, 40
@@ -57,7 +57,7 @@ class RingSources:
         mirrored = surface.places * np.array([-1.0, 1.0])
         ball = inscribed_radius(middle, -inward, np.concatenate([surface.places, mirrored]))
         spacing = surface.widths[::2] + surface.widths[1::2]
-        return np.asarray(middle + np.minimum(DEPTH_OF_SPACING * spacing, DEPTH_OF_BALL * ball)[:, None] * inward)
+        return np.asarray(middle + depths(spacing, ball)[:, None] * inward)
 
     @cached_property
     def orders(self) -> Array:
@@ -91,15 +91,17 @@ class RingSources:
     def _slopes(self, wavenumber: float) -> Array:
         """Return the derivatives of the fields along the normals of the surface, shape (orders, rings, sources)."""
         still, bent = self._sharp
-        found = still + wavenumber**2 * bent + 0j
+        real, imaginary = still + wavenumber**2 * bent, np.zeros_like(still)
         reach = wavenumber * float(self.surface.places[:, 0].max())
         count = int(SMOOTH * reach) + int(self.orders.max()) + MORE
         for angles, weights in _in_parts(*_half_turn(count), self._pairs):
             away, slope = self._distances(angles)
-            phase = wavenumber * away
-            rest = (1.0 + 1j * phase) * np.exp(-1j * phase) - 1.0 - 0.5 * phase**2
-            found -= _harmonics(rest * slope / away**2, self.orders, angles, weights)
-        return found
+            phase, scale = wavenumber * away, slope / away**2
+            cosine, sine = np.cos(phase), np.sin(phase)
+            rest = (cosine - 1.0 + phase * (sine - 0.5 * phase)) * scale
+            real -= _harmonics(rest, self.orders, angles, weights)
+            imaginary -= _harmonics((phase * cosine - sine) * scale, self.orders, angles, weights)
+        return real + 1j * imaginary
 
     @cached_property
     def _sharp(self) -> tuple[Array, Array]:
@@ -158,10 +160,8 @@ def _towards_zero(nearest: float, order: int) -> tuple[Array, Array]:
 
     Gauss' points in parts that are each as long as all before them, the first as long as what is nearest is far.
     """
-    ends = [np.pi]
-    while ends[-1] > min(nearest, 1.0):
-        ends.append(0.5 * ends[-1])
-    ends = np.array([*ends, 0.0])[::-1]
+    halvings = max(1, int(np.ceil(np.log2(np.pi / min(nearest, 1.0)))))
+    ends = np.append(0.0, np.pi * 0.5 ** np.arange(halvings, -1.0, -1.0))
     nodes, rates = np.polynomial.legendre.leggauss(GAUSS + order)
     angles = ends[:-1, None] + 0.5 * (nodes + 1.0) * np.diff(ends)[:, None]
     return angles.ravel(), (0.5 / np.pi * rates * np.diff(ends)[:, None]).ravel()

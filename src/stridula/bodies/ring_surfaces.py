@@ -12,7 +12,7 @@ from .profile_mesh import SAME_PLACE, ProfileMesh
 CORNER = 0.9
 # Length of a part over the radius of the ball within the body there, and least one over the least thickness: close to
 # an edge the air flows round it, and parts get shorter as long as that matters.
-PART_OF_BALL, LEAST_PART = 0.7, 1e-4
+PART_OF_BALL, LEAST_PART = 0.6, 1e-3
 # Samples of a run.
 SAMPLES = 400
 
