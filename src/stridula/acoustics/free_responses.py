@@ -15,8 +15,8 @@ from ..bodies.body_surfaces import BodySurface
 from .air import Air
 from .delays import Response
 from .equivalent_sources import Fit, Radiator
-from .surface_pressures import SurfacePressures
 from .ring_sources import RingSources
+from .surface_pressures import SurfacePressures
 
 # Frequency above which nothing is left of a response, over the bandwidth.
 STOP = 1.2

@@ -94,15 +94,24 @@ def radiate(
     """
     if baffled is not None:
         instance("baffled", baffled, bool)
-    system: Any = track
-    if hasattr(system, "contacts"):
+    what: Any = track
+    if hasattr(what, "contacts"):
         if baffled:
             raise ArgumentError("baffled", "be False, or left out, for bodies in space", baffled)
-        pressure, time, listeners, attributes = free_sound(run, system, listener, bodies, air, sample_rate)
-        return _labelled(pressure, time, listeners, attributes)
+        return _labelled(*free_sound(run, what, listener, bodies, air, sample_rate))
     if bodies is not None:
         raise ArgumentError("bodies", "be left out but for a System", bodies)
-    baffled = baffled is not False
+    return _of_track(run, what, listener, baffled is not False, air, sample_rate)
+
+
+def _of_track(
+    run: xr.Dataset,
+    track: ModalBeam | ModalPlate,
+    listener: Any,
+    baffled: bool,
+    air: Air | None,
+    sample_rate: float | None,
+) -> xr.DataArray:
     air = Air() if air is None else air
     instance("air", air, Air)
     surface: Callable[[Any], Panel] = panel_of if baffled else line_of

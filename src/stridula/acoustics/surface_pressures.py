@@ -4,8 +4,8 @@ Helmholtz's integral over the surface of a body, n outward, with the normal acce
 
     p(x) / 2 = integral of (p dG/dn + rho a G) dS, G = exp(-i k R) / (4 pi R),
 
-is an equation for the pressure p there; beyond the body the same integral is the pressure itself, and within it is zero.
-At frequencies at which the inside resonates only this last statement tells the pressure: it is asked for at some points
+is an equation for the pressure p there; beyond the body the same integral is the pressure itself, within it is zero. At
+frequencies at which the inside resonates only this last statement tells the pressure: it is asked for at some points
 within, in least squares (Schenck 1968, J. Acoust. Soc. Am. 44, 41-58). Unlike sources that lie within, a pressure is
 finite at edges, so that patches need not get smaller towards them.
 """
@@ -90,11 +90,12 @@ class SurfacePressures:
 
         With `own` the places are those of the patches, and each gives nothing at its own.
         """
-        surface, square, toward = self.surface, np.zeros((len(places), len(self.surface.areas))), 0.0
+        surface = self.surface
+        square, toward = np.zeros((2, len(places), len(surface.areas)))
         for axis in range(3):
             apart = surface.points[:, axis] - places[:, axis, None]
             square += apart**2
-            toward = toward + apart * surface.normals[:, axis]
+            toward += apart * surface.normals[:, axis]
         if own:
             square[np.diag_indices_from(square)] = 1.0
         away = np.sqrt(square)
