@@ -24,6 +24,9 @@ from ..system import System
 from .driven import FASTEST, LEAD, respond, steady
 from .recorded import sampled
 
+# Steps of an interval at which drives are looked up.
+MOST_STEPS = 50
+
 
 @dataclass(frozen=True)
 class Moved:
@@ -76,18 +79,27 @@ def redriven(run: xr.Dataset, system: System) -> Moved:
     first = start + interval * (0.5 - LEAD) - 0.5 * interval / steps
     times = first + interval * np.arange(samples + 2 * LEAD)
     rows, signals = _of_contacts(flat, normal, tangential)
-    loads = np.zeros((len(flat.loads), times.size))
-    for load, signal in zip(loads, flat.signals, strict=False):
-        load[:] = np.where(times < start, 0.0, signal(np.maximum(times, start), interval / steps))
+    loads = _of_drives(flat, start, interval, min(steps, MOST_STEPS), samples)
     if system.initial_equilibrium is not None:
         # It has stood so for long.
-        signals = signals - signals[:, :1]
-        loads = np.where(times < start, 0.0, loads - loads[:, [LEAD]])
-    forces = rows.T @ steady(signals, steps) + flat.loads.T @ loads
+        signals, loads = signals - signals[:, :1], loads - loads[:, :1]
+    forces = rows.T @ steady(signals, steps)
+    if len(loads):
+        forces += flat.loads.T @ steady(loads, steps)
     pushes = np.flatnonzero(signals.any(axis=0))
     found, left_out = _moved(flat, forces, times, interval)
     pushed = 0.0 if loads.any() else (float(pushes[0]) * interval if pushes.size else None)
     return Moved(start, interval, samples, first, found, left_out, pushed)
+
+
+def _of_drives(flat: Assembly, start: float, interval: float, steps: int, samples: int) -> Array:
+    """Return means of the factors of loads over the steps of each interval, shape (loads, samples)."""
+    step = interval / steps
+    times = start + step * np.arange(samples * steps)
+    found = np.zeros((len(flat.loads), samples))
+    for load, signal in zip(found, flat.signals, strict=False):
+        load[:] = signal(times, step).reshape(samples, steps).mean(axis=1)
+    return found
 
 
 def _of_contacts(flat: Assembly, normal: Array, tangential: Array) -> tuple[Array, Array]:
