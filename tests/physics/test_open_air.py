@@ -143,6 +143,32 @@ def test_no_sound_arrives_before_its_time():
     assert np.abs(heard.values).max() > 0.0
 
 
+def test_a_record_is_heard_without_the_mesh(tmp_path):
+    system, _ = struck(20.0, damping=0.06, cutoff=800.0)
+    run = st.simulate(system, 2e-3, step=1e-5, sample_rate=1e4)
+    st.save(run, tmp_path / "run.nc")
+    again = st.load_scenario(tmp_path / "run.nc").system
+    assert [body.kind for body in again.bodies] == ["rigid body", "modal body"]
+    place = (0.3, 0.3, 0.5)
+    known, found = (st.radiate(run, one, place).values for one in (system, again))
+    assert np.abs(known).max() > 0.0
+    np.testing.assert_array_equal(found, known)
+    # By its form, from lists as a scenario has them.
+    body = again.track
+    bare = replace(body, outer_surface=None)
+    assert not bare.has_surface
+    assert bare != body
+    with pytest.raises(ValueError, match="system must have a body with a surface to be heard, got slider and track"):
+        st.radiate(run, st.System(replace(system.contacts[0], track=bare.at(bare.point_names[0]))), place)
+
+
+def test_a_surface_that_does_not_fit_the_modes_is_refused():
+    surface = disc(0.0, cutoff=800.0).surface().as_points
+    points, modes = {"tip": np.ones((3, 2))}, [1.0, 2.0]
+    with pytest.raises(ValueError, match=r"outer_surface.shapes must be finite numbers of the shape \(\d+, 2\)"):
+        st.ModalBody(modes, points, outer_surface=surface)
+
+
 def test_sums_and_choices_of_bodies():
     plate = disc(0.0, cutoff=1500.0)
     block = st.SolidBody.block((0.02, 0.02, 0.03), (1, 1, 2), STEEL, points={"tip": 0}, cutoff=2e4)

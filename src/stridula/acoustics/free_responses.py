@@ -37,6 +37,8 @@ class Fits:
     ----------
     radiator : Radiator
         Its equivalent sources.
+    known : dict
+        Fits made so far, by their wavenumbers [rad/m].
     """
 
     radiator: Radiator

@@ -2,19 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..arrays import Array
-from ..checks import positive
+from ..checks import ArgumentError, listed, positive
 
 # Highest frequency of sound that surfaces are cut for where none is given [Hz], parts of one in the wavelength, and the
 # speed of sound [m/s].
 HIGHEST, PARTS_IN_WAVE, SOUND = 24e3, 4.0, 340.0
 # Sine of the angle below which points lie in one plane.
 FLAT = 1e-6
+# Shapes of the fields.
+SIZES: dict[str, tuple[Any, ...]] = {
+    "points": ("rows", 3),
+    "places": ("rows", 2),
+    "normals": ("rows", "axes"),
+    "areas": ("rows",),
+    "widths": ("rows",),
+    "shapes": ("rows", "modes"),
+    "orders": ("modes",),
+    "sides": ("modes",),
+    "frame": (3, 3),
+    "origin": (3,),
+}
 # Points round a body of revolution for one wave of its highest order, and at least.
 POINTS_A_WAVE, LEAST_ROUND = 8, 24
 
@@ -45,6 +59,11 @@ class PointSurface:
     def as_points(self) -> PointSurface:
         """The surface as points: itself."""
         return self
+
+    @property
+    def content(self) -> tuple[bytes, ...]:
+        """All its numbers."""
+        return _content(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +98,11 @@ class RingSurface:
     frame: Array
     origin: Array
 
+    @property
+    def content(self) -> tuple[bytes, ...]:
+        """All its numbers."""
+        return _content(self)
+
     def round(self, theta: Array) -> Array:
         """Return the cosine or the sine that each mode goes as at angles [rad], shape (..., modes)."""
         turned = np.multiply.outer(theta, self.orders)
@@ -99,6 +123,42 @@ class RingSurface:
 
 
 BodySurface = PointSurface | RingSurface
+
+
+def surface_of(values: Mapping[str, Any]) -> BodySurface:
+    """Return the surface whose fields are given by name, as lists or arrays.
+
+    Raises
+    ------
+    ValueError
+        If fields are missing, or numbers do not fit each other.
+    """
+    given = {name: np.asarray(value, dtype=float) for name, value in values.items() if value is not None}
+    kind = RingSurface if "places" in given else PointSurface
+    names = [one.name for one in fields(kind)]
+    if set(names) != set(given):
+        raise ArgumentError("outer_surface", f"have {listed(names)}", got=f"{listed(given)}")
+    for name in ("orders", "sides"):
+        if name in given:
+            given[name] = given[name].astype(int)
+    found: BodySurface = kind(**given)
+    check_surface("outer_surface", found, found.shapes.shape[-1])
+    return found
+
+
+def check_surface(name: str, surface: BodySurface, modes: int) -> None:
+    """Raise ValueError unless the numbers of a surface are finite, and fit each other and a number of modes."""
+    for one in fields(surface):
+        values = getattr(surface, one.name)
+        wanted = tuple({"rows": len(surface.normals), "modes": modes}.get(size, size) for size in SIZES[one.name])
+        axes = surface.normals.shape[-1:]
+        wanted = tuple(axes[0] if size == "axes" else size for size in wanted)
+        if values.shape != wanted or not np.isfinite(values).all():
+            raise ArgumentError(f"{name}.{one.name}", f"be finite numbers of the shape {wanted}", got=values.shape)
+
+
+def _content(surface: BodySurface) -> tuple[bytes, ...]:
+    return tuple(np.asarray(getattr(surface, one.name), dtype=float).tobytes() for one in fields(surface))
 
 
 def largest_part(frequency: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 PATCH_OF_BALL, PATCH_OF_PART = 1.0, 0.8
 # Points that a surface has, about, at most.
 MOST = 1000
+# Points at which thickness is looked for, about.
+SAMPLES = 300
 
 
 def outer_faces(mesh: SolidMesh) -> Array:
@@ -44,7 +47,8 @@ def cut_faces(mesh: SolidMesh, shapes: Array, largest: float) -> PointSurface:
         Largest part of the surface for sound [m].
     """
     coarse = _cut(mesh, shapes[:, :, :0], largest)
-    ball = float(np.median(inscribed_radius(coarse.points, coarse.normals, coarse.points)))
+    some = slice(None, None, max(1, len(coarse.areas) // SAMPLES))
+    ball = float(np.median(inscribed_radius(coarse.points[some], coarse.normals[some], coarse.points)))
     least = float(np.sqrt(coarse.areas.sum() / MOST))
     size = max(least, min(PATCH_OF_BALL * ball, PATCH_OF_PART * largest))
     found = _cut(mesh, shapes, size)
@@ -55,16 +59,19 @@ def _cut(mesh: SolidMesh, shapes: Array, size: float) -> PointSurface:
     """Return the middles of patches whose sides are about as long as a size."""
     kind, found = mesh.element_kind, []
     for element, side in outer_faces(mesh):
-        corners = kind.nodes[list(kind.faces[side])]
         nodes = mesh.elements[element]
         ends = mesh.nodes[nodes[list(kind.faces[side])]]
         lengths = np.linalg.norm(ends - np.roll(ends, -1, axis=0), axis=1)
         lengths = np.maximum(lengths[:2], lengths[2:]) if len(ends) == 4 else lengths.max(keepdims=True)
-        counts = np.maximum(1, np.round(lengths / size)).astype(int).tolist()
-        places, vectors, values = _patches(kind, corners, mesh.nodes[nodes], counts)
+        counts = tuple(np.maximum(1, np.round(lengths / size)).astype(int).tolist())
+        values, slopes, first, second, area = _patches(kind, int(side), counts)
+        jacobian = np.einsum("pni,nj->pij", slopes, mesh.nodes[nodes])
+        vectors = area * np.cross(np.einsum("i,pij->pj", first, jacobian), np.einsum("i,pij->pj", second, jacobian))
         areas = np.linalg.norm(vectors, axis=1)
         normals = vectors / areas[:, None]
-        found.append((places, normals, areas, np.einsum("pn,nxm,px->pm", values, shapes[nodes], normals)))
+        found.append(
+            (values @ mesh.nodes[nodes], normals, areas, np.einsum("pn,nxm,px->pm", values, shapes[nodes], normals))
+        )
     return PointSurface(*(np.concatenate(one) for one in zip(*found, strict=True)))
 
 
@@ -82,8 +89,13 @@ def _merged(surface: PointSurface, size: float) -> PointSurface:
     return PointSurface(points, normals / np.linalg.norm(normals, axis=1)[:, None], areas, shapes)
 
 
-def _patches(kind: ElementKind, corners: Array, nodes: Array, counts: list[int]) -> tuple[Array, Array, Array]:
-    """Return the middles of the patches of a face, area times normal of each, and the shares of the element's nodes."""
+@lru_cache(maxsize=256)
+def _patches(kind: ElementKind, side: int, counts: tuple[int, ...]) -> tuple[Array, Array, Array, Array, float]:
+    """Return the patches of a face of the unit element.
+
+    Shares of the nodes in their middles, their slopes, the two sides of the face, and the area of a patch.
+    """
+    corners = kind.nodes[list(kind.faces[side])]
     first, second = corners[1] - corners[0], corners[-1] - corners[0]
     if len(corners) == 4:
         one, other = counts
@@ -98,6 +110,4 @@ def _patches(kind: ElementKind, corners: Array, nodes: Array, counts: list[int])
         v = np.concatenate([j[up] + 1.0 / 3.0, j[down] + 2.0 / 3.0]) / count
         area = 0.5 / count**2
     values, slopes = shape_functions(kind, corners[0] + u[:, None] * first + v[:, None] * second)
-    jacobian = np.einsum("pni,nj->pij", slopes, nodes)
-    vectors = np.cross(np.einsum("i,pij->pj", first, jacobian), np.einsum("i,pij->pj", second, jacobian))
-    return values @ nodes, area * vectors, values
+    return values, slopes, first, second, area
