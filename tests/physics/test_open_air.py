@@ -143,7 +143,7 @@ def test_no_sound_arrives_before_its_time():
     assert np.abs(heard.values).max() > 0.0
 
 
-def test_a_record_is_heard_without_the_mesh(tmp_path):
+def test_a_record_is_heard_without_the_mesh(stridula, tmp_path):
     system, _ = struck(20.0, damping=0.06, cutoff=800.0)
     run = st.simulate(system, 2e-3, step=1e-5, sample_rate=1e4)
     st.save(run, tmp_path / "run.nc")
@@ -154,11 +154,17 @@ def test_a_record_is_heard_without_the_mesh(tmp_path):
     assert np.abs(known).max() > 0.0
     np.testing.assert_array_equal(found, known)
     # By its form, from lists as a scenario has them.
+    code, out, err = stridula("sound", "run.nc", "--listener", "0.3,0.3,0.5", "--wav", "a.wav")
+    assert (code, err) == (0, "")
+    assert "a.wav: 1 channel, 48 kHz" in out
+    assert "without a surface and not heard: slider" in out
     body = again.track
     bare = replace(body, outer_surface=None)
     assert not bare.has_surface
     assert bare != body
-    with pytest.raises(ValueError, match="system must have a body with a surface to be heard, got slider and track"):
+    with pytest.raises(
+        ValueError, match="system must have a body with a surface to be heard, got none of slider, track"
+    ):
         st.radiate(run, st.System(replace(system.contacts[0], track=bare.at(bare.point_names[0]))), place)
 
 

@@ -99,7 +99,7 @@ def _chosen(system: System, bodies: Sequence[Any] | None) -> tuple[list[Any], li
     heard, silent = bodies_heard(system)
     if bodies is None:
         if not heard:
-            raise ArgumentError("system", "have a body with a surface to be heard", got=f"{listed(silent)} without")
+            raise ArgumentError("system", "have a body with a surface to be heard", got=f"none of {listed(silent)}")
         return heard, silent
     if isinstance(bodies, str) or not isinstance(bodies, Sequence) or not bodies:
         raise ArgumentError("bodies", "be one or more bodies of the system", bodies)
