@@ -143,6 +143,7 @@ def _taps(
     turned = np.exp(2j * np.pi / lasts * np.outer(times, np.arange(len(heard))))
     turned[:, 1:] *= 2.0
     taps = interval / lasts * (turned @ heard).real
-    size = np.abs(taps).max(axis=0)
-    end = np.abs(taps[times > lasts - 1.25 * early]).max(axis=0)
-    return Response(first, taps), float(np.max(end / np.where(size > 0.0, size, 1.0), initial=0.0))
+    # Of the loudest mode: what others leave is not heard beside it.
+    size = float(np.abs(taps).max(initial=0.0))
+    end = float(np.abs(taps[times > lasts - 1.25 * early]).max(initial=0.0))
+    return Response(first, taps), end / size if size else 0.0
