@@ -20,6 +20,7 @@ of means.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Protocol
 
 import numpy as np
 from scipy.signal import lfilter
@@ -36,6 +37,8 @@ UNDONE = 5.0 / 12.0
 FASTEST = 0.95 * np.pi
 # Samples ahead and back from which accelerations are made, and frequencies at which that is fitted.
 DEGREE, FITTED = 3, 120
+# Differences of a number of times.
+DIFFERENCES = ((1.0,), (1.0, -1.0), (1.0, -2.0, 1.0))
 
 
 @lru_cache(maxsize=16)
@@ -102,31 +105,49 @@ def modal_forces(panel: Panel, pressing: Pressing) -> Array:
     return found
 
 
-def respond(panel: Panel, forces: Array, interval: float) -> Array:
-    """Return the accelerations of modes under impulses ``interval * forces``, shape (modes, samples)."""
+class Oscillators(Protocol):
+    """Modes as far as forces move them."""
+
+    @property
+    def angular_frequency(self) -> Array:
+        """Angular frequencies w [rad/s], shape (modes,)."""
+
+    @property
+    def damping_rate(self) -> Array:
+        """``2 zeta w`` [1/s], shape (modes,)."""
+
+
+def respond(modes: Oscillators, forces: Array, interval: float, derivative: int = 2) -> Array:
+    """Return the accelerations of modes under impulses ``interval * forces``, shape (modes, samples).
+
+    Or their velocities or displacements, the `derivative` of that number.
+    """
     found = np.empty_like(forces)
-    for row, force, taps in zip(found, forces, filters(panel, interval), strict=True):
+    for row, force, taps in zip(found, forces, filters(modes, interval, derivative), strict=True):
         # The numerator reaches DEGREE samples ahead.
         row[:] = lfilter(*taps, np.pad(force, (0, DEGREE), mode="edge"))[DEGREE:]
     return found
 
 
-def filters(panel: Panel, interval: float) -> list[tuple[Array, Array]]:
-    """Return for each mode numerator and poles that make its accelerations, `DEGREE` samples late, of impulses."""
+def filters(modes: Oscillators, interval: float, derivative: int = 2) -> list[tuple[Array, Array]]:
+    """Return for each mode numerator and poles that make its accelerations, `DEGREE` samples late, of impulses.
+
+    Or its velocities or displacements, the `derivative` of that number.
+    """
     turned = 2.0 * np.pi * np.linspace(0.0, UNDONE, FITTED + 1)[1:]
     late, angular = np.exp(-1j * turned), turned / interval
     powers = late[:, None] ** np.arange(-DEGREE, DEGREE + 1)
     found = []
-    for own, rate in zip(panel.angular_frequency, panel.damping_rate, strict=True):
+    for own, rate in zip(modes.angular_frequency, modes.damping_rate, strict=True):
         decay = 0.5 * float(rate) * interval
         cosine = np.cos(np.sqrt((own * interval) ** 2 - decay**2 + 0j)).real
         poles = np.array([1.0, -2.0 * np.exp(-decay) * cosine, np.exp(-2.0 * decay)])
-        answer = -(angular**2) / (own**2 - angular**2 + 1j * rate * angular)
-        missing = answer * np.polyval(poles[::-1], late) / (1.0 - late) ** 2
+        answer = (1j * angular) ** derivative / (own**2 - angular**2 + 1j * rate * angular)
+        missing = answer * np.polyval(poles[::-1], late) / (1.0 - late) ** derivative
         weighed = powers / np.abs(missing)[:, None]
         aim = missing / np.abs(missing)
         taps = np.linalg.lstsq(
             np.concatenate([weighed.real, weighed.imag]), np.concatenate([aim.real, aim.imag]), rcond=None
         )[0]
-        found.append((np.convolve(taps, [1.0, -2.0, 1.0]), poles))
+        found.append((np.convolve(taps, DIFFERENCES[derivative]), poles))
     return found

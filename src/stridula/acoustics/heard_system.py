@@ -1,4 +1,4 @@
-"""The sound of a record of a whole system: of the first of its tracks that can be heard."""
+"""The sound of a record of a whole system: of its bodies in space, or of the first of its tracks that can be heard."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import xarray as xr
 
 from ..bodies import ModalBeam, ModalPlate
 from ..checks import ArgumentError
+from .free_bodies import bodies_heard
+from .panels import panel_of
 from .radiate import radiate
 
 
@@ -26,8 +28,16 @@ def track_of(system: Any) -> ModalBeam | ModalPlate:
     raise ArgumentError("track", "be a modal beam or a modal plate to be heard", got=f"a {type(tracks[0]).__name__}")
 
 
+def check_heard(system: Any) -> None:
+    """Raise ValueError if no body in space and no track in a baffle can be heard of a system."""
+    if not bodies_heard(system)[0]:
+        panel_of(track_of(system))
+
+
 def heard(record: xr.Dataset, system: Any, places: Any = None, baffled: bool = True) -> xr.DataArray:
-    """Return the sound of the first track that can be heard, under the contacts that press on it.
+    """Return the sound of all bodies in space that have a surface, else of the first track that can be heard.
+
+    The track is that under the contacts that press on it; bodies in space are in open air.
 
     Parameters
     ----------
@@ -45,6 +55,8 @@ def heard(record: xr.Dataset, system: Any, places: Any = None, baffled: bool = T
     ValueError
         If there is no such track, or the record cannot be heard.
     """
+    if bodies_heard(system)[0]:
+        return radiate(record, system, places)
     track = track_of(system)
     on_it = [number for number, contact in enumerate(system.contacts) if contact.track == track]
     several = "contact" in record.dims

@@ -12,9 +12,13 @@ from ..bodies import ModalBeam, ModalPlate
 from ..checks import ArgumentError, at_least, at_most, finite, positive
 
 FARTHEST = 1000.0
+# Of a pair of ears, above what they hear and between them [m].
+HEIGHT, SPACING = 1.0, 0.18
 
 
-def ears(track: ModalBeam | ModalPlate, height: float = 1.0, spacing: float = 0.18) -> list[tuple[float, float, float]]:
+def ears(
+    track: ModalBeam | ModalPlate, height: float = HEIGHT, spacing: float = SPACING
+) -> list[tuple[float, float, float]]:
     """Return the places of two ears above the middle of a track, the left one first, side by side along it.
 
     Parameters

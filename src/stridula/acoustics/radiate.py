@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -11,12 +11,15 @@ import xarray as xr
 
 from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
-from ..checks import instance
+from ..checks import ArgumentError, instance
 from ..records.changes import check_one_track
+from ..records.variables import described
+from ..system import System
 from .air import Air
 from .convolution import Convolution
 from .delays import Response
 from .driven import FASTEST, accelerations, first_time
+from .free_bodies import free_sound
 from .listeners import ears, listeners_of
 from .panels import Panel, line_of, panel_of
 from .recorded import Pressing, pressing
@@ -33,31 +36,39 @@ AUDIBLE = 16e3
 
 def radiate(
     run: xr.Dataset,
-    track: ModalBeam | ModalPlate,
+    track: ModalBeam | ModalPlate | System,
     listener: Any = None,
     *,
-    baffled: bool = True,
+    bodies: Sequence[Any] | None = None,
+    baffled: bool | None = None,
     air: Air | None = None,
     sample_rate: float | None = None,
 ) -> xr.DataArray:
-    """Return the sound pressure of a track in time.
+    """Return the sound pressure of a track, or of the bodies of a system in space, in time.
 
     The track is driven again by the normal forces of the record where they pressed, with all its bending modes, and
     is heard through Rayleigh's integral with exact travel times (in a rigid baffle) or as a line of dipoles (a beam in
-    free air). It is at rest before the record, and the air does not act back on it.
+    free air). Bodies in space are driven again by all forces of the record at their contacts and by the drives of the
+    system, and are heard in open air by equivalent sources within them. Bodies are at rest before the record, and the
+    air does not act back on them.
 
     Parameters
     ----------
     run : xarray.Dataset
         A record, with or without probes. All its contacts press on the track: choose with ``run.sel(contact=[...])``.
-    track : ModalBeam or ModalPlate
-        What is heard; it need not be the body of the run, but must be as long as where it is pressed.
+    track : ModalBeam, ModalPlate or System
+        What is heard. A track need not be the body of the run, but must be as long as where it is pressed. Of a system,
+        that of the run, its bodies in space are heard: the sum over all that have a surface.
     listener : tuple of float, or sequence of tuples, optional
         Where one listens, x, y, z [m]: x along the track from its left end, y across it in its surface, from the axis
         of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above the
-        middle of the track if left out.
+        middle of the track if left out. In space they are those of the world; the ears are then a metre above the
+        middle of what is heard, on the side of the first contact's tip.
+    bodies : sequence of AxisymmetricBody or SolidBody, optional
+        Which bodies of a system are heard; all that have a surface if left out.
     baffled : bool, optional
-        Whether the surface is flush with an endless rigid wall; else it is a slim beam in free air.
+        Whether the surface of a track is flush with an endless rigid wall, which it is if left out; else it is a slim
+        beam in free air. Bodies in space are in open air.
     air : Air, optional
         The air, `Air()` if left out.
     sample_rate : float, optional
@@ -68,18 +79,41 @@ def radiate(
     xarray.DataArray, shape (time, listener)
         Pressure [Pa]. Time starts where the record starts, when the first sound is sent; before it can arrive the
         pressure is zero. ``attrs`` have the bandwidth [Hz], up to which the sound is whole and above which it is cut
-        off, the air, the distances [m] to the nearest point of the track, and notes on what is missing.
+        off, the air, the distances [m] to the nearest point of the track, and notes on what is missing. Of a system
+        they have the names of the bodies heard and, as ``fit_error``, the largest relative error with which the sources
+        of each meet the normal motion of a mode all over the surface, at the mode's own frequency; notes say it where
+        it is above 5 %.
 
     Raises
     ------
     ValueError
         If the record diverged, holds NaN or fewer than 2 samples, or presses beyond the track; if its track was changed
-        while it was played; if a listener is in the
-        surface, behind the baffle or on the beam; if the sample rate is more than the record supports, or too low.
+        while it was played; if a listener is in the surface, behind the baffle, on the beam or in a body; if the sample
+        rate is more than the record supports, or too low; if a body has no surface, or the record is not one of the
+        system.
     """
+    if baffled is not None:
+        instance("baffled", baffled, bool)
+    what: Any = track
+    if hasattr(what, "contacts"):
+        if baffled:
+            raise ArgumentError("baffled", "be False, or left out, for bodies in space", baffled)
+        return _labelled(*free_sound(run, what, listener, bodies, air, sample_rate))
+    if bodies is not None:
+        raise ArgumentError("bodies", "be left out but for a System", bodies)
+    return _of_track(run, what, listener, baffled is not False, air, sample_rate)
+
+
+def _of_track(
+    run: xr.Dataset,
+    track: ModalBeam | ModalPlate,
+    listener: Any,
+    baffled: bool,
+    air: Air | None,
+    sample_rate: float | None,
+) -> xr.DataArray:
     air = Air() if air is None else air
     instance("air", air, Air)
-    instance("baffled", baffled, bool)
     surface: Callable[[Any], Panel] = panel_of if baffled else line_of
     panel = surface(track)
     listeners = listeners_of(ears(track) if listener is None else listener)
@@ -108,8 +142,6 @@ def radiate(
     if not baffled:
         notes.append(f"a line of dipoles: the beam is slim below {_slim_below(track, air):.4g} Hz")
     attributes = {
-        "units": "Pa",
-        "long_name": "sound pressure",
         "bandwidth": bandwidth,
         "modes": len(kept),
         "baffled": int(baffled),
@@ -176,4 +208,6 @@ def _labelled(pressure: Array, time: Array, listeners: Array, attributes: dict[s
     for name, values in zip("xyz", listeners.T, strict=True):
         coordinates[name] = ("listener", values, {"units": "m"})
     coordinates["listener"] = ("listener", np.arange(len(listeners)))
-    return xr.DataArray(pressure.T, coordinates, ("time", "listener"), "pressure", attributes)
+    return xr.DataArray(
+        pressure.T, coordinates, ("time", "listener"), "pressure", described("Pa", "sound pressure") | attributes
+    )

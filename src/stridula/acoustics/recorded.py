@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -54,28 +53,44 @@ def pressing(run: xr.Dataset, panel: Panel) -> Pressing:
     ValueError
         If it is no record, has one sample, is not evenly sampled, diverged, holds NaN, or presses beyond the track.
     """
+    start, interval, steps, (force, position) = sampled(run, "normal_force", "contact_position")
+    _check_on_track(position, panel)
+    before = np.concatenate([position[:, :1], position[:, :-1]], axis=1)
+    return Pressing(start, interval, steps, force, (before + position) / 2.0)
+
+
+def sampled(run: xr.Dataset, *names: str) -> tuple[float, float, int, list[Array]]:
+    """Return when the first sample interval begins, its length [s], the steps in it, and variables of contacts.
+
+    Variables have the shape (contacts, samples), or (contacts, tangents, samples) of those along tangents.
+
+    Raises
+    ------
+    ValueError
+        If it is no record, has one sample, is not evenly sampled, diverged or holds NaN.
+    """
     run = record("run", run).transpose("time", ...)
-    record("run", run, "normal_force", "contact_position", least=2)
+    record("run", run, *names, least=2)
     if run.attrs.get("ended") in DIVERGED:
         raise ArgumentError("run", "be one that can be believed", run, got=f"one that ended {run.attrs['ended']!r}")
     time = run["time"].values
     interval = float((time[-1] - time[0]) / (time.size - 1))
     if not (interval > 0.0 and np.allclose(np.diff(time), interval, rtol=1e-3, atol=0.0)):
         raise ArgumentError("run", "be evenly sampled in rising time", run, got="uneven times")
-    force, position = (_by_contact(run[name]) for name in ("normal_force", "contact_position"))
-    for name, values in (("normal_force", force), ("contact_position", position)):
+    found = [_by_contact(run[name]) for name in names]
+    for name, values in zip(names, found, strict=True):
         if not np.isfinite(values).all():
-            bad = time[np.flatnonzero(~np.isfinite(values).all(axis=0))[0]]
+            at = np.isfinite(values).all(axis=tuple(range(values.ndim - 1)))
+            bad = time[np.flatnonzero(~at)[0]]
             raise ArgumentError(name, "be finite", got=f"{values[~np.isfinite(values)][0]} at {bad:.6g} s")
-    _check_on_track(position, panel)
-    before = np.concatenate([position[:, :1], position[:, :-1]], axis=1)
     steps = count("steps_per_sample", run.attrs.get("steps_per_sample", 1_000_000))
-    return Pressing(float(time[0]) - interval, interval, steps, force, (before + position) / 2.0)
+    return float(time[0]) - interval, interval, steps, found
 
 
 def _by_contact(signal: xr.DataArray) -> Array:
-    values: Any = signal.values if "contact" not in signal.dims else signal.transpose("contact", "time").values
-    return np.atleast_2d(np.asarray(values, dtype=float))
+    if "contact" not in signal.dims:
+        signal = signal.expand_dims("contact")
+    return np.asarray(signal.transpose("contact", ..., "time").values, dtype=float)
 
 
 def _check_on_track(position: Array, panel: Panel) -> None:

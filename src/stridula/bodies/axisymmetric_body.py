@@ -14,11 +14,13 @@ from ..arrays import Array
 from ..checks import ArgumentError, at_least, brief, choice, finite, instance, listed
 from ..declared import CountFrom0, Each, Frequency, Number, Own, check_declared
 from ..histories import HISTORIES, Constant, History
+from .body_surfaces import HIGHEST, RingSurface, largest_part
 from .damping import DampingLaw, checked_damping, damping_rates
 from .modes import BodyPoint, Modes, hashed_once
 from .ordinary import NotOrdinary, of_ordinary_size
 from .profile_mesh import ProfileMesh
 from .profiles import PROFILES, Profile
+from .ring_surfaces import cut_outline
 from .sections import Material
 from .turning import Turning
 
@@ -147,6 +149,7 @@ class AxisymmetricBody:
     point_names: ClassVar[tuple[str, ...]] = ()
     has_positions: ClassVar[bool] = True
     has_translation: ClassVar[bool] = True
+    has_surface: ClassVar[bool] = True
     is_spatial: ClassVar[bool] = True
     profile: Profile
     material: Any
@@ -276,6 +279,10 @@ class AxisymmetricBody:
         r, theta, z = self._position(position)
         radial, _, axial = self._directions(theta)
         return np.asarray(self.origin + r * radial + z * axial)
+
+    def surface(self, frequency: float = HIGHEST) -> RingSurface:
+        """Return the outer surface as rings, fine enough for sound up to a frequency [Hz], and how modes move it."""
+        return _surface(self, largest_part(frequency))
 
     def turning_velocity(self, position: Any) -> Array:
         """Return the velocity of the material at a point (r, theta, z) by turning alone [m/s], shape (3,)."""
@@ -416,6 +423,21 @@ def _solution(body: AxisymmetricBody) -> _Solution:
     for array in (modes.angular_frequency, modes.translation, solution.numbers, shapes):
         array.flags.writeable = False
     return solution
+
+
+@lru_cache(maxsize=16)
+def _surface(body: AxisymmetricBody, largest: float) -> RingSurface:
+    solution = _solution(body)
+    places, normals, widths = cut_outline(body.mesh, largest)
+    moving = ~solution.modes.massless
+    shapes = np.zeros((len(places), solution.shapes.shape[2]))
+    for row, place, (across, along) in zip(shapes, places, normals, strict=True):
+        points, values = solution.elements.shape_functions(*place)
+        u, _, w = np.einsum("cpk,p->ck", solution.shapes[:, points], values)
+        row[:] = across * u + along * w
+    order, _, side = solution.numbers[moving].T
+    shapes = shapes[:, solution.columns[moving]]
+    return RingSurface(places, normals, widths, shapes, order, side, body.frame, np.array(body.origin))
 
 
 def _translation(body: AxisymmetricBody, elements: FourierElements, family: Family, index: int, side: int) -> Array:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, choice, count, instance
+from .body_surfaces import PointSurface, RingSurface, check_surface
 from .matrix_input import check_finite, numbers, rows_of
 from .modes import Modes
 from .named_points import NamedPoints
@@ -43,6 +44,8 @@ class ModalBody(NamedPoints):
     velocities : mapping, optional
         World components (x, y, z) of the velocity at which its material passes a point [m/s], by the point's name, for
         bodies that turn.
+    outer_surface : PointSurface or RingSurface, optional
+        Its outer surface and how the modes move it, as `surface` of another body gives it; to be heard it needs one.
 
     Raises
     ------
@@ -59,6 +62,7 @@ class ModalBody(NamedPoints):
     name: str = ""
     turning: Turning | None = None
     velocities: Mapping[str, Any] | None = None
+    outer_surface: PointSurface | RingSurface | None = None
 
     def __post_init__(self) -> None:
         instance("name", self.name, str)
@@ -84,6 +88,8 @@ class ModalBody(NamedPoints):
         if self.translation is not None:
             self._set("translation", rows_of("translation", self.translation, size, directions))
         self._check_turning(size)
+        if self.outer_surface is not None:
+            check_surface("outer_surface", self.outer_surface, angular.size)
 
     def _check_turning(self, size: int) -> None:
         if self.turning is not None:
@@ -117,6 +123,23 @@ class ModalBody(NamedPoints):
     def has_translation(self) -> bool:
         """Whether it is known how a translation moves it."""
         return self.translation is not None
+
+    @property
+    def has_surface(self) -> bool:
+        """Whether its outer surface is known."""
+        return self.outer_surface is not None
+
+    def surface(self) -> PointSurface | RingSurface:
+        """Return the outer surface and how the modes move it.
+
+        Raises
+        ------
+        ValueError
+            If it is not known.
+        """
+        if self.outer_surface is None:
+            raise ArgumentError("outer_surface", "be given to be heard", got="none")
+        return self.outer_surface
 
     @property
     def point_names(self) -> tuple[str, ...]:
@@ -162,7 +185,7 @@ class ModalBody(NamedPoints):
 
     def __reduce__(self) -> tuple[Any, ...]:
         given = self.angular_frequency, dict(self.points), self.damping_rate, self.translation, self.residual
-        return ModalBody, (*given, self.name, self.turning, dict(self.velocities or {}))
+        return ModalBody, (*given, self.name, self.turning, dict(self.velocities or {}), self.outer_surface)
 
     @cached_property
     def _content(self) -> tuple[Any, ...]:
@@ -170,7 +193,8 @@ class ModalBody(NamedPoints):
         moved = None if self.translation is None else np.asarray(self.translation).tobytes()
         passed = tuple((name, velocity.tobytes()) for name, velocity in sorted((self.velocities or {}).items()))
         modes = self.angular_frequency.tobytes(), self.damping_rate.tobytes()
-        return *modes, points, moved, self.residual, self.turning, passed, self.name
+        surface = None if self.outer_surface is None else self.outer_surface.content
+        return *modes, surface, points, moved, self.residual, self.turning, passed, self.name
 
     def _set(self, name: str, value: Any) -> None:
         if isinstance(value, np.ndarray):

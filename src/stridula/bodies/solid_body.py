@@ -18,6 +18,7 @@ import scipy.sparse
 from ..arrays import Array
 from ..checks import ArgumentError, at_most, choice, count, instance, listed, positive
 from ..declared import Frequency, Own
+from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, checked_damping
 from .factorisation import dissection
 from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
@@ -29,6 +30,7 @@ from .sections import Material
 from .solid_elements import assembled
 from .solid_mesh import Face, SolidMesh, place_of
 from .solid_places import FacePoints, face_mean, face_points, located
+from .solid_surfaces import cut_faces
 from .sparse_reduction import SparseProblem, modes_of, reduce_sparse
 
 DIRECTIONS = "xyz"
@@ -100,6 +102,7 @@ class SolidBody(NamedPoints):
 
     kind: ClassVar[str] = "solid"
     has_translation: ClassVar[bool] = True
+    has_surface: ClassVar[bool] = True
     is_spatial: ClassVar[bool] = True
     mesh: SolidMesh
     materials: Material | Mapping[str, Material]
@@ -246,6 +249,10 @@ class SolidBody(NamedPoints):
         """Mass-normalised mode shapes at the nodes, residual shapes last, shape (3 nodes, modes)."""
         return self._reduction.shapes
 
+    def surface(self, frequency: float = HIGHEST) -> PointSurface:
+        """Return the outer surface as points, fine enough for sound up to a frequency [Hz], and how modes move it."""
+        return _surface(self, largest_part(frequency))
+
     def modes(self, held_x: bool = False) -> Modes:
         """Return the modes; `held_x` is for bodies with a driven end, must be false."""
         if held_x:
@@ -358,6 +365,13 @@ def _reduced(body: SolidBody) -> SolidReduction:
     shapes[free] = found.shapes
     shapes.flags.writeable = False
     return SolidReduction(modes_of(found, body.damping, pulled.T @ shapes), shapes, node_mass)
+
+
+@lru_cache(maxsize=4)
+def _surface(body: SolidBody, largest: float) -> PointSurface:
+    moving = ~body.modes().massless
+    shapes = body.shapes.reshape(len(body.mesh.nodes), 3, -1)[:, :, moving]
+    return cut_faces(body.mesh, shapes, largest)
 
 
 def _on_faces(body: SolidBody) -> Array:

@@ -68,7 +68,8 @@ def run_scenario(
 
 
 def _check_wav(wav: str, name: str, out: str | None, plot: str | None, system: Any) -> None:
-    from .sounding import check_baffled, check_ending
+    from ..acoustics.heard_system import check_heard
+    from .sounding import check_ending
 
     for option, other in (("--out", out), ("--plot", plot)):
         if other is not None and Path(other).resolve() == Path(wav).resolve():
@@ -77,7 +78,7 @@ def _check_wav(wav: str, name: str, out: str | None, plot: str | None, system: A
         raise ArgumentError("--wav", "be another file than what is run", wav, got=f"{wav!r} for both")
     check_writable(wav)
     check_ending(wav)
-    check_baffled(system)
+    check_heard(system)
 
 
 def _finish(record: xr.Dataset, scenario: Scenario, name: str, out: str | None, plot: str | None) -> list[str]:

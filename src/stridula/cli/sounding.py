@@ -8,9 +8,8 @@ from typing import Any
 
 import xarray as xr
 
-from ..acoustics.heard_system import heard, track_of
+from ..acoustics.heard_system import heard
 from ..acoustics.listeners import FARTHEST
-from ..acoustics.panels import panel_of
 from ..acoustics.wav import NORMALISED, RATES, SUBTYPES, write_wav
 from ..checks import ArgumentError, at_most, suggestion
 from ..records.changes import played
@@ -76,7 +75,7 @@ def _played(record: xr.Dataset) -> Scenario:
 
 
 def write_sound(record: xr.Dataset, system: Any, wav: str) -> str:
-    """Write what two ears a metre above the track hear of a record, and return what was written and how loud it is."""
+    """Write what two ears a metre above what sounds hear of a record; return what was written and how loud it is."""
     pressure = heard(record, system, None, True)
     words = [str(write_wav(wav, pressure)), loudest(pressure), pressure.attrs["notes"]]
     return "\n".join(word for word in words if word)
@@ -86,11 +85,6 @@ def check_ending(wav: str) -> None:
     """Raise ValueError unless the name of a sound file ends as its format."""
     if not wav.lower().endswith(".wav"):
         raise ArgumentError("--wav", "end in .wav", wav)
-
-
-def check_baffled(system: Any) -> None:
-    """Raise ValueError if no track of a system can be heard in a baffle."""
-    panel_of(track_of(system))
 
 
 def _written(wav: str, pressure: xr.DataArray, options: dict[str, Any]) -> str:

@@ -200,6 +200,7 @@ def _modes_table(body: Any, points: Sequence[BodyPoint]) -> dict[str, Any]:
         "kind": ModalBody.kind,
         "angular_frequency": _value(modes.angular_frequency[held]),
         "damping_rate": _value(modes.damping_rate[held]),
+        "outer_surface": _value(body.surface()),
         "points": {name: _value(one) for name, one in rows.items()},
         "translation": _value(modes.translation + 0.0),
         "residual": int(modes.massless.sum()),

@@ -26,6 +26,7 @@ from ..bodies import (
     RigidBody,
     SolidBody,
 )
+from ..bodies.body_surfaces import surface_of
 from ..bodies.damping import DAMPING_LAWS
 from ..bodies.ordinary import NotOrdinary
 from ..bodies.sections import SECTIONS
@@ -202,6 +203,9 @@ class Builder:
             table["turning_history"] = self._history((*path, "turning_history"), table["turning_history"])
         if isinstance(table.get("turning"), dict):
             table["turning"] = self._turning((*path, "turning"), dict(table["turning"]))
+        if isinstance(table.get("outer_surface"), dict):
+            with self._within(*path):
+                table["outer_surface"] = surface_of(table["outer_surface"])
         if kind in OF_SPACE:
             with self._within(*path):
                 return OF_SPACE[kind](**{name: value for name, value in table.items() if value is not None})

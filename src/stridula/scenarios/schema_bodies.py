@@ -125,6 +125,29 @@ class Turning(Table):
     """factor on the velocity over time, constant if left out"""
 
 
+class OuterSurface(Table):
+    normals: is_.Rows
+    """outward unit normals, along x, y and z, of rings along r and z"""
+    shapes: is_.Rows
+    """by how much each mode moves each point or ring outwards"""
+    points: is_.Rows | None = None
+    """places of points [m]"""
+    areas: is_.Vector | None = None
+    """areas that points stand for [m²]"""
+    places: is_.Rows | None = None
+    """r and z of rings, two over each part of the profile [m]"""
+    widths: is_.Vector | None = None
+    """widths that rings stand for [m]"""
+    orders: is_.Vector | None = None
+    """number of waves round the axis of each mode, of rings"""
+    sides: is_.Vector | None = None
+    """0 for modes that go round as the cosine, 1 for those as the sine, of rings"""
+    frame: is_.Rows | None = None
+    """directions theta = 0 and theta = 90 degrees and of the axis, of rings"""
+    origin: is_.Vector | None = None
+    """point on the axis where z is 0, of rings [m]"""
+
+
 class Modal(Table):
     kind: Literal["modal body"]
     """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"""
@@ -142,6 +165,8 @@ class Modal(Table):
     """how the modes are carried round by a body that turns"""
     velocities: is_.PlaceTable | None = None
     """velocities of the material of a body that turns along x, y and z, by the name of the point [m/s]"""
+    outer_surface: OuterSurface | None = None
+    """outer surface and how the modes move it, which a body needs to be heard"""
     name: str = ""
     """what it is called in records, the table's own name if left out"""
 

@@ -10,6 +10,7 @@ from . import (
     instabilities,
     jams,
     laws,
+    open_air,
     orders,
     plates,
     radiation,
@@ -38,5 +39,6 @@ CASES: tuple[Case, ...] = (
     *turning.CASES,
     *orders.CASES,
     *radiation.CASES,
+    *open_air.CASES,
     *sensations.CASES,
 )

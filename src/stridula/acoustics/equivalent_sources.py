@@ -1,0 +1,101 @@
+"""Sources within a body whose sound moves the air at its surface as the body does.
+
+Wave superposition (Koopmann, Song & Fahnline 1989, J. Acoust. Soc. Am. 86, 2433-2438): what a body sends out is the
+field of sources within it, whatever they are, once that field has the body's normal acceleration a all over the
+surface, ``dp/dn = -rho a``. Strengths are found by least squares with Tikhonov's term, as sources that lie deep would
+else grow without bound. Every other source lies deeper: on one surface they could not make all fields at the
+frequencies at which the inside of that surface resonates.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+import scipy.linalg
+
+from ..arrays import Array
+
+# Share of the largest singular value, that of columns of unit length, at which strengths are held back.
+HELD_BACK = 1e-7
+# Depth of sources: of the distance to their neighbours, and of the radius of the ball within the body, at most; how
+# much deeper every other one is.
+DEPTH_OF_SPACING, DEPTH_OF_BALL, DEEPER = 1.5, 0.6, 1.2
+
+
+class Radiator(Protocol):
+    """A body as its equivalent sources."""
+
+    @property
+    def surface(self) -> Any:
+        """Its surface."""
+
+    @property
+    def size(self) -> float:
+        """Largest extent of the body [m]."""
+
+    def fit(self, wavenumber: float) -> Fit:
+        """Return the strengths of the sources at a wavenumber of the sound [rad/m]."""
+
+    def heard(self, fit: Fit, wavenumber: float, places: Array) -> Array:
+        """Return the pressures at places (listeners, 3) [m] for unit modal accelerations, shape (listeners, modes).
+
+        Complex, to be multiplied by the density of the air [kg/m³] and by ``exp(i w t)``.
+        """
+
+
+class Fit(NamedTuple):
+    """Strengths of sources.
+
+    Attributes
+    ----------
+    strengths : tuple of ndarray
+        Strengths of the sources for each mode, as the radiator has them.
+    errors : ndarray, shape (modes,)
+        Relative errors of the normal motion that they leave on the surface.
+    """
+
+    strengths: tuple[Array, ...]
+    errors: Array
+
+
+def depths(spacing: Array, ball: Array) -> Array:
+    """Return how deep below the surface sources lie [m], by their spacing and the radii of balls that fit there [m]."""
+    deeper = np.where(np.arange(len(spacing)) % 2, DEEPER, 1.0)
+    return np.asarray(deeper * np.minimum(DEPTH_OF_SPACING * spacing, DEPTH_OF_BALL * ball))
+
+
+def fitted(matrix: Array, wanted: Array, areas: Array, spacing: Array) -> tuple[Array, Array]:
+    """Return strengths that make a matrix yield what is wanted, in least squares, and the errors left.
+
+    Squares are weighted by the areas and by the spacing of the points, which falls towards edges: there the air flows
+    round the body at velocities without limit, whose error would else be spread over all of the surface.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (points, sources)
+        What each source of unit strength yields at the points.
+    wanted : ndarray, shape (points, modes)
+        What is wanted there.
+    areas, spacing : ndarray, shape (points,)
+        Areas of the points, and distances between them, each to a scale.
+
+    Returns
+    -------
+    strengths : ndarray, shape (sources, modes)
+        The strengths.
+    errors : ndarray, shape (modes,)
+        Root mean square of what is missing over that of what is wanted, with these weights; 0 where nothing is wanted.
+    """
+    weights = np.sqrt(areas * spacing)[:, None]
+    rows, aims = matrix * weights, wanted * weights
+    sizes = np.linalg.norm(rows, axis=0)
+    # Rings so close to the axis that waves round it leave nothing of them.
+    sizes = np.where(sizes > 0.0, sizes, 1.0)
+    rows = rows / sizes
+    square = rows.conj().T @ rows
+    square[np.diag_indices_from(square)] += HELD_BACK**2 * float(np.linalg.norm(square, ord=1))
+    strengths = scipy.linalg.cho_solve(scipy.linalg.cho_factor(square), rows.conj().T @ aims) / sizes[:, None]
+    size = np.linalg.norm(aims, axis=0)
+    errors = np.linalg.norm(weights * (matrix @ strengths - wanted), axis=0) / np.where(size > 0.0, size, 1.0)
+    return strengths, np.where(size > 0.0, errors, 0.0)

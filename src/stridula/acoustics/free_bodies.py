@@ -1,0 +1,177 @@
+"""The sound of the bodies of a system in space, in open air."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..arrays import Array
+from ..assembly import assemble
+from ..bodies.body_surfaces import BodySurface
+from ..checks import ArgumentError, at_least, instance, listed
+from ..system import System
+from .air import Air
+from .convolution import Convolution
+from .free_responses import LEFT, Sent, free_responses
+from .listeners import HEIGHT, SPACING, listeners_of
+from .redriven import Moved, redriven
+from .resampling import bandwidth_of, ratio_of, resample
+
+# Up to where sound is whole at most [Hz]: what is heard.
+HIGHEST = 20e3
+# Error of the normal motion at a mode's own frequency from which on it is said.
+SAID = 0.05
+# Of the size of a body: no listener comes closer.
+NEAREST = 1e-3
+
+
+def bodies_heard(system: System) -> tuple[list[Any], list[str]]:
+    """Return the bodies of a system that have a surface, and the names of those that have none."""
+    heard = [body for body in system.bodies if getattr(body, "has_surface", False)]
+    return heard, [system.body_name(body) for body in system.bodies if body not in heard]
+
+
+def free_sound(
+    run: xr.Dataset,
+    system: System,
+    listener: Any = None,
+    bodies: Sequence[Any] | None = None,
+    air: Air | None = None,
+    sample_rate: float | None = None,
+) -> tuple[Array, Array, Array, dict[str, Any]]:
+    """Return pressures (listeners, samples), their times, the listeners and attributes; arguments are as in `radiate`.
+
+    Raises
+    ------
+    ValueError
+        If a body has no surface, a listener is in a body, or the record is not usable.
+    """
+    air = Air() if air is None else air
+    instance("air", air, Air)
+    heard, silent = _chosen(system, bodies)
+    surfaces = [body.surface() for body in heard]
+    places = listeners_of(_ears(system, surfaces) if listener is None else listener)
+    distances = np.array([_distances(surface, places) for surface in surfaces])
+    moved = redriven(run, system)
+    recorded = 1.0 / moved.interval
+    ratio = ratio_of(sample_rate, recorded, moved.samples)
+    bandwidth = min(bandwidth_of(ratio, recorded), HIGHEST)
+    shift = (moved.first - moved.start) / moved.interval
+    pressure, notes, errors = np.zeros((len(places), moved.samples)), [], {}
+    spans = assemble(system).spans
+    for body, surface, away in zip(heard, surfaces, distances, strict=True):
+        first, _ = spans[system.body_name(body)]
+        modes = first + np.flatnonzero(~body.modes().massless)
+        sent = free_responses(surface, places, away, air, moved.interval, shift, bandwidth)
+        pressure += _convolved(sent, moved, modes)
+        said, worst = _doubts(system.body_name(body), body.modes().frequency[: modes.size], sent)
+        notes += said
+        errors[system.body_name(body)] = worst
+    sounding = resample(pressure, ratio)
+    times = np.arange(sounding.shape[1]) * moved.interval / float(ratio)
+    arrival = distances.min(axis=0) / air.speed
+    sounding[times < arrival[:, None]] = 0.0
+    if moved.pushed is None:
+        notes.append("silence: nothing pushes")
+    elif (arrival + moved.pushed > times[-1]).any():
+        notes.append("silence: the sound does not arrive within the record")
+    notes += _lacks(system, heard, silent, moved)
+    attributes = {
+        "bandwidth": bandwidth,
+        "modes": int(sum(surface.shapes.shape[1] for surface in surfaces)),
+        "baffled": 0,
+        "distance": distances.min(axis=0).tolist(),
+        "bodies": [system.body_name(body) for body in heard],
+        "fit_error": list(errors.values()),
+        **{f"air_{name}": value for name, value in asdict(air).items()},
+        "air_speed": air.speed,
+        "air_density": air.density,
+        "notes": "; ".join(notes),
+    }
+    return sounding, moved.start + times, places, attributes
+
+
+def _chosen(system: System, bodies: Sequence[Any] | None) -> tuple[list[Any], list[str]]:
+    heard, silent = bodies_heard(system)
+    if bodies is None:
+        if not heard:
+            raise ArgumentError("system", "have a body with a surface to be heard", got=f"none of {listed(silent)}")
+        return heard, silent
+    if isinstance(bodies, str) or not isinstance(bodies, Sequence) or not bodies:
+        raise ArgumentError("bodies", "be one or more bodies of the system", bodies)
+    for number, body in enumerate(bodies):
+        if body not in heard:
+            names = [system.body_name(one) for one in heard]
+            raise ArgumentError(f"bodies[{number}]", f"be a body of the system with a surface: {listed(names)}", body)
+    return list(dict.fromkeys(bodies)), []
+
+
+def _ears(system: System, surfaces: Sequence[BodySurface]) -> list[list[float]]:
+    """Return two ears above the middle of what is heard, on the side of the first contact's tip, along its tangent."""
+    normal, tangent = (np.resize(one, 3) * (np.arange(3) < len(one)) for one in system.contacts[0].frame[:2])
+    points = np.concatenate([surface.as_points.points for surface in surfaces])
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    above = middle + (float((points @ normal).max()) + HEIGHT - float(middle @ normal)) * normal
+    return [(above + side * SPACING / 2.0 * tangent).tolist() for side in (-1.0, 1.0)]
+
+
+def _distances(surface: BodySurface, places: Array) -> Array:
+    """Return the distances of places to the nearest points of a surface [m].
+
+    Raises
+    ------
+    ValueError
+        If a place is in the body or on it.
+    """
+    points = surface.as_points
+    size, found = float(np.linalg.norm(np.ptp(points.points, axis=0))), []
+    for place in places:
+        away = points.points - place
+        distance = np.linalg.norm(away, axis=1)
+        angle = float((points.areas * (points.normals * away).sum(axis=1) / distance**3).sum())
+        if angle > 2.0 * np.pi or distance.min() < NEAREST * size:
+            words = f"be outside of the bodies, {at_least(NEAREST * size, 3)} m from them"
+            raise ArgumentError("listener", words, got=f"{tuple(place.tolist())}")
+        found.append(float(distance.min()))
+    return np.array(found)
+
+
+def _convolved(sent: Sent, moved: Moved, modes: Array) -> Array:
+    """Return the pressures at the samples of the record, shape (listeners, samples)."""
+    acceleration = moved.accelerations[modes]
+    sound = Convolution(sent.responses, acceleration.shape[1])
+    sound.add(acceleration, slice(None))
+    return sound.signals()[:, : moved.samples]
+
+
+def _doubts(name: str, frequency: Array, sent: Sent) -> tuple[list[str], float]:
+    """Return what is doubtful of a body's responses, in words, and the largest error of a mode at its own frequency."""
+    within = np.flatnonzero(frequency <= sent.frequencies[-1])
+    own = np.array([np.interp(frequency[k], sent.frequencies, sent.errors[:, k]) for k in within])
+    worst, notes = float(own.max(initial=0.0)), []
+    if worst > SAID:
+        at = frequency[within[int(own.argmax())]]
+        notes.append(f"{name}: its surface is met to {100.0 * worst:.2g} % at {at:.4g} Hz only")
+    if sent.left > LEFT:
+        notes.append(f"{name}: {100.0 * sent.left:.2g} % of its sound rings on for longer than is heard")
+    return notes, worst
+
+
+def _lacks(system: System, heard: Sequence[Any], silent: Sequence[str], moved: Moved) -> list[str]:
+    """Return what is left out, in words."""
+    notes = []
+    if silent:
+        notes.append(f"without a surface and not heard: {listed(silent)}")
+    if moved.left_out.any():
+        left_out = int(moved.left_out.sum())
+        notes.append(f"{left_out} modes above what the record's sample rate carries are left out")
+    highest = [(float(body.modes().frequency[~body.modes().massless].max()), body) for body in heard]
+    words = [f"{system.body_name(body)} {frequency:.4g} Hz" for frequency, body in highest]
+    notes.append(f"modes end at: {', '.join(words)}")
+    if moved.start > 0.5 * moved.interval:
+        notes.append("the record continues another one; vibration left from that one is not included")
+    return notes

@@ -1,0 +1,160 @@
+"""Accelerations of the modes of bodies in space, driven again by the forces of a record and by drives.
+
+What `driven` does for a track, in three dimensions: forces act along the normal and both tangents of each contact.
+Pairs of modes of a body that turns are plain oscillators where they move with their waves. Forces are turned into that
+frame and motion out of it, by the angle ``b`` of the waves, with ``J`` a quarter of a turn:
+
+    q'' = R(b) (Q'' + 2 b' J Q' + (b'' J - b'²) Q)
+
+Modes that springs couple are taken together, as the modes that they have with these springs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+import xarray as xr
+
+from ..arrays import Array
+from ..assembly import Assembly, TurningModes, assemble
+from ..checks import ArgumentError
+from ..system import System
+from .driven import FASTEST, LEAD, respond, steady
+from .recorded import sampled
+
+# Steps of an interval at which drives are looked up.
+MOST_STEPS = 50
+
+
+@dataclass(frozen=True)
+class Moved:
+    """How the modes of a system move.
+
+    Attributes
+    ----------
+    start, interval : float
+        When the record begins, and its sample interval [s].
+    samples : int
+        Number of its samples.
+    first : float
+        Time of the first acceleration [s].
+    accelerations : ndarray, shape (modes, samples + 2 LEAD)
+        Accelerations of all modes [m kg^(1/2) / s²], zero for those left out and for residual shapes.
+    left_out : ndarray of bool, shape (modes,)
+        Modes too fast for the samples.
+    pushed : float or None
+        When the first force acts [s from the start], None if none does.
+    """
+
+    start: float
+    interval: float
+    samples: int
+    first: float
+    accelerations: Array
+    left_out: Array
+    pushed: float | None
+
+
+@dataclass(frozen=True)
+class _Modes:
+    angular_frequency: Array
+    damping_rate: Array
+
+
+def redriven(run: xr.Dataset, system: System) -> Moved:
+    """Return how the modes of a system move under the forces of a record, at rest before it.
+
+    Raises
+    ------
+    ValueError
+        If the record is not usable or not one of the system.
+    """
+    start, interval, steps, (normal, tangential) = sampled(run, "normal_force", "tangential_force")
+    flat, samples = assemble(system), normal.shape[1]
+    if len(normal) != len(system.contacts):
+        words = f"be a record of this system, of {len(system.contacts)} contacts"
+        raise ArgumentError("run", words, run, got=f"one of {len(normal)}")
+    first = start + interval * (0.5 - LEAD) - 0.5 * interval / steps
+    times = first + interval * np.arange(samples + 2 * LEAD)
+    rows, signals = _of_contacts(flat, normal, tangential)
+    loads = _of_drives(flat, start, interval, min(steps, MOST_STEPS), samples)
+    if system.initial_equilibrium is not None:
+        # It has stood so for long.
+        signals, loads = signals - signals[:, :1], loads - loads[:, :1]
+    forces = rows.T @ steady(signals, steps)
+    if len(loads):
+        forces += flat.loads.T @ steady(loads, steps)
+    pushes = np.flatnonzero(signals.any(axis=0))
+    found, left_out = _moved(flat, forces, times, interval)
+    pushed = 0.0 if loads.any() else (float(pushes[0]) * interval if pushes.size else None)
+    return Moved(start, interval, samples, first, found, left_out, pushed)
+
+
+def _of_drives(flat: Assembly, start: float, interval: float, steps: int, samples: int) -> Array:
+    """Return means of the factors of loads over the steps of each interval, shape (loads, samples)."""
+    step = interval / steps
+    times = start + step * np.arange(samples * steps)
+    found = np.zeros((len(flat.loads), samples))
+    for load, signal in zip(found, flat.signals, strict=False):
+        load[:] = signal(times, step).reshape(samples, steps).mean(axis=1)
+    return found
+
+
+def _of_contacts(flat: Assembly, normal: Array, tangential: Array) -> tuple[Array, Array]:
+    """Return rows on the modes and the forces along them [N], shape (rows, modes) and (rows, samples)."""
+    rows, forces = [], []
+    along = tangential if tangential.ndim == 3 else tangential[:, None]
+    for one, number in zip(flat.contacts, flat.contact_numbers, strict=True):
+        if not one.is_second:
+            rows.append(one.fixed[0])
+            forces.append(normal[number])
+        # The tangential force is that on the track, the rows are those of the tip.
+        rows.append(-one.fixed[1])
+        forces.append(along[number, int(one.is_second)])
+    return np.array(rows), np.array(forces)
+
+
+def _moved(flat: Assembly, forces: Array, times: Array, interval: float) -> tuple[Array, Array]:
+    """Return the accelerations of all modes, and which are too fast."""
+    found, coupled = np.zeros_like(forces), flat.coupled
+    left_out = ~flat.massless & (flat.angular_frequency * interval >= FASTEST)
+    plain = ~flat.massless & ~left_out
+    plain[:coupled] = False
+    for turning in flat.turning:
+        pairs = turning.pairs[plain[turning.pairs[:, 0]] & (np.array(turning.turning.drag) != 0.0)]
+        plain[pairs] = False
+        found[pairs.T.ravel()] = _turning(flat, turning, pairs, forces, times, interval)
+    found[plain] = respond(_Modes(flat.angular_frequency[plain], flat.damping_rate[plain]), forces[plain], interval)
+    moving = np.flatnonzero(~flat.massless[:coupled])
+    if moving.size:
+        block = np.ix_(moving, moving)
+        squared, shapes = scipy.linalg.eigh(flat.stiffness[block])
+        angular = np.sqrt(np.maximum(squared, 0.0))
+        kept = angular * interval < FASTEST
+        rates = np.einsum("ik,ij,jk->k", shapes, flat.dissipation[block], shapes)
+        own = respond(_Modes(angular[kept], rates[kept]), shapes[:, kept].T @ forces[moving], interval)
+        found[moving] = shapes[:, kept] @ own
+        left_out[moving[len(moving) - int((~kept).sum()) :]] = True
+    return found, left_out
+
+
+def _turning(
+    flat: Assembly, turning: TurningModes, pairs: Array, forces: Array, times: Array, interval: float
+) -> Array:
+    """Return the accelerations of pairs of modes of a body that turns, first ones before second ones."""
+    drags = {tuple(pair): drag for pair, drag in zip(turning.pairs.tolist(), turning.turning.drag, strict=True)}
+    drag = np.array([drags[tuple(pair)] for pair in pairs.tolist()])[:, None]
+    rate = drag * turning.turning.rate(times)
+    angle = drag * turning.turning.velocity * turning.turning.history.integral(times)
+    change = np.gradient(rate, interval, axis=1)
+    first, second = pairs.T
+    cosine, sine = np.cos(angle), np.sin(angle)
+    ahead, behind = cosine * forces[first] + sine * forces[second], cosine * forces[second] - sine * forces[first]
+    modes = _Modes(flat.angular_frequency[first], flat.damping_rate[first])
+    (x, y), (u, v), (a, b) = (
+        [respond(modes, force, interval, derivative) for force in (ahead, behind)] for derivative in range(3)
+    )
+    a, b = a - 2.0 * rate * v - change * y - rate**2 * x, b + 2.0 * rate * u + change * x - rate**2 * y
+    return np.concatenate([cosine * a - sine * b, sine * a + cosine * b])

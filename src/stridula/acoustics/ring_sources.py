@@ -1,0 +1,179 @@
+"""Bodies of revolution as rings of sources: a small fit for each number of waves round the axis.
+
+A ring of radius r' at z', its strength going round as ``cos n theta``, has the field ``cos n theta g_n(r, z)``,
+
+    g_n = 1 / (8 pi²) integral of cos(n t) exp(-i k R) / R dt, R² = r² + r'² - 2 r r' cos t + (z - z')².
+
+Close to a ring the integrand of its derivative is sharp. It is split: ``(1 + i k R) exp(-i k R)`` less
+``1 + k² R² / 2`` leaves a smooth rest, and what was taken off depends on the frequency by ``k²`` alone, so that it is
+integrated once with as many angles as that takes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..arrays import Array
+from ..bodies.body_surfaces import RingSurface, inscribed_radius
+from .equivalent_sources import Fit, depths, fitted
+
+# Angles round a ring: for a wave of its sharpest part, and for each radian of the waves of sound, beyond the order.
+SHARPEST, SMOOTH, MORE = 12.0, 1.4, 40
+# Gauss' points in each part of half a turn, beyond the order.
+GAUSS = 10
+# Numbers held at once.
+AT_ONCE = 2_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class RingSources:
+    """A body of revolution as rings of sources, one under each pair of rings of its surface.
+
+    Attributes
+    ----------
+    surface : RingSurface
+        The surface.
+    """
+
+    surface: RingSurface
+
+    @property
+    def size(self) -> float:
+        """Largest extent of the body [m]."""
+        r, z = self.surface.places.T
+        return float(np.hypot(2.0 * r.max(), np.ptp(z)))
+
+    @cached_property
+    def sources(self) -> Array:
+        """Where the rings of sources are, r and z [m], shape (sources, 2)."""
+        surface = self.surface
+        middle = 0.5 * (surface.places[::2] + surface.places[1::2])
+        inward = -(surface.normals[::2] + surface.normals[1::2])
+        inward = inward / np.linalg.norm(inward, axis=1)[:, None]
+        mirrored = surface.places * np.array([-1.0, 1.0])
+        ball = inscribed_radius(middle, -inward, np.concatenate([surface.places, mirrored]))
+        spacing = surface.widths[::2] + surface.widths[1::2]
+        return np.asarray(middle + depths(spacing, ball)[:, None] * inward)
+
+    @cached_property
+    def orders(self) -> Array:
+        """The numbers of waves round the axis that modes have."""
+        return np.unique(self.surface.orders)
+
+    def fit(self, wavenumber: float) -> Fit:
+        """Return the strengths of the sources at a wavenumber of the sound [rad/m], order by order."""
+        surface, found, errors = self.surface, [], np.zeros(self.surface.orders.size)
+        areas = surface.places[:, 0] * surface.widths
+        for slope, order in zip(self._slopes(wavenumber), self.orders, strict=True):
+            those = surface.orders == order
+            strengths, errors[those] = fitted(slope, -surface.shapes[:, those], areas, surface.widths)
+            found.append(strengths)
+        return Fit(tuple(found), errors)
+
+    def heard(self, fit: Fit, wavenumber: float, places: Array) -> Array:
+        """Return the pressures at places (listeners, 3) [m] for unit modal accelerations, shape (listeners, modes)."""
+        around = self._around(places)
+        found = np.zeros((len(places), self.surface.orders.size), dtype=complex)
+        fields = self._fields(wavenumber, around[:, [0, 2]])
+        for strengths, field, order in zip(fit.strengths, fields, self.orders, strict=True):
+            found[:, self.surface.orders == order] = field @ strengths
+        return np.asarray(found * self.surface.round(around[:, 1]))
+
+    def _around(self, places: Array) -> Array:
+        """Return r, theta and z of places, shape (places, 3)."""
+        x, y, z = self.surface.frame @ (places - self.surface.origin).T
+        return np.stack([np.hypot(x, y), np.arctan2(y, x), z], axis=1)
+
+    def _slopes(self, wavenumber: float) -> Array:
+        """Return the derivatives of the fields along the normals of the surface, shape (orders, rings, sources)."""
+        still, bent = self._sharp
+        real, imaginary = still + wavenumber**2 * bent, np.zeros_like(still)
+        reach = wavenumber * float(self.surface.places[:, 0].max())
+        count = int(SMOOTH * reach) + int(self.orders.max()) + MORE
+        for angles, weights in _in_parts(*_half_turn(count), self._pairs):
+            away, slope = self._distances(angles)
+            phase, scale = wavenumber * away, slope / away**2
+            cosine, sine = np.cos(phase), np.sin(phase)
+            rest = (cosine - 1.0 + phase * (sine - 0.5 * phase)) * scale
+            real -= _harmonics(rest, self.orders, angles, weights)
+            imaginary -= _harmonics((phase * cosine - sine) * scale, self.orders, angles, weights)
+        return real + 1j * imaginary
+
+    @cached_property
+    def _sharp(self) -> tuple[Array, Array]:
+        """What is left at the wavenumber 0 of the derivatives, and what grows as its square."""
+        shape = (len(self.orders), len(self.surface.places), len(self.sources))
+        still, bent = np.zeros(shape), np.zeros(shape)
+        apart = np.linalg.norm(self.surface.places[:, None] - self.sources[None], axis=2)
+        nearest = float((apart / self.surface.places[:, 0, None]).min())
+        for angles, weights in _in_parts(*_towards_zero(nearest, int(self.orders.max())), self._pairs):
+            away, slope = self._distances(angles)
+            still -= _harmonics(slope / away**2, self.orders, angles, weights)
+            bent -= _harmonics(0.5 * slope, self.orders, angles, weights)
+        return still, bent
+
+    @property
+    def _pairs(self) -> int:
+        return len(self.surface.places) * len(self.sources)
+
+    def _distances(self, angles: Array) -> tuple[Array, Array]:
+        """Return the distances between surface and sources, and their derivatives along the normals.
+
+        Shape (rings, sources, angles) each.
+        """
+        places, normals = self.surface.places[:, None, None], self.surface.normals[:, None, None]
+        r, z = self.sources[None, :, None, 0], self.sources[None, :, None, 1]
+        along = places[..., 0] - r * np.cos(angles)
+        up = places[..., 1] - z
+        away = np.sqrt(along**2 + up**2 + (r * np.sin(angles)) ** 2)
+        return away, (normals[..., 0] * along + normals[..., 1] * up) / away
+
+    def _fields(self, wavenumber: float, places: Array) -> Array:
+        """Return the fields of the sources at places r, z, shape (orders, places, sources)."""
+        found = np.zeros((len(self.orders), len(places), len(self.sources)), dtype=complex)
+        r, z = self.sources[:, 0, None], self.sources[:, 1, None]
+        count = int(SMOOTH * wavenumber * float(r.max())) + int(self.orders.max()) + MORE
+        for number, (radius, height) in enumerate(places):
+            nearest = float((np.hypot(radius - r, height - z) / np.maximum(radius, r)).min())
+            several = count + int(SHARPEST / min(nearest, 1.0))
+            for angles, weights in _in_parts(*_half_turn(several), len(self.sources)):
+                along = radius - r * np.cos(angles)
+                away = np.sqrt(along**2 + (height - z) ** 2 + (r * np.sin(angles)) ** 2)
+                found[:, number] += _harmonics(np.exp(-1j * wavenumber * away) / away, self.orders, angles, weights)
+        return found
+
+
+def _half_turn(count: int) -> tuple[Array, Array]:
+    """Return even angles from 0 to pi, and their weights in a mean over the turn."""
+    angles = np.linspace(0.0, np.pi, count // 2 + 1)
+    weights = np.full(angles.size, 1.0 / (angles.size - 1))
+    weights[[0, -1]] *= 0.5
+    return angles, weights
+
+
+def _towards_zero(nearest: float, order: int) -> tuple[Array, Array]:
+    """Return angles from 0 to pi, closer together towards 0, and their weights in a mean over the turn.
+
+    Gauss' points in parts that are each as long as all before them, the first as long as what is nearest is far.
+    """
+    halvings = max(1, int(np.ceil(np.log2(np.pi / min(nearest, 1.0)))))
+    ends = np.append(0.0, np.pi * 0.5 ** np.arange(halvings, -1.0, -1.0))
+    nodes, rates = np.polynomial.legendre.leggauss(GAUSS + order)
+    angles = ends[:-1, None] + 0.5 * (nodes + 1.0) * np.diff(ends)[:, None]
+    return angles.ravel(), (0.5 / np.pi * rates * np.diff(ends)[:, None]).ravel()
+
+
+def _in_parts(angles: Array, weights: Array, pairs: int) -> Iterator[tuple[Array, Array]]:
+    """Yield angles, and their weights over ``4 pi``, a few at a time."""
+    part = max(1, AT_ONCE // pairs)
+    for first in range(0, angles.size, part):
+        yield angles[first : first + part], weights[first : first + part] / (4.0 * np.pi)
+
+
+def _harmonics(values: Array, orders: Array, angles: Array, weights: Array) -> Array:
+    """Return sums of values (..., angles) with weights times cosines, shape (orders, ...)."""
+    return np.moveaxis(values @ (weights[:, None] * np.cos(np.outer(angles, orders))), -1, 0)

@@ -1,0 +1,188 @@
+"""The outer surface of a body in space, as far as sound needs it: points, normals, areas and how modes move them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ..arrays import Array
+from ..checks import ArgumentError, listed, positive
+
+# Highest frequency of sound that surfaces are cut for where none is given [Hz], parts of one in the wavelength, and the
+# speed of sound [m/s].
+HIGHEST, PARTS_IN_WAVE, SOUND = 24e3, 4.0, 340.0
+# Sine of the angle below which points lie in one plane.
+FLAT = 1e-6
+# Shapes of the fields.
+SIZES: dict[str, tuple[Any, ...]] = {
+    "points": ("rows", 3),
+    "places": ("rows", 2),
+    "normals": ("rows", "axes"),
+    "areas": ("rows",),
+    "widths": ("rows",),
+    "shapes": ("rows", "modes"),
+    "orders": ("modes",),
+    "sides": ("modes",),
+    "frame": (3, 3),
+    "origin": (3,),
+}
+# Points round a body of revolution for one wave of its highest order, and at least.
+POINTS_A_WAVE, LEAST_ROUND = 8, 24
+
+
+@dataclass(frozen=True, eq=False)
+class PointSurface:
+    """The outer surface of a body as points.
+
+    Attributes
+    ----------
+    points : ndarray, shape (points, 3)
+        Where they are in the world [m].
+    normals : ndarray, shape (points, 3)
+        World components of the outward unit normals.
+    areas : ndarray, shape (points,)
+        Areas that they stand for [m²].
+    shapes : ndarray, shape (points, modes)
+        By how much each mode moves them outwards [kg^(-1/2)]; without residual shapes.
+    """
+
+    form: ClassVar[str] = "points"
+    points: Array
+    normals: Array
+    areas: Array
+    shapes: Array
+
+    @property
+    def as_points(self) -> PointSurface:
+        """The surface as points: itself."""
+        return self
+
+    @property
+    def content(self) -> tuple[bytes, ...]:
+        """All its numbers."""
+        return _content(self)
+
+
+@dataclass(frozen=True, eq=False)
+class RingSurface:
+    """The outer surface of a body of revolution as rings, two close together over each part of its profile.
+
+    Attributes
+    ----------
+    places : ndarray, shape (rings, 2)
+        Radius r and place z along the axis of each ring [m]; rings 2 k and 2 k + 1 halve a part.
+    normals : ndarray, shape (rings, 2)
+        Outward unit normals along r and z.
+    widths : ndarray, shape (rings,)
+        Width of the surface that each stands for [m].
+    shapes : ndarray, shape (rings, modes)
+        Amplitude of the outward motion of each mode [kg^(-1/2)]; without residual shapes.
+    orders, sides : ndarray of int, shape (modes,)
+        Number of waves round the axis, and whether a mode goes as their cosine, 0, or their sine, 1.
+    frame : ndarray, shape (3, 3)
+        World components of the directions theta = 0 and theta = 90 degrees and of the axis.
+    origin : ndarray, shape (3,)
+        The point of the world on the axis where z is 0 [m].
+    """
+
+    form: ClassVar[str] = "rings"
+    places: Array
+    normals: Array
+    widths: Array
+    shapes: Array
+    orders: Array
+    sides: Array
+    frame: Array
+    origin: Array
+
+    @property
+    def content(self) -> tuple[bytes, ...]:
+        """All its numbers."""
+        return _content(self)
+
+    def round(self, theta: Array) -> Array:
+        """Return the cosine or the sine that each mode goes as at angles [rad], shape (..., modes)."""
+        turned = np.multiply.outer(theta, self.orders)
+        return np.where(self.sides == 0, np.cos(turned), np.sin(turned))
+
+    @property
+    def as_points(self) -> PointSurface:
+        """The rings as points."""
+        count = max(LEAST_ROUND, POINTS_A_WAVE * int(self.orders.max(initial=0)))
+        theta = (np.arange(count) + 0.5) * 2.0 * np.pi / count
+        way = np.cos(theta)[:, None] * self.frame[0] + np.sin(theta)[:, None] * self.frame[1]
+        (r, z), (across, along) = self.places.T, self.normals.T
+        points = self.origin + r[:, None, None] * way + z[:, None, None] * self.frame[2]
+        normals = across[:, None, None] * way + along[:, None, None] * self.frame[2]
+        areas = np.repeat(2.0 * np.pi / count * r * self.widths, count)
+        shapes = self.shapes[:, None] * self.round(theta)
+        return PointSurface(points.reshape(-1, 3), normals.reshape(-1, 3), areas, shapes.reshape(len(areas), -1))
+
+
+BodySurface = PointSurface | RingSurface
+
+
+def surface_of(values: Mapping[str, Any]) -> BodySurface:
+    """Return the surface whose fields are given by name, as lists or arrays.
+
+    Raises
+    ------
+    ValueError
+        If fields are missing, or numbers do not fit each other.
+    """
+    given = {name: np.asarray(value, dtype=float) for name, value in values.items() if value is not None}
+    kind = RingSurface if "places" in given else PointSurface
+    names = [one.name for one in fields(kind)]
+    if set(names) != set(given):
+        raise ArgumentError("outer_surface", f"have {listed(names)}", got=f"{listed(given)}")
+    for name in ("orders", "sides"):
+        if name in given:
+            given[name] = given[name].astype(int)
+    found: BodySurface = kind(**given)
+    check_surface("outer_surface", found, found.shapes.shape[-1])
+    return found
+
+
+def check_surface(name: str, surface: BodySurface, modes: int) -> None:
+    """Raise ValueError unless the numbers of a surface are finite, and fit each other and a number of modes."""
+    for one in fields(surface):
+        values = getattr(surface, one.name)
+        wanted = tuple({"rows": len(surface.normals), "modes": modes}.get(size, size) for size in SIZES[one.name])
+        axes = surface.normals.shape[-1:]
+        wanted = tuple(axes[0] if size == "axes" else size for size in wanted)
+        if values.shape != wanted or not np.isfinite(values).all():
+            raise ArgumentError(f"{name}.{one.name}", f"be finite numbers of the shape {wanted}", got=values.shape)
+
+
+def _content(surface: BodySurface) -> tuple[bytes, ...]:
+    return tuple(np.asarray(getattr(surface, one.name), dtype=float).tobytes() for one in fields(surface))
+
+
+def largest_part(frequency: float) -> float:
+    """Return the largest length of parts of a surface for sound up to a frequency [Hz]."""
+    return SOUND / (PARTS_IN_WAVE * positive("frequency", frequency))
+
+
+def inscribed_radius(points: Array, normals: Array, others: Array) -> Array:
+    """Return the radii of the largest balls within a surface that touch it at points [m], shape (points,).
+
+    A ball that touches at x with the normal n and reaches y has the radius ``|x - y|² / (2 n . (x - y))``.
+
+    Parameters
+    ----------
+    points, normals : ndarray, shape (points, d)
+        Where they touch, and the outward unit normals there.
+    others : ndarray, shape (others, d)
+        Points all over the surface.
+    """
+    found = np.full(len(points), np.inf)
+    for number, (point, normal) in enumerate(zip(points, normals, strict=True)):
+        away = point - others
+        depth, square = away @ normal, (away**2).sum(axis=1)
+        inside = depth > FLAT * np.sqrt(square)
+        if inside.any():
+            found[number] = float((square[inside] / (2.0 * depth[inside])).min())
+    return found

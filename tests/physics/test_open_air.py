@@ -1,0 +1,223 @@
+"""The sound of bodies in space: surfaces, motion driven again, fits, and the whole way.
+
+Spheres, a disc, a bar and the balance of power are cases of `stridula verify`; here they must fail where they should.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+import stridula as st
+from stridula.acoustics.free_responses import free_responses
+from stridula.acoustics.redriven import redriven
+from stridula.acoustics.ring_sources import RingSources
+from stridula.acoustics.surface_pressures import SurfacePressures
+from stridula.assembly import assemble
+from stridula.verification import open_air
+
+from .test_turning import HERE, disc, rubbed, struck
+
+STEEL = st.Material(2.1e11, 7850.0, 0.3)
+AWAY = (0.1, 2.0, 0.01)
+EARS = [(0.1, 0.2, 0.5), (0.3, -0.2, 0.4)]
+
+
+def closed(surface):
+    """Volume that points of a surface enclose, and the sum of its areas with their normals."""
+    flow = surface.areas[:, None] * surface.normals
+    return (flow * surface.points).sum() / 3.0, flow.sum(axis=0)
+
+
+@pytest.mark.parametrize(
+    ("body", "area", "volume"),
+    [
+        (disc(0.0), 2.0 * pi * (0.15**2 - 0.03**2) + 2.0 * pi * 0.18 * 0.01, pi * (0.15**2 - 0.03**2) * 0.01),
+        (st.SolidBody.block((0.02, 0.03, 0.05), (2, 2, 3), STEEL, cutoff=3e4), 0.0062, 3e-5),
+    ],
+)
+def test_a_surface_is_closed_and_moves_as_the_body(body, area, volume):
+    surface = body.surface().as_points
+    found, flow = closed(surface)
+    assert surface.areas.sum() == pytest.approx(area, rel=1e-9)
+    assert found == pytest.approx(volume, rel=1e-3)
+    assert np.abs(flow).max() < 1e-9 * area
+    # A rigid translation along z, by what it gives the modes, moves the surface by the z of its normals.
+    free = body if body.kind == "solid" else replace(body, held=())
+    modes, surface = free.modes(), free.surface().as_points
+    moved = surface.shapes @ modes.translation[2][~modes.massless]
+    np.testing.assert_allclose(moved, surface.normals[:, 2], atol=1e-6)
+
+
+def test_a_tetrahedron_has_the_surface_of_its_faces():
+    nodes = np.array([[0.0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]])
+    body = st.SolidBody(st.SolidMesh(nodes, [[0, 1, 2, 3]], "tetra"), STEEL)
+    surface = body.surface()
+    volume, flow = closed(surface)
+    assert surface.areas.sum() == pytest.approx(0.015 + 0.005 * 3**0.5, rel=1e-9)
+    assert volume == pytest.approx(1e-3 / 6.0, rel=1e-9)
+    assert np.abs(flow).max() < 1e-12
+
+
+def seen(system, body, place, direction, duration=0.04):
+    """Acceleration of a point as the march has it, and from its modes driven again."""
+    probe = st.Acceleration(body.at(place), direction)
+    run = st.simulate(system, duration, step=2e-6, sample_rate=1e5, probes=[probe])
+    moved = redriven(run, system)
+    first, end = assemble(system).spans[system.body_name(body)]
+    row = body.trace(place)["xyz".index(direction)]
+    row = np.where(body.modes().massless, 0.0, row)
+    again = row @ moved.accelerations[first:end]
+    times = moved.first + moved.interval * np.arange(again.size)
+    # The probe is low-passed and stands at the ends of the intervals.
+    return run.acceleration.values.ravel(), np.interp(run.time.values, times, again)
+
+
+@pytest.mark.parametrize("turning", [0.0, 100.0])
+def test_a_disc_that_turns_is_driven_again_as_it_moved(turning):
+    system, plate = struck(turning)
+    known, found = seen(system, plate, AWAY, "z")
+    assert np.abs(found - known).max() < 0.05 * np.abs(known).max()
+
+
+def test_without_turning_the_same_blow_moves_it_in_another_way():
+    """Negative control."""
+    known, _ = seen(*struck(100.0), AWAY, "z")
+    _, found = seen(*struck(0.0), AWAY, "z")
+    assert np.abs(found - known).max() > 0.5 * np.abs(known).max()
+
+
+@pytest.mark.parametrize("side", ["disc", "pad"])
+def test_bodies_in_contact_and_on_springs_are_driven_again_as_they_moved(side):
+    system = rubbed(5.0)
+    body, place, way = (system.track, AWAY, "z") if side == "disc" else (system.slider, "tip", "x")
+    known, found = seen(system, body, place, way)
+    late = slice(400, -200)
+    assert np.abs(found - known)[late].max() < 0.05 * np.abs(known[late]).max()
+
+
+def test_another_systems_record_is_refused():
+    run = st.simulate(rubbed(0.0), 1e-3)
+    both = st.System([*rubbed(0.0).contacts, replace(rubbed(0.0).contacts[0], name="other")])
+    with pytest.raises(ValueError, match="run must be a record of this system, of 2 contacts"):
+        st.radiate(run, both)
+
+
+def test_a_blow_on_a_disc_is_heard_as_its_response_says():
+    """The spectrum of the sound over that of the force, against mobilities and fits at the frequencies."""
+    system, plate = struck(0.0, damping=0.06)
+    run = st.simulate(system, 0.04, step=5e-6, sample_rate=2e4)
+    air = st.Air()
+    heard = st.radiate(run, system, EARS, air=air)
+    radiator, modes = RingSources(plate.surface()), plate.modes()
+    moving = ~modes.massless
+    own, rate = modes.angular_frequency[moving], modes.damping_rate[moving]
+    row = plate.trace(HERE)[2][moving]
+    time = np.linspace(0.0, 4e-4, 2001)
+    force = np.interp(time, (0.0, 2e-4, 4e-4), (0.0, 1.0, 0.0))
+    for frequency in (600.0, 1300.0, 2500.0):
+        w = 2.0 * pi * frequency
+        blow = np.trapezoid(force * np.exp(-1j * w * time), time)
+        moved = -(w**2) * row * blow / (own**2 - w**2 + 1j * w * rate)
+        wave = w / air.speed
+        known = air.density * radiator.heard(radiator.fit(wave), wave, np.array(EARS)) @ moved
+        found = np.exp(-1j * w * heard.time.values) @ heard.values * 5e-5
+        assert np.abs(found - known).max() < 0.02 * np.abs(known).max()
+    assert heard.attrs["bodies"] == ["track"]
+    assert "without a surface and not heard: slider" in heard.attrs["notes"]
+    assert 0.0 < heard.attrs["fit_error"][0] < 0.1
+
+
+def test_no_sound_arrives_before_its_time():
+    system, _ = struck(0.0, damping=0.06)
+    run = st.simulate(system, 0.01, step=5e-6, sample_rate=2e4)
+    heard = st.radiate(run, system, (0.0, 0.0, 1.01))
+    way = heard.attrs["distance"][0]
+    assert way == pytest.approx(np.hypot(1.0, 0.03), rel=1e-3)
+    early = heard.values[heard.time.values < way / heard.attrs["air_speed"]]
+    assert early.size > 50
+    assert not early.any()
+    assert np.abs(heard.values).max() > 0.0
+
+
+def test_a_record_is_heard_without_the_mesh(stridula, tmp_path):
+    system, _ = struck(20.0, damping=0.06, cutoff=800.0)
+    run = st.simulate(system, 2e-3, step=1e-5, sample_rate=1e4)
+    st.save(run, tmp_path / "run.nc")
+    again = st.load_scenario(tmp_path / "run.nc").system
+    assert [body.kind for body in again.bodies] == ["rigid body", "modal body"]
+    place = (0.3, 0.3, 0.5)
+    known, found = (st.radiate(run, one, place).values for one in (system, again))
+    assert np.abs(known).max() > 0.0
+    np.testing.assert_array_equal(found, known)
+    # By its form, from lists as a scenario has them.
+    code, out, err = stridula("sound", "run.nc", "--listener", "0.3,0.3,0.5", "--wav", "a.wav")
+    assert (code, err) == (0, "")
+    assert "a.wav: 1 channel, 48 kHz" in out
+    assert "without a surface and not heard: slider" in out
+    body = again.track
+    bare = replace(body, outer_surface=None)
+    assert not bare.has_surface
+    assert bare != body
+    with pytest.raises(
+        ValueError, match="system must have a body with a surface to be heard, got none of slider, track"
+    ):
+        st.radiate(run, st.System(replace(system.contacts[0], track=bare.at(bare.point_names[0]))), place)
+
+
+def test_a_surface_that_does_not_fit_the_modes_is_refused():
+    surface = disc(0.0, cutoff=800.0).surface().as_points
+    points, modes = {"tip": np.ones((3, 2))}, [1.0, 2.0]
+    with pytest.raises(ValueError, match=r"outer_surface.shapes must be finite numbers of the shape \(\d+, 2\)"):
+        st.ModalBody(modes, points, outer_surface=surface)
+
+
+def test_sums_and_choices_of_bodies():
+    plate = disc(0.0, cutoff=1500.0)
+    block = st.SolidBody.block((0.02, 0.02, 0.03), (1, 1, 2), STEEL, points={"tip": 0}, cutoff=2e4)
+    contact = st.PointContact(block.at("tip"), plate.at(HERE), gap=1.0, normal=(0.0, 0.0, 1.0))
+    blow = (0.0, 2e-4, 4e-4), (0.0, 1.0, 0.0)
+    pushes = [st.Force(one, z=1.0, history=st.Sampled(*blow)) for one in (plate.at(HERE), block.at("tip"))]
+    system = st.System(contact, pushes)
+    run = st.simulate(system, 5e-3, step=1e-5, sample_rate=2e4)
+    place = (0.3, 0.3, 0.5)
+    # Before it arrives from both of them each alone is silent.
+    late = slice(60, None)
+    parts = [st.radiate(run, system, place, bodies=[one]).values[late] for one in (plate, block)]
+    both = st.radiate(run, system, place).values[late]
+    assert min(np.abs(part).max() for part in parts) > 0.0
+    np.testing.assert_allclose(both, parts[0] + parts[1], atol=1e-9 * np.abs(both).max())
+    with pytest.raises(ValueError, match=r"bodies\[0\] must be a body of the system with a surface"):
+        st.radiate(run, system, place, bodies=[disc(1.0)])
+    with pytest.raises(ValueError, match="listener must be outside of the bodies"):
+        st.radiate(run, system, (0.1, 0.0, 0.005))
+    with pytest.raises(ValueError, match="baffled must be False, or left out, for bodies in space"):
+        st.radiate(run, system, place, baffled=True)
+
+
+def test_a_mesh_without_points_within_falls_short_at_a_resonance(monkeypatch):
+    """Negative control: at ka = pi a standing wave fits into the sphere, and the integral alone does not tell."""
+    place, wave = open_air.PLACES[:1], pi / open_air.RADIUS
+    known = open_air.of_sphere(wave, place)[:, :1]
+    sphere = open_air.meshed_sphere(4)
+    sphere.surface.shapes[:, 1:] = 0.0
+    found = open_air.heard(sphere, wave, place)[:, :1]
+    assert np.abs(found - known) < 0.05 * np.abs(known)
+    monkeypatch.setattr(SurfacePressures, "within", np.zeros((0, 3)))
+    alone = open_air.heard(SurfacePressures(sphere.surface), wave, place)[:, :1]
+    assert np.abs(alone - known) > 3.0 * np.abs(found - known)
+
+
+def test_a_response_is_delayed_by_the_way_to_the_surface():
+    surface, place = open_air.ring_sphere(12), np.array([[0.0, 0.0, 1.1]])
+    for distance, interval in ((1.0, 1e-5), (1.0, 2.3e-5)):
+        sent = free_responses(surface, place, np.array([distance]), st.Air(), interval, 0.5, 15e3)
+        taps = sent.responses[0]
+        whole = taps.taps[:, 0].sum()
+        # A pulsating sphere at frequency zero: rho a² / R.
+        assert whole == pytest.approx(st.Air().density * 0.01 / 1.1, rel=2e-3)
+        peak = taps.first + int(taps.taps[:, 0].argmax())
+        assert peak == pytest.approx(distance / st.Air().speed / interval + 0.5, abs=4.0)
