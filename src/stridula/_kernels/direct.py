@@ -2,7 +2,7 @@
 
 Unknown are the normal forces of those that are closed and the tangential forces of those that are held; where a contact
 slides, its tangential force is the ratio found last times its normal force. The system lies in blocks like the
-compliance, ``scratch[block, row, lane]``: a row for each equation, one more for right sides. Runs side by side have the
+compliance, ``scratch[block, row, lane]``: a row for each equation, one for right sides, one to work with. Runs side by side have the
 equations of all of them.
 """
 
@@ -106,6 +106,11 @@ def put_columns(contacts, sizes, j, in_space, run, zero):
         second = equation(now, j + 1, at.TANGENTIAL_EQUATION, run, zero)
     n, t, b = COMPLIANCE + 2 * j, COMPLIANCE + 2 * j + 1, COMPLIANCE + 2 * j + 3
     give = held(now, j * at.IN_STEP + at.GIVE, run, zero)
+    # What the normal force displaces with the tangential one that goes with it, in the last row.
+    last = 2 * sizes.contacts + 1
+    for block in range(sizes.faces):
+        along = fused(-ratio, load(faces, block, t, run), load(faces, block, n, run))
+        store(scratch, block, last, run, fused(-swerve, load(faces, block, b, run), along) if in_space else along)
     for i in range(sizes.contacts):
         for k in range(2):
             which = at.NORMAL_EQUATION if k == 0 else at.TANGENTIAL_EQUATION
@@ -115,18 +120,16 @@ def put_columns(contacts, sizes, j, in_space, run, zero):
             moves = is_closed(now, i, run, zero) if k == 0 else is_held(now, contacts.codes, i, run, zero)
             # Where this run has no such equation, the unknown is zero.
             idle = zero + 1.0
-            pulled = entry(faces, 2 * i + k, t, run, zero)
-            along = fused(-ratio, pulled, entry(faces, 2 * i + k, n, run, zero))
-            if in_space:
-                across = entry(faces, 2 * i + k, b, run, zero)
-                along = fused(-swerve, across, along)
-                if second >= 0:
-                    set_entry(scratch, second, row, run, choose(moves, across, idle if row == second else zero))
+            along = entry(scratch, 2 * i + k, last, run, zero)
             if row == column:
                 along += give
             set_entry(scratch, column, row, run, choose(moves, along, idle if row == column else zero))
             if first >= 0:
+                pulled = entry(faces, 2 * i + k, t, run, zero)
                 set_entry(scratch, first, row, run, choose(moves, pulled, idle if row == first else zero))
+            if second >= 0:
+                across = entry(faces, 2 * i + k, b, run, zero)
+                set_entry(scratch, second, row, run, choose(moves, across, idle if row == second else zero))
 
 
 @numba.njit(**OPTIONS)

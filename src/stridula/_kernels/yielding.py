@@ -145,9 +145,10 @@ def give_of(x, before, yields, w_nn, step, zero):
 
 
 @numba.njit(**OPTIONS)
-def is_settled(reached, x, gap, yields):
-    """Return whether an indentation is found."""
-    near = magnitude(reached - x) <= SETTLED * (magnitude(x) + magnitude(gap))
+def is_settled(reached, normal, give, beyond, gap, yields):
+    """Return whether an indentation has the force that made it; `give` and `beyond` are how the contact yields there."""
+    left = reached - beyond - give * normal
+    near = magnitude(left) <= SETTLED * (magnitude(reached) + magnitude(gap))
     return choose(yields[0] > 0.0, choose(near, 1.0, 0.0), 1.0)
 
 
@@ -161,10 +162,10 @@ def forces_yielding(free, friction, before, let_go, step, yields, earlier, zero)
     """
     gap, slip, away, w = free
     law, laws, number, at_rest = friction
-    x, done = -gap, zero
+    done = zero
     normal, tangential, status, jammed, give, beyond = zero, zero, zero, zero, zero, zero
+    softer, further = give_of(-gap, earlier, yields, w[0], step, zero)
     for _ in range(STEPS):
-        softer, further = give_of(x, earlier, yields, w[0], step, zero)
         one = forces_of_one(
             gap + further,
             slip,
@@ -184,8 +185,8 @@ def forces_yielding(free, friction, before, let_go, step, yields, earlier, zero)
         status, jammed = choose(goes_on, one[2], status), choose(goes_on, one[3], jammed)
         give, beyond = choose(goes_on, softer, give), choose(goes_on, further, beyond)
         reached = -(gap + w[0] * normal - w[1] * tangential)
-        done = choose(goes_on, is_settled(reached, x, gap, yields), 1.0)
-        x = reached
+        softer, further = give_of(reached, earlier, yields, w[0], step, zero)
+        done = choose(goes_on, is_settled(reached, normal, softer, further, gap, yields), 1.0)
         if everywhere(done > 0.5):
             break
     return normal, tangential, status, jammed, give, beyond
@@ -196,10 +197,10 @@ def forces_yielding_in_space(free, friction, before, let_go, step, yields, earli
     """Do `forces_yielding` for a contact in space, as `solve_in_space`."""
     gap, slips, strays, w = free
     law, laws, number = friction
-    x, done = -gap, zero
+    done = zero
     normal, first, second, status, jammed, give, beyond = zero, zero, zero, zero, zero, zero, zero
+    softer, further = give_of(-gap, earlier, yields, w[0], step, zero)
     for _ in range(STEPS):
-        softer, further = give_of(x, earlier, yields, w[0], step, zero)
         softened = (w[0] + softer, w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8])
         one = solve_in_space(gap + further, slips, strays, softened, law, laws, number, before, let_go, step)
         goes_on = done < 0.5
@@ -211,8 +212,8 @@ def forces_yielding_in_space(free, friction, before, let_go, step, yields, earli
         status, jammed = choose(goes_on, one[3], status), choose(goes_on, one[4], jammed)
         give, beyond = choose(goes_on, softer, give), choose(goes_on, further, beyond)
         reached = -(gap + w[0] * normal - w[1] * first - w[2] * second)
-        done = choose(goes_on, is_settled(reached, x, gap, yields), 1.0)
-        x = reached
+        softer, further = give_of(reached, earlier, yields, w[0], step, zero)
+        done = choose(goes_on, is_settled(reached, normal, softer, further, gap, yields), 1.0)
         if everywhere(done > 0.5):
             break
     return normal, first, second, status, jammed, give, beyond
