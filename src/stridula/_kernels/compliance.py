@@ -5,7 +5,7 @@ import numba
 from . import layout as at
 from .block_rows import COMPLIANCE, CONTACTS, POSITION
 from .coupled import respond
-from .lanes import entry, set_entry
+from .lanes import component, set_component
 from .modes import OPTIONS, product, two_products
 
 
@@ -29,8 +29,8 @@ def set_compliance(rows, faces, spans, first_span, path_of, count, run, zero):
 def set_pair(rows, faces, spans, first_span, i, j, size, run, zero):
     """Put the compliance of contact `i`, which is on a path, for forces on contact `j`, and the other way round."""
     for side in range(2):
-        normal = entry(faces, 2 * i + side, COMPLIANCE + size + 2 * j, run, zero)
-        tangential = entry(faces, 2 * i + side, COMPLIANCE + size + 2 * j + 1, run, zero)
+        normal = component(faces, 2 * i + side, COMPLIANCE + size + 2 * j, run, zero)
+        tangential = component(faces, 2 * i + side, COMPLIANCE + size + 2 * j + 1, run, zero)
         for s in range(first_span[i], first_span[i + 1]):
             if spans[s, at.KIND] != at.CONSTANT:
                 begin, end = spans[s, at.BEGIN], spans[s, at.END]
@@ -42,8 +42,8 @@ def set_pair(rows, faces, spans, first_span, i, j, size, run, zero):
                 along = two_products(rows, CONTACTS + 2 * j, CONTACTS + 2 * i + side, begin, end, run, zero)
                 normal, tangential = normal + along[0], tangential + along[1]
         for other, value in ((2 * j, normal), (2 * j + 1, tangential)):
-            set_entry(faces, 2 * i + side, COMPLIANCE + other, run, value)
-            set_entry(faces, other, COMPLIANCE + 2 * i + side, run, value)
+            set_component(faces, 2 * i + side, COMPLIANCE + other, run, value)
+            set_component(faces, other, COMPLIANCE + 2 * i + side, run, value)
 
 
 @numba.njit(**OPTIONS)
@@ -66,4 +66,4 @@ def set_compliance_of_coupled(rows, matrices, faces, blocks, coupled, places, co
         for i in range(2 * count):
             value = product(rows, CONTACTS + i, POSITION, 0, coupled, run, zero)
             value += product(rows, CONTACTS + i, CONTACTS + j, coupled, blocks, run, zero)
-            set_entry(faces, i, COMPLIANCE + j, run, value)
+            set_component(faces, i, COMPLIANCE + j, run, value)

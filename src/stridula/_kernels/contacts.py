@@ -12,7 +12,7 @@ from .block_rows import COMPLIANCE, DISPLACEMENT
 from .contact import SLIDING, STICKING
 from .direct import solve_states
 from .faces import displace, displace_freely, own_compliance
-from .lanes import anywhere, choose, entry, everywhere, held, hold, magnitude
+from .lanes import anywhere, choose, component, everywhere, held, hold, magnitude
 from .modes import ENTRY, OPTIONS, PASTED
 from .solves import carried_by, forces_of_one, strayed
 from .space import free_of_own, is_second, put_second, solve_in_space
@@ -137,13 +137,13 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
         here = i * at.IN_STEP
         if sizes.space and is_second(contacts.codes, i):
             continue
-        gap = entry(faces, 2 * i, DISPLACEMENT, run, zero)
+        gap = component(faces, 2 * i, DISPLACEMENT, run, zero)
         may_touch = held(now, here + at.MAY_TOUCH, run, zero)
         may_touch = choose(gap < 0.0, 1.0, may_touch)
         if not anywhere(may_touch > 0.5):
             continue
         hold(now, here + at.MAY_TOUCH, run, may_touch)
-        slip = entry(faces, 2 * i + 1, DISPLACEMENT, run, zero)
+        slip = component(faces, 2 * i + 1, DISPLACEMENT, run, zero)
         was_normal, was_tangential = (
             held(now, here + at.NORMAL_NOW, run, zero),
             held(now, here + at.TANGENTIAL_NOW, run, zero),
@@ -177,7 +177,7 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
         if in_space:
             swerved = put_second(contacts, sizes, i, run, goes_on, normal, second, status, zero)
             change = largest_of(change, magnitude(swerved))
-            across = entry(faces, 2 * i + 3, COMPLIANCE + 2 * i + 3, run, zero)
+            across = component(faces, 2 * i + 3, COMPLIANCE + 2 * i + 3, run, zero)
             misfit = largest_of(misfit, magnitude(across * swerved))
         change = largest_of(change, largest_of(magnitude(more), magnitude(pulled)))
         largest = largest_of(largest, largest_of(normal, magnitude(tangential)))

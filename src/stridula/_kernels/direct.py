@@ -2,8 +2,8 @@
 
 Unknown are the normal forces of those that are closed and the tangential forces of those that are held; where a contact
 slides, its tangential force is the ratio found last times its normal force. The system lies in blocks like the
-compliance, ``scratch[block, row, lane]``: a row for each equation, one for right sides, one to work with. Runs side by side have the
-equations of all of them.
+compliance, ``scratch[row, block, lane]``: a row for each equation, one for right sides, one to work with. Runs side by
+side have the equations of all of them.
 """
 
 import numba
@@ -13,7 +13,7 @@ from .block_rows import COMPLIANCE
 from .contact import STICKING
 from .faces import displace
 from .friction import set_valued
-from .lanes import anywhere, choose, entry, fused, held, hold, lane, load, magnitude, set_entry, store
+from .lanes import anywhere, choose, component, fused, held, hold, lane, load, magnitude, set_component, store
 from .modes import OPTIONS
 from .solves import strayed
 from .space import is_second
@@ -109,8 +109,8 @@ def put_columns(contacts, sizes, j, in_space, run, zero):
     # What the normal force displaces with the tangential one that goes with it, in the last row.
     last = 2 * sizes.contacts + 1
     for block in range(sizes.faces):
-        along = fused(-ratio, load(faces, block, t, run), load(faces, block, n, run))
-        store(scratch, block, last, run, fused(-swerve, load(faces, block, b, run), along) if in_space else along)
+        along = fused(-ratio, load(faces, t, block, run), load(faces, n, block, run))
+        store(scratch, last, block, run, fused(-swerve, load(faces, b, block, run), along) if in_space else along)
     for i in range(sizes.contacts):
         for k in range(2):
             which = at.NORMAL_EQUATION if k == 0 else at.TANGENTIAL_EQUATION
@@ -120,16 +120,16 @@ def put_columns(contacts, sizes, j, in_space, run, zero):
             moves = is_closed(now, i, run, zero) if k == 0 else is_held(now, contacts.codes, i, run, zero)
             # Where this run has no such equation, the unknown is zero.
             idle = zero + 1.0
-            along = entry(scratch, 2 * i + k, last, run, zero)
+            along = component(scratch, 2 * i + k, last, run, zero)
             if row == column:
                 along += give
-            set_entry(scratch, column, row, run, choose(moves, along, idle if row == column else zero))
+            set_component(scratch, column, row, run, choose(moves, along, idle if row == column else zero))
             if first >= 0:
-                pulled = entry(faces, 2 * i + k, t, run, zero)
-                set_entry(scratch, first, row, run, choose(moves, pulled, idle if row == first else zero))
+                pulled = component(faces, 2 * i + k, t, run, zero)
+                set_component(scratch, first, row, run, choose(moves, pulled, idle if row == first else zero))
             if second >= 0:
-                across = entry(faces, 2 * i + k, b, run, zero)
-                set_entry(scratch, second, row, run, choose(moves, across, idle if row == second else zero))
+                across = component(faces, 2 * i + k, b, run, zero)
+                set_component(scratch, second, row, run, choose(moves, across, idle if row == second else zero))
 
 
 @numba.njit(**OPTIONS)
@@ -138,24 +138,24 @@ def put_rights(contacts, carried, j, in_space, size, run, zero):
     now, scratch, here = contacts.now, contacts.scratch, j * at.IN_STEP
     gap, beyond = held(now, here + at.FREE_GAP, run, zero), held(now, here + at.BEYOND, run, zero)
     of_normal = equation(now, j, at.NORMAL_EQUATION, run, zero)
-    set_entry(scratch, of_normal, size, run, choose(is_closed(now, j, run, zero), -gap - beyond, zero))
+    set_component(scratch, of_normal, size, run, choose(is_closed(now, j, run, zero), -gap - beyond, zero))
     for i in range(j, j + 2 if in_space else j + 1):
         of_tangential = equation(now, i, at.TANGENTIAL_EQUATION, run, zero)
         if of_tangential >= 0:
             slip = held(now, i * at.IN_STEP + at.FREE_SLIP, run, zero) + strayed(carried, i, run, zero)
             holds = is_held(now, contacts.codes, i, run, zero)
-            set_entry(scratch, of_tangential, size, run, choose(holds, -slip, zero))
+            set_component(scratch, of_tangential, size, run, choose(holds, -slip, zero))
 
 
 @numba.njit(**OPTIONS)
 def found_forces(contacts, j, i, size, run, zero):
     """Return the normal force of contact `j` and the tangential one of its pair `i` that were found."""
     now, scratch = contacts.now, contacts.scratch
-    normal = entry(scratch, equation(now, j, at.NORMAL_EQUATION, run, zero), size, run, zero)
+    normal = component(scratch, equation(now, j, at.NORMAL_EQUATION, run, zero), size, run, zero)
     tangential = held(now, i * at.IN_STEP + at.RATIO, run, zero) * normal
     of_tangential = equation(now, i, at.TANGENTIAL_EQUATION, run, zero)
     if of_tangential >= 0:
-        pulled = -entry(scratch, of_tangential, size, run, zero)
+        pulled = -component(scratch, of_tangential, size, run, zero)
         tangential = choose(is_held(now, contacts.codes, i, run, zero), pulled, tangential)
     return normal, tangential
 
@@ -198,23 +198,23 @@ def eliminate(scratch, size, blocks, per_block, run, regular, zero):
     A contact's own compliance is on the diagonal. What this loses of digits, the sweep that follows finds.
     """
     for k in range(size):
-        pivot = entry(scratch, k, k, run, zero)
+        pivot = component(scratch, k, k, run, zero)
         regular = choose(magnitude(pivot) > 0.0, regular, zero)
         inverse = 1.0 / choose(regular > 0.5, pivot, 1.0)
-        right = entry(scratch, k, size, run, zero)
+        right = component(scratch, k, size, run, zero)
         for row in range(k + 1, size):
-            factor = entry(scratch, k, row, run, zero) * inverse
+            factor = component(scratch, k, row, run, zero) * inverse
             if anywhere(magnitude(factor) > 0.0):
                 for block in range(k // per_block, blocks):
-                    changed = fused(-factor, load(scratch, block, k, run), load(scratch, block, row, run))
-                    store(scratch, block, row, run, changed)
-                set_entry(scratch, row, size, run, fused(-factor, right, entry(scratch, row, size, run, zero)))
+                    changed = fused(-factor, load(scratch, k, block, run), load(scratch, row, block, run))
+                    store(scratch, row, block, run, changed)
+                set_component(scratch, row, size, run, fused(-factor, right, component(scratch, row, size, run, zero)))
     for back in range(size):
         k = size - 1 - back
-        pivot = choose(regular > 0.5, entry(scratch, k, k, run, zero), 1.0)
-        found = entry(scratch, k, size, run, zero) / pivot
-        set_entry(scratch, k, size, run, found)
+        pivot = choose(regular > 0.5, component(scratch, k, k, run, zero), 1.0)
+        found = component(scratch, k, size, run, zero) / pivot
+        set_component(scratch, k, size, run, found)
         for row in range(k):
-            left = fused(-entry(scratch, k, row, run, zero), found, entry(scratch, row, size, run, zero))
-            set_entry(scratch, row, size, run, left)
+            left = fused(-component(scratch, k, row, run, zero), found, component(scratch, row, size, run, zero))
+            set_component(scratch, row, size, run, left)
     return regular

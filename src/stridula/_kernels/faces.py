@@ -8,7 +8,7 @@ import numba
 
 from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
-from .lanes import entry, fused, held, load, set_entry, store
+from .lanes import component, fused, held, load, set_component, store
 from .modes import OPTIONS
 
 
@@ -17,10 +17,10 @@ def own_compliance(faces, i, run, zero):
     """Return the compliance of contact `i` for its own forces, row by row."""
     n, t = 2 * i, 2 * i + 1
     return (
-        entry(faces, n, COMPLIANCE + n, run, zero),
-        entry(faces, n, COMPLIANCE + t, run, zero),
-        entry(faces, t, COMPLIANCE + n, run, zero),
-        entry(faces, t, COMPLIANCE + t, run, zero),
+        component(faces, n, COMPLIANCE + n, run, zero),
+        component(faces, n, COMPLIANCE + t, run, zero),
+        component(faces, t, COMPLIANCE + n, run, zero),
+        component(faces, t, COMPLIANCE + t, run, zero),
     )
 
 
@@ -28,14 +28,14 @@ def own_compliance(faces, i, run, zero):
 def displace(faces, blocks, i, run, normal, tangential):
     """Add the displacements that changes of the forces of contact `i` make."""
     for k in range(blocks):
-        moved = fused(load(faces, k, COMPLIANCE + 2 * i, run), normal, load(faces, k, DISPLACEMENT, run))
-        moved = fused(-load(faces, k, COMPLIANCE + 2 * i + 1, run), tangential, moved)
-        store(faces, k, DISPLACEMENT, run, moved)
+        moved = fused(load(faces, COMPLIANCE + 2 * i, k, run), normal, load(faces, DISPLACEMENT, k, run))
+        moved = fused(-load(faces, COMPLIANCE + 2 * i + 1, k, run), tangential, moved)
+        store(faces, DISPLACEMENT, k, run, moved)
 
 
 @numba.njit(**OPTIONS)
 def displace_freely(faces, now, count, run, zero):
     """Put the displacements without any force."""
     for i in range(count):
-        set_entry(faces, 2 * i, DISPLACEMENT, run, held(now, i * at.IN_STEP + at.FREE_GAP, run, zero))
-        set_entry(faces, 2 * i + 1, DISPLACEMENT, run, held(now, i * at.IN_STEP + at.FREE_SLIP, run, zero))
+        set_component(faces, 2 * i, DISPLACEMENT, run, held(now, i * at.IN_STEP + at.FREE_GAP, run, zero))
+        set_component(faces, 2 * i + 1, DISPLACEMENT, run, held(now, i * at.IN_STEP + at.FREE_SLIP, run, zero))

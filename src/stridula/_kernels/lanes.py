@@ -32,6 +32,16 @@ def set_entry(rows, k, row, run, value):
     rows[k, row, run] = value
 
 
+def component(rows, k, row, run, like):
+    """Return number `k` of a row that lies in one piece over all blocks, for each run."""
+    return rows[row, k, run]
+
+
+def set_component(rows, k, row, run, value):
+    """Put number `k` into a row that lies in one piece over all blocks, for each run."""
+    rows[row, k, run] = value
+
+
 def read(array, row, column, like):
     """Return what belongs to a run, or to each of several, from a row of `array`."""
     return array[row, column]
@@ -137,6 +147,24 @@ def _set_entry(rows, k, row, run, value):
 
     def implementation(rows, k, row, run, value):
         rows[k >> SHIFT, row, k & (WIDTH - 1)] = value
+
+    return implementation
+
+
+@overload(component)
+def _component(rows, k, row, run, like):
+    if not _is_number(like):
+        return lambda rows, k, row, run, like: load(rows, row, k, run)
+    return lambda rows, k, row, run, like: rows[row, k >> SHIFT, k & (WIDTH - 1)]
+
+
+@overload(set_component)
+def _set_component(rows, k, row, run, value):
+    if not _is_number(value):
+        return lambda rows, k, row, run, value: store(rows, row, k, run, value)
+
+    def implementation(rows, k, row, run, value):
+        rows[row, k >> SHIFT, k & (WIDTH - 1)] = value
 
     return implementation
 

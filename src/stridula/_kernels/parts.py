@@ -87,7 +87,7 @@ class Contacts(NamedTuple):
         Law of each contact and its parameters in each run.
     constants, fixed : ndarray, a column a run
         Constants of each contact; compliance of the only one on constant rows.
-    faces, scratch : ndarray, shape (blocks, rows, lanes)
+    faces, scratch : ndarray, shape (rows, blocks, lanes)
         Forces, displacements and compliances of all contacts; a linear system.
     now, sums : ndarray, a column a run
         What each contact is in a step; sums over a sample.

@@ -19,7 +19,7 @@ from .bookkeeping import (
 from .contacts import solve_all, start_from_last
 from .faces import own_compliance
 from .friction import set_valued
-from .lanes import anywhere, choose, entry, held, hold
+from .lanes import anywhere, choose, component, held, hold
 from .leaving import any_beyond_ends
 from .modes import OPTIONS, PASTED
 from .solves import strayed
@@ -63,7 +63,10 @@ def solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero)
     for i in range(count):
         here, w = i * at.IN_STEP, own_compliance(faces, i, run, zero)
         normal, tangential = held(now, here + at.NORMAL_NOW, run, zero), held(now, here + at.TANGENTIAL_NOW, run, zero)
-        gap, slip = entry(faces, 2 * i, DISPLACEMENT, run, zero), entry(faces, 2 * i + 1, DISPLACEMENT, run, zero)
+        gap, slip = (
+            component(faces, 2 * i, DISPLACEMENT, run, zero),
+            component(faces, 2 * i + 1, DISPLACEMENT, run, zero),
+        )
         hold(now, here + at.NEW_GAP, run, gap)
         hold(now, here + at.NEW_SLIP, run, slip)
         # From here on without the forces of this contact alone.

@@ -15,7 +15,7 @@ from .block_rows import COMPLIANCE, DISPLACEMENT
 from .contact import SLIDING, STICKING
 from .faces import displace
 from .friction import STRICT
-from .lanes import choose, entry, held, hold, lane, magnitude, spread, with_lane
+from .lanes import choose, component, held, hold, lane, magnitude, spread, with_lane
 from .modes import OPTIONS, PASTED
 from .solves import carried_by, solve_one_run, strayed
 from .vectors import LANES, VECTOR
@@ -41,15 +41,15 @@ def whole_compliance(faces, i, run, zero):
     """Return the compliance of a contact in space, rows of normal and tangents, for forces ``(N, -T1, -T2)``."""
     n, t, b = 2 * i, 2 * i + 1, 2 * i + 3
     return (
-        entry(faces, n, COMPLIANCE + n, run, zero),
-        entry(faces, n, COMPLIANCE + t, run, zero),
-        entry(faces, n, COMPLIANCE + b, run, zero),
-        entry(faces, t, COMPLIANCE + n, run, zero),
-        entry(faces, t, COMPLIANCE + t, run, zero),
-        entry(faces, t, COMPLIANCE + b, run, zero),
-        entry(faces, b, COMPLIANCE + n, run, zero),
-        entry(faces, b, COMPLIANCE + t, run, zero),
-        entry(faces, b, COMPLIANCE + b, run, zero),
+        component(faces, n, COMPLIANCE + n, run, zero),
+        component(faces, n, COMPLIANCE + t, run, zero),
+        component(faces, n, COMPLIANCE + b, run, zero),
+        component(faces, t, COMPLIANCE + n, run, zero),
+        component(faces, t, COMPLIANCE + t, run, zero),
+        component(faces, t, COMPLIANCE + b, run, zero),
+        component(faces, b, COMPLIANCE + n, run, zero),
+        component(faces, b, COMPLIANCE + t, run, zero),
+        component(faces, b, COMPLIANCE + b, run, zero),
     )
 
 
@@ -323,9 +323,9 @@ def free_of_own(contacts, carried, i, run, runs, zero):
     normal = held(now, here + at.NORMAL_NOW, run, zero)
     first = held(now, here + at.TANGENTIAL_NOW, run, zero)
     second = held(now, here + at.IN_STEP + at.TANGENTIAL_NOW, run, zero)
-    gap = entry(faces, 2 * i, DISPLACEMENT, run, zero) - (w[0] * normal - w[1] * first - w[2] * second)
-    slip = entry(faces, 2 * i + 1, DISPLACEMENT, run, zero) - (w[3] * normal - w[4] * first - w[5] * second)
-    swerve = entry(faces, 2 * i + 3, DISPLACEMENT, run, zero) - (w[6] * normal - w[7] * first - w[8] * second)
+    gap = component(faces, 2 * i, DISPLACEMENT, run, zero) - (w[0] * normal - w[1] * first - w[2] * second)
+    slip = component(faces, 2 * i + 1, DISPLACEMENT, run, zero) - (w[3] * normal - w[4] * first - w[5] * second)
+    swerve = component(faces, 2 * i + 3, DISPLACEMENT, run, zero) - (w[6] * normal - w[7] * first - w[8] * second)
     strays = strayed(carried, i, run, zero), strayed(carried, i + 1, run, zero)
     was, last, earlier, state, last_normal, last_forces = carried_in_space(carried, i, run, zero)
     before = (was, last, earlier, state, last_normal, last_forces, (first, second))

@@ -146,7 +146,7 @@ def give_of(x, before, yields, w_nn, step, zero):
 
 @numba.njit(**OPTIONS)
 def is_settled(reached, normal, give, beyond, gap, yields):
-    """Return whether an indentation has the force that made it; `give` and `beyond` are how the contact yields there."""
+    """Return whether an indentation has the force that made it; it yields there by `give` for a force and `beyond`."""
     left = reached - beyond - give * normal
     near = magnitude(left) <= SETTLED * (magnitude(reached) + magnitude(gap))
     return choose(yields[0] > 0.0, choose(near, 1.0, 0.0), 1.0)

@@ -336,13 +336,14 @@ def matrices_of(where: Layout, runs: Sequence[Recurrence], width: int) -> Array:
 
 
 def compliance_in_blocks(compliances: Sequence[Array], sizes: Sizes, width: int) -> Array:
-    """Return room for the displacements of the contacts of runs, and their compliances, shape (blocks, rows, width)."""
+    """Return room for the displacements of the contacts of runs, and their compliances, shape (rows, blocks, width)."""
     size = 2 * sizes.contacts
-    out = aligned(sizes.faces, (COMPLIANCE + 2 * size) * width).reshape(sizes.faces, -1, width)
+    rows = COMPLIANCE + 2 * size
+    out = aligned(rows, sizes.faces * width).reshape(rows, sizes.faces, width)
     block, lane = np.divmod(np.arange(size), sizes.per_block)
     for run, compliance in enumerate(compliances):
         for first in (COMPLIANCE, COMPLIANCE + size):
-            out[block[:, None], first + np.arange(size)[None, :], (lane + run)[:, None]] = compliance
+            out[first + np.arange(size)[None, :], block[:, None], (lane + run)[:, None]] = compliance
     return out
 
 

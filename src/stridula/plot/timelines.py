@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from ..arrays import Array
 from ..checks import ArgumentError, finite, listed
+from ..records.by_surface import by_surface
 from ..records.checked import record
 from ..records.variables import STATUS_WORDS
 from .colours import LINES, STATUS_COLOURS
@@ -24,7 +25,8 @@ def timeline(
     """Draw recorded variables under each other over one time axis.
 
     A ``status`` is drawn as a ribbon: at every instant its height is shared among the three states. Of several contacts
-    each is a line, and has its own ribbon.
+    each is a line, and has its own ribbon. The points of a surface are one: forces add up, and of all else there is the
+    mean.
 
     Parameters
     ----------
@@ -55,7 +57,7 @@ def timeline(
         known = listed(str(name) for name in run.data_vars if "time" in run[name].dims)
         raise ArgumentError("variables", f"be recorded over time in the run ({known})", missing[0])
     record("run", run, *variables, *(["status_share"] if "status" in variables else []))
-    shown = run if span is None else run.sel(time=slice(*_ends(span)))
+    shown = by_surface(run if span is None else run.sel(time=slice(*_ends(span))))
     if shown.sizes["time"] < 2:
         raise ArgumentError("span", "hold at least 2 samples of the run", span)
     ribbons = shown.sizes.get("contact", 1)
