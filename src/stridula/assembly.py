@@ -15,7 +15,7 @@ from .bodies.modes import Modes
 from .bodies.ordinary import check_coupled_count, of_ordinary_size
 from .bodies.turning import Turning
 from .checks import ArgumentError, brief
-from .connections import ends, unit
+from .connections import ends, pushes, unit
 from .contact import PointContact
 from .histories import Constant, History
 from .records.probes import Acceleration, Displacement, Probe, Reaction, SupportForce, Velocity
@@ -570,6 +570,8 @@ def _loads(system: System, layout: _Layout) -> tuple[list[_Load], list[Signal], 
         if drive.fall is not None:
             modal = np.sum([drive.fall @ layout.translation(body) for body in layout.order], axis=0)
             add(Constant(), modal, inertia @ drive.fall[:2])
+    for history, point, components in (push for one in system.connections for push in pushes(one)):
+        add(history, *_force(point, components, layout))
     felt = {history: load for history, load in by_history.items() if load.modal.any() or load.root.any()}
     loads = list(felt.values())
     signals = [_factor(history) for history in felt]

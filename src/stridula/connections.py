@@ -10,12 +10,16 @@ import numpy as np
 from .arrays import Array
 from .bodies import BodyPoint
 from .checks import ArgumentError, brief, instance
-from .declared import Axis, Number, check_declared
+from .declared import Axis, Number, Position, Velocity, check_declared
+from .histories import HISTORIES, Constant, History
 
 
 @dataclass(frozen=True)
 class Spring:
-    """A massless linear spring between two points, or between a point and the ground, unstressed at the start.
+    """A massless linear spring between two points, or between a point and the ground.
+
+    Its force is the stiffness times what the displacement of the first end against the other one lacks to the offset:
+    without one it is unstressed at the start, with one it presses as an actuator does, or its support moves.
 
     Parameters
     ----------
@@ -27,6 +31,11 @@ class Spring:
         Stiffness [N/m]; force per unit of relative displacement.
     direction : {"x", "y", "z"} or sequence of float, optional
         World direction along which it acts: x, y, z, or its three components, of any length.
+    offset : float, optional
+        Displacement of the first end against the other one at which it carries no force [m]; by how much the ground
+        moves where that is the other end.
+    history : Constant, Ramp, Harmonic or Sampled, optional
+        Factor on the offset over time.
     """
 
     first: BodyPoint
@@ -34,10 +43,18 @@ class Spring:
     kind: ClassVar[str] = "spring"
     stiffness: Annotated[float, Number("N/m", above=0.0)] = field(kw_only=True)
     direction: Axis = field(default="x", kw_only=True)
+    offset: Position = field(default=0.0, kw_only=True)
+    history: History = field(default_factory=Constant, kw_only=True)
 
     def __post_init__(self) -> None:
         _check_ends(self.first, self.second)
         check_declared(self)
+        instance("history", self.history, HISTORIES)
+
+    @property
+    def moved_by(self) -> float:
+        """Force on the first end with both at rest where they were [N], times the history."""
+        return self.stiffness * self.offset
 
     @property
     def rates(self) -> tuple[float, float]:
@@ -45,7 +62,8 @@ class Spring:
         return self.stiffness, 0.0
 
     def __str__(self) -> str:
-        return f"spring {self.stiffness:.4g} N/m along {_along(self)}"
+        moved = f", offset {self.offset:.4g} m, {self.history.kind}" if self.offset else ""
+        return f"spring {self.stiffness:.4g} N/m along {_along(self)}{moved}"
 
 
 @dataclass(frozen=True)
@@ -62,6 +80,11 @@ class Dashpot:
         Force per unit of relative velocity [N s/m].
     direction : {"x", "y", "z"} or sequence of float, optional
         World direction along which it acts: x, y, z, or its three components, of any length.
+    velocity : float, optional
+        Velocity of the first end against the other one at which it carries no force [m/s]; that of the ground where
+        that is the other end.
+    history : Constant, Ramp, Harmonic or Sampled, optional
+        Factor on the velocity over time.
     """
 
     first: BodyPoint
@@ -69,10 +92,18 @@ class Dashpot:
     kind: ClassVar[str] = "dashpot"
     coefficient: Annotated[float, Number("N s/m", above=0.0)] = field(kw_only=True)
     direction: Axis = field(default="x", kw_only=True)
+    velocity: Velocity = field(default=0.0, kw_only=True)
+    history: History = field(default_factory=Constant, kw_only=True)
 
     def __post_init__(self) -> None:
         _check_ends(self.first, self.second)
         check_declared(self)
+        instance("history", self.history, HISTORIES)
+
+    @property
+    def moved_by(self) -> float:
+        """Force on the first end with both at rest [N], times the history."""
+        return self.coefficient * self.velocity
 
     @property
     def rates(self) -> tuple[float, float]:
@@ -80,7 +111,8 @@ class Dashpot:
         return 0.0, self.coefficient
 
     def __str__(self) -> str:
-        return f"dashpot {self.coefficient:.4g} N s/m along {_along(self)}"
+        moved = f", velocity {self.velocity:.4g} m/s, {self.history.kind}" if self.velocity else ""
+        return f"dashpot {self.coefficient:.4g} N s/m along {_along(self)}{moved}"
 
 
 Connection = Spring | Dashpot
@@ -93,6 +125,16 @@ def unit(connection: Connection) -> Array:
         return np.eye(3)["xyz".index(connection.direction)]
     components = np.array(connection.direction)
     return np.asarray(components / np.linalg.norm(components))
+
+
+def pushes(connection: Connection) -> list[tuple[History, BodyPoint, Array]]:
+    """Return the forces of a connection that is moved, as those of drives: history, point, and x, y and z [N]."""
+    if not connection.moved_by:
+        return []
+    force = connection.moved_by * unit(connection)
+    return [
+        (connection.history, point, sign * force) for point, sign in zip(ends(connection), (1.0, -1.0), strict=False)
+    ]
 
 
 def _along(connection: Connection) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError
+from ..connections import pushes
 from ..contact.stiffness import slopes_at
 from ..drives import InitialEquilibrium
 from ..system import System
@@ -63,7 +64,8 @@ def equilibrium_at_start(system: System, asked: InitialEquilibrium) -> tuple[str
         If a slip velocity is needed, or contacts hold the same motion twice.
     """
     structure = Structure(system, 0.0)
-    if not structure.load.any() and any(drive.push is not None for drive in system.drives):
+    pressed = any(drive.push is not None for drive in system.drives) or any(map(pushes, system.connections))
+    if pressed and not structure.load.any():
         raise ArgumentError(
             "drives", "press from the start, where runs begin in equilibrium", got="loads that rise later"
         )

@@ -288,6 +288,9 @@ def settled_time(system: System) -> float:
     for number, drive in enumerate(system.drives):
         if hasattr(drive, "history"):
             histories.append((f"drives[{number}]", drive.history))
+    for number, connection in enumerate(system.connections):
+        if connection.moved_by:
+            histories.append((f"connections[{number}]", connection.history))
     for body in system.bodies:
         if getattr(body, "turning_history", None) is not None:
             histories.append((f"the turning of {system.body_name(body)}", body.turning_history))

@@ -15,7 +15,7 @@ from ..arrays import Array
 from ..bodies import AxisymmetricBody, BodyPoint, FiniteElementBeam, ModalBeam, ModalBody
 from ..bodies.damping import DampingLaw
 from ..bodies.turning import Turning
-from ..connections import ends
+from ..connections import Connection, ends
 from ..contact import PointContact
 from ..drives import Drive
 from ..histories import Constant
@@ -90,13 +90,19 @@ def _general(system: System, probed: Sequence[BodyPoint]) -> dict[str, Any]:
         tables["connections"] = [
             {
                 "kind": connection.kind,
-                **_plain(connection, "first", "second"),
+                **_plain(connection, "first", "second", *_unmoved(connection)),
+                **_histories(connection),
                 "first": place(connection.first),
                 **({"second": place(connection.second)} if connection.second is not None else {}),
             }
             for connection in system.connections
         ]
     return tables
+
+
+def _unmoved(connection: Connection) -> tuple[str, ...]:
+    """Return the fields of a connection that say nothing, as it is not moved; its history is written by itself."""
+    return ("history",) if connection.moved_by else ("history", "offset", "velocity")
 
 
 def _contact(contact: PointContact) -> dict[str, Any]:

@@ -348,6 +348,10 @@ class Builder:
         first = self._place((*path, "first"), table.pop("first"))
         second = table.pop("second", None)
         other = None if second is None else self._place((*path, "second"), second)
+        if table.get("history") is not None:
+            table["history"] = self._history((*path, "history"), table["history"])
+        else:
+            table.pop("history", None)
         with self._within(*path):
             return CONNECTIONS[kind](first, other, **table)
 

@@ -122,6 +122,8 @@ else:
     }
     Surface = table_of(SurfaceContact, title="Surface", before=_faces, after=_layer)
     Contact = table_of(PointContact, title="Contact", before=_sides, after=_friction)
+    _moves = {"history": (History | None, None, "factor on the offset or the velocity over time, constant if left out")}
     Connection = one_of(
-        "kind", [table_of(kind, "kind", kind.kind, "spring or dashpot", before=ENDS) for kind in CONNECTIONS]
+        "kind",
+        [table_of(kind, "kind", kind.kind, "spring or dashpot", before=ENDS, after=_moves) for kind in CONNECTIONS],
     )
