@@ -19,6 +19,7 @@ import machine
 import many_contacts
 import many_runs
 import maps
+import meshes
 import peer_speed
 import real_time
 import scaling
@@ -38,6 +39,7 @@ SECTIONS = (
     many_runs,
     short_runs,
     space,
+    meshes,
     maps,
     scaling,
     startup,

@@ -1,0 +1,70 @@
+"""Time and memory of the modes of meshed bodies of ten, thirty and a hundred thousand degrees of freedom.
+
+A fresh process each: it meshes a disc, finds its modes up to 6 kHz and how all others yield at four points.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+
+import stridula as st
+from ratios import FORM, Ratio, show, sized
+
+TITLE = "modes of meshed bodies: a ring of iron that yields at four points"
+# Elements along radius, angle and axis, seconds and bytes over which time and memory are taken.
+DIVISIONS = sized(((6, 48, 2), (10, 80, 3), (16, 120, 4)), ((1, 8, 1),))
+SECOND, BYTES = 1.0, 1e9
+
+
+def rows() -> Iterator[Ratio | str]:
+    """Yield seconds and memory of each mesh, once: they are long beside all that disturbs them."""
+    for divisions in DIVISIONS:
+        taken, peak, free, modes = measured(divisions)
+        words = f"{free} degrees of freedom, {modes} modes and residual shapes"
+        yield Ratio(f"{words}: time over 1 s", [taken / SECOND])
+        if peak is None:
+            yield f"{words}: memory skipped, this system does not say what a process took"
+        else:
+            yield Ratio(f"{words}: peak memory over 1 GB", [peak / BYTES])
+
+
+def measured(divisions: tuple[int, int, int]) -> tuple[float, float | None, int, int]:
+    """Return the seconds and the peak memory of a fresh process, degrees of freedom and modes."""
+    command = [sys.executable, __file__, "child", *map(str, divisions), *FORM]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    printed = process.stdout.read()
+    if hasattr(os, "wait4"):
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        peak = usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+    else:
+        process.wait()
+        peak = None
+    if process.returncode:
+        raise RuntimeError(f"the mesh of {divisions} ended with exit code {process.returncode}")
+    taken, free, modes = printed.split()
+    return float(taken), peak, int(free), int(modes)
+
+
+def find_modes(divisions: tuple[int, int, int]) -> None:
+    """Print the seconds that the modes of a ring take, its degrees of freedom and its modes."""
+    began = time.perf_counter()
+    mesh = st.SolidMesh.sector((0.06, 0.13), (0.0, 6.283185307179586), 0.02, divisions)
+    places = {f"foot {k}": int(mesh.nodes_of("top")[k * len(mesh.nodes_of("top")) // 4]) for k in range(4)}
+    iron = st.Material(1.1e11, 7100.0, 0.28)
+    body = st.SolidBody(mesh, iron, points=places, fixed=["inner"], cutoff=6e3)
+    modes = body.modes().count
+    print(time.perf_counter() - began, 3 * (len(mesh.nodes) - len(mesh.nodes_of("inner"))), modes)
+
+
+if __name__ == "__main__":
+    if "child" in sys.argv:
+        first = sys.argv.index("child") + 1
+        find_modes(tuple(map(int, sys.argv[first : first + 3])))
+    else:
+        show(TITLE, rows())
