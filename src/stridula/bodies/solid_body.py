@@ -25,6 +25,7 @@ from .matrix_input import check_finite, numbers
 from .modes import BodyPoint, Modes
 from .named_points import NamedPoints
 from .ordinary import of_ordinary_size
+from .outer_surfaces import OuterSurface, surface_of_mesh
 from .sections import Material
 from .solid_elements import assembled
 from .solid_mesh import Face, SolidMesh, place_of
@@ -265,6 +266,19 @@ class SolidBody(NamedPoints):
             return np.einsum("n,nim->im", mean[nodes], self.shapes.reshape(mean.size, 3, -1)[nodes])
         nodes, shares = located(self.mesh, place_of("position", position))
         return np.einsum("n,nim->im", shares, self.shapes.reshape(len(self.mesh.nodes), 3, -1)[nodes])
+
+    def place(self, position: Any) -> Array:
+        """Return where in the world a point is at rest [m], shape (3,); of a face its middle."""
+        self.check_position(position)
+        if position in self.points:
+            return np.asarray(self.mesh.nodes[self.points[position]])
+        if isinstance(position, str):
+            return np.asarray(face_mean(self.mesh, position) @ self.mesh.nodes)
+        return np.array(place_of("position", position))
+
+    def outer_surface(self) -> OuterSurface:
+        """Return its surface: the faces of elements that no other one shares."""
+        return surface_of_mesh(self.mesh, self.shapes)
 
     def modal_coordinates(self, vector: Any) -> Array:
         """Return ``Phi^T M x`` of displacements or velocities x of all nodes, shape (nodes, 3), as shape (modes,).
