@@ -96,7 +96,11 @@ FIGURES = (
     "spectrogram",
     "spectrum",
     "directivity",
+    "surface",
+    "bodies",
     "animate",
+    "animate_surface",
+    "animate_mode",
     "Film",
     "save",
 )

@@ -18,7 +18,7 @@ from .checks import ArgumentError, brief
 from .connections import ends, pushes, unit
 from .contact import PointContact
 from .histories import Constant, History
-from .records.probes import Acceleration, Displacement, Probe, Reaction, SupportForce, Velocity
+from .records.probes import Probe, Reaction, SupportForce
 from .system import System
 
 Signal = Callable[[Array, float], Array]
@@ -361,6 +361,11 @@ class _Layout:
         """Number of modes."""
         return max(end for _, end in self.spans.values())
 
+    @cached_property
+    def pairs(self) -> int:
+        """Number of pairs of rows of all contacts."""
+        return sum(map(_pairs, self.system.contacts))
+
     def modes(self, body: Any) -> Modes:
         """Return the modes of a body."""
         if id(body) not in self.known:
@@ -630,7 +635,7 @@ def _start(system: System, layout: _Layout) -> tuple[Array, Array]:
 
 def _probe(probe: Probe, layout: _Layout, loads: list[_Load]) -> ProbeRows:
     system = layout.system
-    direct, contact = np.zeros(len(loads) + 3), np.zeros((sum(map(_pairs, system.contacts)), 2))
+    direct, contact = np.zeros(len(loads) + 3), np.zeros((layout.pairs, 2))
     if isinstance(probe, Reaction):
         return _reaction_rows(probe, layout, loads, direct, contact)
     if probe.body not in system.bodies:
@@ -639,13 +644,18 @@ def _probe(probe: Probe, layout: _Layout, loads: list[_Load]) -> ProbeRows:
     if isinstance(probe, SupportForce):
         matrix[0] = layout.blended(layout.full(probe.body, probe.body.support_force(probe.end)))
         return ProbeRows(matrix, direct, contact)
-    kind = (Displacement, Velocity, Acceleration).index(type(probe))
+    if hasattr(probe, "mode"):
+        modes = layout.modes(probe.body).count
+        if probe.mode >= modes:
+            raise ArgumentError("probe", f"be of a mode below {modes}", probe, got=probe.mode)
+        matrix[probe.derivative] = layout.blended(layout.full(probe.body, np.eye(1, modes, probe.mode)[0]))
+        return ProbeRows(matrix, direct, contact)
     along, across = probe.point.body.axes[:2]
     world = dict(zip("xyz", np.eye(3), strict=True))
     axis = np.pad({"axial": along, "transverse": across, **world}[probe.direction], (0, 3))[:3]
-    matrix[kind] = axis @ layout.trace(probe.point)
+    matrix[probe.derivative] = axis @ layout.trace(probe.point)
     if system.is_held(probe.point.body):
-        direct[len(loads) + kind] = axis[0]
+        direct[len(loads) + probe.derivative] = axis[0]
     return ProbeRows(matrix, direct, contact)
 
 

@@ -30,7 +30,16 @@ RESULTS = {
     "SoundFile", "SweepProgress",
 }  # fmt: skip
 # Films and models of hearing take seconds where all is well.
-SLOW = {"animate", "loudness", "loudness_over_time", "roughness", "sharpness"}
+SLOW = {
+    "animate",
+    "animate_mode",
+    "animate_surface",
+    "bodies",
+    "loudness",
+    "loudness_over_time",
+    "roughness",
+    "sharpness",
+}
 
 
 # What keeps short what is long as it comes.

@@ -11,7 +11,7 @@ from PIL import Image
 
 import stridula as st
 from stridula import plot
-from stridula.plot import films
+from stridula.plot import reels
 from stridula.plot.colours import STATUS_COLOURS
 from stridula.plot.films import Picture
 from stridula.plot.motion import motion_of
@@ -99,7 +99,7 @@ def test_a_gif_has_every_frame(pair, tmp_path):
         progress=lambda *words: told.append(words),
     )
     with Image.open(tmp_path / "a.gif") as image:
-        assert (image.n_frames, image.size) == (10, (films.WIDTH, films.HEIGHT))
+        assert (image.n_frames, image.size) == (10, (reels.WIDTH, reels.HEIGHT))
         assert image.info["duration"] == 40
     assert film.frames == 10
     assert told == [(n, 10) for n in range(1, 11)]
@@ -110,10 +110,10 @@ def test_a_gif_has_every_frame(pair, tmp_path):
 
 
 def test_an_mp4_can_be_played(pair, tmp_path):
-    if films._encoder() is None:
+    if reels._encoder() is None:
         pytest.skip("takes an encoder")
     plot.animate(pair.system, tmp_path / "a.mp4", duration=4e-4)
-    words = [films._encoder(), "-i", str(tmp_path / "a.mp4"), "-f", "null", "-"]
+    words = [reels._encoder(), "-i", str(tmp_path / "a.mp4"), "-f", "null", "-"]
     said = subprocess.run(words, capture_output=True, text=True, check=True).stderr
     assert "960x600" in said
     assert "25 fps" in said
@@ -121,7 +121,7 @@ def test_an_mp4_can_be_played(pair, tmp_path):
 
 
 def test_without_an_encoder_it_says_what_to_do(pair, monkeypatch, tmp_path):
-    monkeypatch.setattr(films, "_encoder", lambda: None)
+    monkeypatch.setattr(reels, "_encoder", lambda: None)
     with pytest.raises(
         ValueError, match=r"out must end in \.gif without an encoder \(pip install \.\[video\] in the sources\)"
     ):
@@ -129,7 +129,7 @@ def test_without_an_encoder_it_says_what_to_do(pair, monkeypatch, tmp_path):
 
 
 def test_an_encoder_that_fails_leaves_nothing(pair, monkeypatch, tmp_path):
-    monkeypatch.setattr(films, "_encoder", lambda: "/bin/false")
+    monkeypatch.setattr(reels, "_encoder", lambda: "/bin/false")
     with pytest.raises(OSError, match="encoder"):
         plot.animate(pair.system, tmp_path / "a.mp4", duration=1.2e-4)
     assert not any(tmp_path.iterdir())
@@ -178,7 +178,7 @@ def test_words_do_not_run_into_each_other(on_plate):
     places = [text.get_window_extent() for text in (*figure.texts, figure.axes[0]._left_title)]
     assert len(places) == 2
     assert not places[0].overlaps(places[1])
-    assert all(place.x0 >= 0 and place.x1 <= films.WIDTH and place.y1 <= films.HEIGHT for place in places)
+    assert all(place.x0 >= 0 and place.x1 <= reels.WIDTH and place.y1 <= reels.HEIGHT for place in places)
 
 
 def test_the_verb_films_a_scenario_and_its_record_alike(stridula, tmp_path):
@@ -212,8 +212,8 @@ def test_the_verb_films_a_scenario_and_its_record_alike(stridula, tmp_path):
         (("squeal", "--exaggeration", "-2"), "exaggeration must be above 0, got -2.0"),
         (
             ("belt",),
-            "system must be a FiniteElementBeam on one ModalBeam, ModalPlate or RigidTrack to be filmed, "
-            "got a PointMass on a RigidTrack\n",
+            "system must be a FiniteElementBeam on one ModalBeam, ModalPlate or RigidTrack, or have meshes in space, "
+            "to be filmed, got a PointMass on a RigidTrack\n",
         ),
         (("stable-sliding", "--from", "3"), "start must be before the run ends (off the track at 1.27624 s), got 3.0"),
     ],

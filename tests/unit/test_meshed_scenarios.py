@@ -103,6 +103,7 @@ def pin_on_disc() -> st.System:
         held=["inner"],
         residual_at=[(radius, 0.0) for radius in radii],
         axis=normal,
+        origin=(0.0, 0.0, -0.157),
         name="disc",
     )
     pin = st.SolidBody.block(
@@ -133,6 +134,14 @@ def test_the_pin_on_disc_is_the_one_written_in_python():
     case = st.load_scenario("pin-on-disc")
     assert case.system == pin_on_disc()
     assert case.probes == (st.Velocity(case.system.bodies[0].at("node 0"), "x"),)
+
+
+@pytest.mark.parametrize("name", ["pin-on-disc", "pad-on-disc", "brake"])
+def test_bodies_that_touch_stand_where_they_touch(name):
+    """As pictures show them, within the rounding of angles."""
+    for contact in st.load_scenario(name).system.contacts:
+        tip, touched = (end.body.place(end.position) for end in (contact.tip, contact.touched_point))
+        np.testing.assert_allclose(tip, touched, atol=2e-6)
 
 
 def test_the_pin_on_disc_squeals_at_its_unstable_mode():

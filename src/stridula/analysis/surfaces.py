@@ -7,7 +7,7 @@ import xarray as xr
 
 from ..checks import ArgumentError, instance
 from ..contact import SurfaceContact
-from ..records.variables import described
+from ..records.variables import STATUS_SHARE, attributes_of, described
 
 AXES = ("x", "y", "z")
 
@@ -28,8 +28,8 @@ def surface(run: xr.Dataset, contact: SurfaceContact) -> xr.Dataset:
         Over time: ``force`` [N] and ``moment`` about the middle of the face [N m] on the body along the world's axes,
         ``centre_of_pressure`` [m], NaN without pressure, ``closed_area`` and ``sticking_area`` [m²], means over each
         interval, and ``friction_power`` [W]. Over time and the points of the face: ``pressure`` [Pa], ``shear`` along
-        both tangents [Pa], on the track, and ``slip_velocity`` [m/s]. Points have the coordinates ``place`` [m] and
-        ``area`` [m²].
+        both tangents [Pa], on the track, ``slip_velocity`` [m/s] and ``status_share`` of the interval [1]. Points have
+        the coordinates ``place`` [m] and ``area`` [m²].
 
     Raises
     ------
@@ -63,11 +63,13 @@ def surface(run: xr.Dataset, contact: SurfaceContact) -> xr.Dataset:
             "pressure": (("time", "point"), normal / areas, described("Pa", "normal pressure")),
             "shear": (along, tangential / areas[:, None], described("Pa", "shear on the track")),
             "slip_velocity": (along, slip, described("m/s", "slip velocity")),
+            STATUS_SHARE.name: (("time", "point", "contact_status"), share, attributes_of(STATUS_SHARE)),
         },
         {
             "time": run.time,
             "axis": list(AXES),
             "tangent": run.tangent,
+            "contact_status": run.contact_status,
             "point": np.arange(1, len(names) + 1),
             "place": (("point", "axis"), places, described("m", "place of a point of the face")),
             "area": ("point", areas, described("m2", "area of a point of the face")),

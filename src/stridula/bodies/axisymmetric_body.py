@@ -16,6 +16,7 @@ from ..declared import CountFrom0, Each, Frequency, Number, Own, check_declared
 from ..histories import HISTORIES, Constant, History
 from .body_surfaces import HIGHEST, RingSurface, largest_part
 from .damping import DampingLaw, checked_damping, damping_rates
+from .drawn_surfaces import DrawnSurface, surface_of_revolution
 from .modes import BodyPoint, Modes, hashed_once
 from .ordinary import NotOrdinary, of_ordinary_size
 from .profile_mesh import ProfileMesh
@@ -43,6 +44,8 @@ LEAST_POISSON, MOST_POISSON = -0.99, 0.499
 LARGEST = 1e100
 # Share of a turn that rounding leaves to a body that moves straight on.
 STRAIGHT = 1e-6
+# Places round the axis at which the surface is drawn.
+FEWEST_ANGLES, ANGLES_OF_WAVE = 60, 5
 # A free ring of order n bends like a beam of a length of n - 1 waves and more.
 ORDERS_MORE = 2
 
@@ -284,6 +287,17 @@ class AxisymmetricBody:
         """Return the outer surface as rings, fine enough for sound up to a frequency [Hz], and how modes move it."""
         return _surface(self, largest_part(frequency))
 
+    def drawn_surface(self) -> DrawnSurface:
+        """Return its surface: the outline of its profile round the axis, four places or more for each wave."""
+        count = max(FEWEST_ANGLES, ANGLES_OF_WAVE * int(self.numbers[:, 0].max()))
+
+        def at(r: float, angles: Array, z: float) -> tuple[Array, Array]:
+            directions = np.stack([self._directions(float(theta)) for theta in angles])
+            place = self.origin + r * directions[:, 0] + z * directions[:, 2]
+            return place, np.einsum("acd,cam->adm", directions, _solution(self).cylindrical(r, angles, z))
+
+        return surface_of_revolution(self.mesh, 2.0 * math.pi * np.arange(count) / count, at)
+
     def turning_velocity(self, position: Any) -> Array:
         """Return the velocity of the material at a point (r, theta, z) by turning alone [m/s], shape (3,)."""
         r, theta, _ = self._position(position)
@@ -353,12 +367,13 @@ class _Solution:
     columns: Array
     shapes: Array
 
-    def cylindrical(self, r: float, theta: float, z: float) -> Array:
-        """Return the displacements along r, theta and z for unit modes, shape (3, modes)."""
+    def cylindrical(self, r: float, theta: Any, z: float) -> Array:
+        """Return the displacements along r, theta and z for unit modes, shape (3, modes) or (3, angles, modes)."""
         points, values = self.elements.shape_functions(r, z)
         u, v, w = np.einsum("cpk,p->ck", self.shapes[:, points], values)[:, self.columns]
         order, _, side = self.numbers.T
-        cosine, sine = np.cos(order * theta), np.sin(order * theta)
+        turned = np.multiply.outer(theta, order)
+        cosine, sine = np.cos(turned), np.sin(turned)
         along = np.where(side == 0, cosine, sine)
         return np.array([u * along, v * np.where(side == 0, sine, -cosine), w * along])
 

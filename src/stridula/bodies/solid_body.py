@@ -20,6 +20,7 @@ from ..checks import ArgumentError, at_most, choice, count, instance, listed, po
 from ..declared import Frequency, Own
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, checked_damping
+from .drawn_surfaces import DrawnSurface, surface_of_mesh
 from .factorisation import dissection
 from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
 from .matrix_input import check_finite, numbers
@@ -272,6 +273,19 @@ class SolidBody(NamedPoints):
             return np.einsum("n,nim->im", mean[nodes], self.shapes.reshape(mean.size, 3, -1)[nodes])
         nodes, shares = located(self.mesh, place_of("position", position))
         return np.einsum("n,nim->im", shares, self.shapes.reshape(len(self.mesh.nodes), 3, -1)[nodes])
+
+    def place(self, position: Any) -> Array:
+        """Return where in the world a point is at rest [m], shape (3,); of a face its middle."""
+        self.check_position(position)
+        if position in self.points:
+            return np.asarray(self.mesh.nodes[self.points[position]])
+        if isinstance(position, str):
+            return np.asarray(face_mean(self.mesh, position) @ self.mesh.nodes)
+        return np.array(place_of("position", position))
+
+    def drawn_surface(self) -> DrawnSurface:
+        """Return its surface: the faces of elements that no other one shares."""
+        return surface_of_mesh(self.mesh, self.shapes)
 
     def modal_coordinates(self, vector: Any) -> Array:
         """Return ``Phi^T M x`` of displacements or velocities x of all nodes, shape (nodes, 3), as shape (modes,).

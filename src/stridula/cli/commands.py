@@ -317,11 +317,13 @@ def animate(
     exaggeration: Annotated[
         float | None, typer.Option(metavar="X", help="Factor by which the vibration is enlarged.")
     ] = None,
+    elevation: Annotated[str, typer.Option(metavar="ANGLE", help="In space, where the eye is above.")] = "30 deg",
+    azimuth: Annotated[str, typer.Option(metavar="ANGLE", help="In space, where it is, from z towards x.")] = "35 deg",
 ) -> None:
-    """Film a slider, its track and their contact in slow motion."""
+    """Film bodies and their contact in slow motion."""
     from .filming import film_scenario
 
-    print(film_scenario(name, out, from_, duration, slowdown, exaggeration))
+    print(film_scenario(name, out, from_, duration, slowdown, exaggeration, (elevation, azimuth)))
 
 
 @app.command()

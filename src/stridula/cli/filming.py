@@ -19,7 +19,9 @@ from ..scenarios.quantities import quantity
 from .exits import FAILED, INTERRUPTED, Stopped
 
 
-def film_scenario(name: str, out: str, start: str, duration: str, slowdown: float, exaggeration: float | None) -> str:
+def film_scenario(
+    name: str, out: str, start: str, duration: str, slowdown: float, exaggeration: float | None, view: tuple[str, str]
+) -> str:
     """Film a scenario or a record, and return what was written in one line.
 
     Parameters
@@ -34,6 +36,8 @@ def film_scenario(name: str, out: str, start: str, duration: str, slowdown: floa
         How much slower than life.
     exaggeration : float or None
         How many times larger than life the vibration is drawn.
+    view : tuple of str
+        Elevation and azimuth of the eye in space, in rad or with a unit.
 
     Raises
     ------
@@ -43,8 +47,13 @@ def film_scenario(name: str, out: str, start: str, duration: str, slowdown: floa
         If the file cannot be written.
     """
     check_writable(out)
-    _check_beginning(name)
+    is_a_record = Path(name).is_file() and is_record(name)
+    if is_a_record:
+        _check_beginning(name)
     scenario = load_scenario(name)
+    if is_a_record and scenario.system.is_spatial:
+        words = "be the scenario that was run: a record has the modes of bodies in space, not their meshes"
+        raise ArgumentError("name", words, name)
     console = Console(stderr=True)
     with _stopped(), Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task(scenario.title or name, total=None)
@@ -55,6 +64,7 @@ def film_scenario(name: str, out: str, start: str, duration: str, slowdown: floa
             duration=quantity(duration, "s", "--duration"),
             slowdown=slowdown,
             exaggeration=exaggeration,
+            view=(quantity(view[0], "rad", "--elevation"), quantity(view[1], "rad", "--azimuth")),
             scheme=scenario.scheme,
             step=scenario.step,
             sample_rate=scenario.sample_rate,
@@ -66,8 +76,6 @@ def film_scenario(name: str, out: str, start: str, duration: str, slowdown: floa
 
 def _check_beginning(name: str) -> None:
     """Raise ValueError for a record that continues another one: from its start the film would be of another run."""
-    if not Path(name).is_file() or not is_record(name):
-        return
     run = load(name)
     interval, first = float(run.attrs["sample_interval"]), float(run["time"][0])
     if first > 1.5 * interval:

@@ -72,7 +72,7 @@ class LiveMarch:
     ----------
     system : System
         What marches: one contact on a beam or a plate.
-    probes : sequence of Displacement, Velocity, Acceleration, Reaction or SupportForce
+    probes : sequence of Displacement, Velocity, Acceleration, Reaction, SupportForce, ModalDisplacement, ModalVelocity
         What is recorded beside the contact.
     scheme : CentralDifference or ExactModal, optional
         Time scheme, the exact modal one if left out.

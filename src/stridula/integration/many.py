@@ -81,7 +81,7 @@ def simulate_many(
         Time step [s]; if left out, the shortest of those that the systems take alone.
     sample_rate : float, optional
         Samples per second to record [Hz].
-    probes : sequence of Displacement, Velocity, Acceleration, Reaction or SupportForce, optional
+    probes : sequence of probes, optional
         What else to record, on bodies of all systems; as for `simulate` if left out.
     contact_solve : GaussSeidel, optional
         How several contacts are solved together.

@@ -59,8 +59,9 @@ def simulate(
     sample_rate : float, optional
         Samples per second to record [Hz]; with a step given, the nearest rate at which a sample is a whole number
         of steps.
-    probes : sequence of Displacement, Velocity, Acceleration, Reaction or SupportForce, optional
-        What else to record; the acceleration of the track's centre along y if left out and the track is a beam.
+    probes : sequence of probes, optional
+        What else to record: Displacement, Velocity, Acceleration, Reaction, SupportForce, ModalDisplacement or
+        ModalVelocity; the acceleration of the track's centre along y if left out and the track is a beam.
     contact_solve : GaussSeidel, optional
         How several contacts are solved together; one contact is solved exactly.
     start : xarray.Dataset, optional

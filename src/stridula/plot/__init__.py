@@ -9,8 +9,11 @@ _HOME = {
     "LINE": "colours",
     "LINES": "colours",
     "STATUS_COLOURS": "colours",
-    "Film": "films",
+    "Film": "reels",
     "animate": "films",
+    "animate_mode": "mode_films",
+    "animate_surface": "surfaces",
+    "bodies": "space_films",
     "directivity": "directivities",
     "friction": "laws",
     "overview": "timelines",
@@ -20,6 +23,7 @@ _HOME = {
     "spectrogram": "spectrograms",
     "spectrum": "spectra",
     "squeal_map": "squeals",
+    "surface": "surfaces",
     "timeline": "timelines",
 }
 __all__ = list(_HOME)

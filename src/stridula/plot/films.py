@@ -2,73 +2,32 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
-import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
-from importlib.util import find_spec
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
-from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..arrays import Array
-from ..checks import ArgumentError, positive
-from ..disk import check_writable, read, write
+from ..checks import positive
 from ..integration.schemes import Scheme
 from ..records.variables import STATUS_WORDS
 from ..system import System
 from .colours import LINE, STATUS_COLOURS
 from .motion import SAMPLE_RATE, Motion, motion_of
+from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Film, still, write_film, writer_for
+from .scenes import VIEW
+from .space_films import animate_in_space
+from .space_motion import has_surfaces
 from .timelines import draw_line, draw_status
 
-FRAMES_PER_SECOND = 25
 DURATION, SLOWDOWN = 0.01, 1000.0
 # Without a number, the largest vibration is drawn as this share of the bodies' extent.
 SHARE = 0.1
-KINDS = (".mp4", ".gif")
-# Pixels of the picture, both even as encoders want them.
-WIDTH, HEIGHT, DPI = 960, 600, 100
 # Thickness of the bodies' lines [points].
 THICK = 2.5
-
-
-@dataclass(frozen=True)
-class Film:
-    """A film that was written; in print, one line that says it all.
-
-    Attributes
-    ----------
-    path : str
-        The file.
-    frames : int
-        Number of frames, 25 a second.
-    start, duration : float
-        The window of time shown [s].
-    slowdown : float
-        How much slower than life it is.
-    exaggeration : float
-        How much larger than life the vibration is drawn.
-    """
-
-    path: str
-    frames: int
-    start: float
-    duration: float
-    slowdown: float
-    exaggeration: float
-
-    def __str__(self) -> str:
-        return (
-            f"{self.path}: {self.frames} frames, {1e3 * self.duration:.4g} ms from {self.start:.6g} s, "
-            f"slowed down {self.slowdown:.6g} times, vibration drawn {self.exaggeration:.6g} times"
-        )
 
 
 def animate(
@@ -79,11 +38,12 @@ def animate(
     duration: float = DURATION,
     slowdown: float = SLOWDOWN,
     exaggeration: float | None = None,
+    view: tuple[float, float] = VIEW,
     scheme: Scheme | None = None,
     step: float | None = None,
     sample_rate: float = SAMPLE_RATE,
     title: str = "",
-    progress: Callable[[int, int], None] = lambda frame, frames: None,
+    progress: Callable[[int, int], None] = still,
 ) -> Film:
     """Film a slider and its track in slow motion, the contact point coloured by its status.
 
@@ -93,10 +53,15 @@ def animate(
     slider are to scale; the vibration about them is exaggerated, the gap with it. Motion of the track along itself is
     not drawn. Of a plate one sees the cut along the line of contact.
 
+    Of a system in space one sees the surfaces of its meshed bodies and bodies of revolution in perspective, coloured by
+    the velocity out of them, and its contact points by their status. What departs from the mean over the window is
+    exaggerated. Bodies without a mesh are not drawn.
+
     Parameters
     ----------
     system : System
-        One contact of a finite-element beam on a modal beam, a modal plate or a rigid track.
+        One contact of a finite-element beam on a modal beam, a modal plate or a rigid track; or any system with a
+        `SolidBody` or an `AxisymmetricBody`.
     out : str or Path
         The file, ``.mp4`` or ``.gif``, written whole or not at all. MP4 takes an encoder: ``pip install
         .[video]`` in the sources, or an ffmpeg on the path.
@@ -105,8 +70,10 @@ def animate(
     slowdown : float, optional
         How much slower than life; made a whole number of steps for each frame.
     exaggeration : float, optional
-        How many times larger than life the vibration is drawn; what brings it near 10 % of their extent if left
-        out.
+        How many times larger than life the vibration is drawn; what brings it near 10 % of their extent, in space
+        4 %, if left out.
+    view : tuple of float, optional
+        In space, elevation of the eye above the plane across y and its azimuth from z towards x [rad].
     scheme : ExactModal or CentralDifference, optional
         Time scheme, the exact modal one if left out.
     step : float, optional
@@ -134,16 +101,17 @@ def animate(
     positive("slowdown", slowdown)
     if exaggeration is not None:
         positive("exaggeration", exaggeration)
-    writer = _writer(out)
-    check_writable(out)
+    if has_surfaces(system):
+        timing, window = (scheme, step, sample_rate), (start, duration)
+        return animate_in_space(system, out, window, slowdown, exaggeration, view, timing, title, progress)
+    writer = writer_for(out)
     frame = 1.0 / (FRAMES_PER_SECOND * slowdown)
     motion = motion_of(system, start, duration, frame, scheme, step, sample_rate)
-    times = _round(SHARE * motion.extent / motion.largest) if exaggeration is None else exaggeration
+    times = rounded(SHARE * motion.extent / motion.largest) if exaggeration is None else exaggeration
     interval = float(motion.run.attrs["sample_interval"])
     slowed = 1.0 / (FRAMES_PER_SECOND * interval)
     picture = Picture(motion, times, slowed, title)
-    content = _filmed(picture, writer, Path(out).suffix.lower(), progress)
-    write(out, content)
+    write_film(picture, out, writer, progress)
     return Film(str(out), picture.frames, start, picture.frames * interval, slowed, times)
 
 
@@ -202,7 +170,7 @@ class Picture:
         self.point = axes.plot(
             [], [], marker="o", markersize=8, markeredgecolor="black", markeredgewidth=0.8, zorder=3
         )[0]
-        low, high = _limits([self.slider, self.track])
+        low, high = limits_of([self.slider, self.track])
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
         axes.set_aspect("equal")
@@ -226,7 +194,7 @@ class Picture:
         below.set_xlabel("time [s]", fontsize=8)
 
 
-def _limits(places: list[Array]) -> tuple[Array, Array]:
+def limits_of(places: list[Array]) -> tuple[Array, Array]:
     """Return the least and the largest x and y of what is drawn, with a margin."""
     low = np.min([place.min(axis=(0, 1)) for place in places], axis=0)
     high = np.max([place.max(axis=(0, 1)) for place in places], axis=0)
@@ -234,57 +202,9 @@ def _limits(places: list[Array]) -> tuple[Array, Array]:
     return low - margin, high + margin
 
 
-def _round(number: float) -> float:
+def rounded(number: float) -> float:
     """Return the largest of 1, 2 and 5 times a power of ten that is not above a number; 1 for what does not move."""
     if not np.isfinite(number):
         return 1.0
     power = 10.0 ** np.floor(np.log10(number))
     return float(power * max(factor for factor in (1.0, 2.0, 5.0) if factor <= number / power * (1.0 + 1e-9)))
-
-
-def _encoder() -> str | None:
-    """Return the path of ffmpeg: the one that comes as a package, or the one on the path."""
-    if find_spec("imageio_ffmpeg") is None:
-        return shutil.which("ffmpeg")
-    import imageio_ffmpeg
-
-    return str(imageio_ffmpeg.get_ffmpeg_exe())
-
-
-def _writer(out: str | Path) -> AbstractMovieWriter:
-    kind = Path(out).suffix.lower()
-    if kind not in KINDS:
-        raise ArgumentError("out", f"end in one of {', '.join(KINDS)}", str(out), got=f"{str(out)!r}")
-    if kind == ".gif":
-        return PillowWriter(fps=FRAMES_PER_SECOND)
-    encoder = _encoder()
-    if encoder is None:
-        raise ArgumentError(
-            "out", "end in .gif without an encoder (pip install .[video] in the sources)", str(out), got=f"{str(out)!r}"
-        )
-    return FFMpegWriter(
-        fps=FRAMES_PER_SECOND, codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-crf", "20", "-threads", "1"]
-    )
-
-
-@contextmanager
-def _encoding() -> Iterator[None]:
-    """Let matplotlib find the encoder."""
-    with matplotlib.rc_context():
-        matplotlib.rcParams["animation.ffmpeg_path"] = _encoder() or "ffmpeg"
-        yield
-
-
-def _filmed(picture: Picture, writer: AbstractMovieWriter, kind: str, progress: Callable[[int, int], None]) -> bytes:
-    """Return the film as it will be in its file."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"film{kind}"
-        try:
-            with _encoding(), writer.saving(picture.figure, str(path), DPI):
-                for frame in range(picture.frames):
-                    picture.show(frame)
-                    writer.grab_frame()
-                    progress(frame + 1, picture.frames)
-        except subprocess.CalledProcessError as error:
-            raise OSError(f"the encoder failed: {str(error.stderr or error).strip().splitlines()[-1]}") from error
-        return read(path)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,10 +18,10 @@ from ..contact import RigidTrack
 from ..integration import simulate
 from ..integration.schemes import ExactModal, Scheme
 from ..integration.simulate import choose_timing
-from ..records import Displacement
+from ..records import Displacement, Probe
 from ..system import System
+from .reels import FEWEST_FRAMES, check_frames
 
-FEWEST_FRAMES, MOST_FRAMES = 2, 5000
 # Points drawn of a body: enough for each half wave of its highest mode.
 MOST_POINTS = 161
 # Length of a rigid track on both sides of what is seen of it, as a share of the slider's length.
@@ -113,32 +114,41 @@ def motion_of(
     ValueError
         If the system is of another kind, an argument is out of its range, or the run ends before the window does.
     """
-    slider, track = _pair(system)
+    slider, track = pair_of(system)
+    shown: list[Any] = [slider] if system.contacts[0].rigid_track is track else [slider, track]
+    places = {body: body_places(body) for body in shown}
+    probes = [Displacement(body.at(s), axis) for body, along in places.items() for s in along for axis in "xy"]
+    window = simulated_window(system, start, duration, frame, probes, scheme, step, sample_rate)
+    return _motion(system, window, list(places.values()))
+
+
+def simulated_window(
+    system: System,
+    start: float,
+    duration: float,
+    frame: float,
+    probes: Sequence[Probe],
+    scheme: Scheme | None,
+    step: float | None,
+    sample_rate: float,
+) -> xr.Dataset:
+    """Simulate a system up to the end of a window and return the record over it, a sample for each frame."""
     positive("duration", duration)
-    frames = duration / frame
-    if not FEWEST_FRAMES <= round(frames) <= MOST_FRAMES:
-        raise ArgumentError(
-            "duration",
-            f"give from {FEWEST_FRAMES} to {MOST_FRAMES} frames of {frame:.3g} s",
-            duration,
-            got=f"{duration!r} s ({frames:.0f} frames): change the slowdown",
-        )
+    check_frames(duration, frame)
     end = non_negative("start", start) + duration
     chosen: Scheme = ExactModal() if scheme is None else scheme
     if step is None:
         step = choose_timing(assemble(system, ()), chosen, end, None, sample_rate).step
-    shown: list[Any] = [slider] if system.contacts[0].rigid_track is track else [slider, track]
-    places = {body: _places(body) for body in shown}
-    probes = [Displacement(body.at(s), axis) for body, along in places.items() for s in along for axis in "xy"]
     run = simulate(system, end, scheme=chosen, step=step, sample_rate=1.0 / frame, probes=probes)
     window = run.isel(time=run["time"].values > start + 0.5 * float(run.attrs["sample_interval"]))
     if window.sizes["time"] < FEWEST_FRAMES:
         ended = f"{run.attrs['ended']} at {at_most(float(run['time'][-1]))} s"
         raise ArgumentError("start", f"be before the run ends ({ended})", start)
-    return _motion(system, window, list(places.values()))
+    return window
 
 
-def _pair(system: System) -> tuple[FiniteElementBeam, ModalBeam | ModalPlate | RigidTrack]:
+def pair_of(system: System) -> tuple[FiniteElementBeam, ModalBeam | ModalPlate | RigidTrack]:
+    """Return slider and track of a system that is filmed in the plane, refuse any other."""
     instance("system", system, System)
     slider: Any = system.slider
     track: Any = system.contacts[0].track
@@ -146,7 +156,9 @@ def _pair(system: System) -> tuple[FiniteElementBeam, ModalBeam | ModalPlate | R
     if several or not isinstance(slider, FiniteElementBeam) or touched is not None:
         under = f"a point of {_a(touched.body)}" if touched is not None else _a(track)
         got = f"{len(system.contacts)} contacts" if several else f"{_a(slider)} on {under}"
-        words = "be a FiniteElementBeam on one ModalBeam, ModalPlate or RigidTrack to be filmed"
+        words = (
+            "be a FiniteElementBeam on one ModalBeam, ModalPlate or RigidTrack, or have meshes in space, to be filmed"
+        )
         raise ArgumentError("system", words, system, got=got)
     return slider, track
 
@@ -155,7 +167,8 @@ def _a(body: object) -> str:
     return f"a {type(body).__name__}"
 
 
-def _places(body: FiniteElementBeam | ModalBeam | ModalPlate) -> Array:
+def body_places(body: FiniteElementBeam | ModalBeam | ModalPlate) -> Array:
+    """Return the places along a body at which it is drawn [m]."""
     low, high = (0.0, body.length) if isinstance(body, FiniteElementBeam) else body.ends
     return np.linspace(low, high, min(max(_fewest(body), 20) + 1, MOST_POINTS))
 

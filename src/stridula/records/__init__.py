@@ -1,5 +1,23 @@
 """What we keep: the table of recorded variables, probes, and their Dataset."""
 
-from .probes import Acceleration, Displacement, Probe, Reaction, SupportForce, Velocity
+from .probes import (
+    Acceleration,
+    Displacement,
+    ModalDisplacement,
+    ModalVelocity,
+    Probe,
+    Reaction,
+    SupportForce,
+    Velocity,
+)
 
-__all__ = ["Acceleration", "Displacement", "Probe", "Reaction", "SupportForce", "Velocity"]
+__all__ = [
+    "Acceleration",
+    "Displacement",
+    "ModalDisplacement",
+    "ModalVelocity",
+    "Probe",
+    "Reaction",
+    "SupportForce",
+    "Velocity",
+]

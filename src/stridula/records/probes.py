@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam
 from ..bodies.modes import Body
-from ..checks import ArgumentError, choice, instance
+from ..checks import ArgumentError, choice, count, instance
 
 DIRECTIONS = ("x", "y", "z", "axial", "transverse")
 
@@ -15,6 +15,8 @@ DIRECTIONS = ("x", "y", "z", "axial", "transverse")
 @dataclass(frozen=True)
 class _Motion:
     quantity: ClassVar[str]
+    # How often the displacement is derived in time.
+    derivative: ClassVar[int]
     of_slider: ClassVar[bool] = False
     point: BodyPoint
     direction: str = "y"
@@ -57,6 +59,7 @@ class Displacement(_Motion):
     """
 
     quantity = "displacement"
+    derivative = 0
 
 
 class Velocity(_Motion):
@@ -71,6 +74,7 @@ class Velocity(_Motion):
     """
 
     quantity = "velocity"
+    derivative = 1
 
 
 class Acceleration(_Motion):
@@ -85,6 +89,7 @@ class Acceleration(_Motion):
     """
 
     quantity = "acceleration"
+    derivative = 2
 
 
 @dataclass(frozen=True)
@@ -161,7 +166,61 @@ class SupportForce:
         return {"end": self.end}
 
 
-Probe = Displacement | Velocity | Acceleration | Reaction | SupportForce
+@dataclass(frozen=True)
+class _OfMode:
+    quantity: ClassVar[str]
+    derivative: ClassVar[int]
+    of_slider: ClassVar[bool] = False
+    body: Body
+    mode: int
+
+    def __post_init__(self) -> None:
+        if isinstance(self.body, type) or not hasattr(self.body, "modes"):
+            raise ArgumentError("body", "be a body of stridula", self.body)
+        count("mode", self.mode, low=0, high=self.body.modes().count - 1)
+
+    @property
+    def place(self) -> str:
+        """Which mode of its body, in words."""
+        return f"mode {self.mode}"
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """What a scenario says of it, beside quantity and body."""
+        return {"mode": self.mode}
+
+
+class ModalDisplacement(_OfMode):
+    """Displacement of a mode of a body [kg^(1/2) m]: times the shape of the mode its share in all displacements.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    mode : int
+        Number of the mode from 0, in the order of the body's `modes`; residual shapes come last.
+    """
+
+    quantity = "modal_displacement"
+    derivative = 0
+
+
+class ModalVelocity(_OfMode):
+    """Velocity of a mode of a body [kg^(1/2) m/s], centred difference over two steps.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    mode : int
+        Number of the mode from 0, in the order of the body's `modes`; residual shapes come last.
+    """
+
+    quantity = "modal_velocity"
+    derivative = 1
+
+
+Probe = Displacement | Velocity | Acceleration | Reaction | SupportForce | ModalDisplacement | ModalVelocity
 
 
 def _words(point: BodyPoint) -> str:

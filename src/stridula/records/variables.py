@@ -84,6 +84,8 @@ PROBES = {
     "velocity": Variable("velocity", "m/s", "velocity at the probes", "low-pass"),
     "acceleration": Variable("acceleration", "m/s2", "acceleration at the probes", "low-pass"),
     "reaction": Variable("reaction", "N", "force of the root's support (its moment in N m)", "low-pass"),
+    "modal_displacement": Variable("modal_displacement", "kg^(1/2) m", "displacement of modes", "low-pass"),
+    "modal_velocity": Variable("modal_velocity", "kg^(1/2) m/s", "velocity of modes", "low-pass"),
     "support_force": Variable("support_force", "N", "force along y on the supports of the ends", "low-pass"),
 }
 # Of the equilibrium that linear theory finds, less rigid motions that nothing holds.

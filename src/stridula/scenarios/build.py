@@ -36,7 +36,16 @@ from ..contact import LAWS, STIFFNESSES, PointContact, RigidTrack, SurfaceContac
 from ..disk import is_there
 from ..drives import Drive
 from ..integration import GaussSeidel
-from ..records import Acceleration, Displacement, Probe, Reaction, SupportForce, Velocity
+from ..records import (
+    Acceleration,
+    Displacement,
+    ModalDisplacement,
+    ModalVelocity,
+    Probe,
+    Reaction,
+    SupportForce,
+    Velocity,
+)
 from ..system import System
 from .build_meshed import axisymmetric_body, solid_body
 from .errors import ScenarioError
@@ -50,6 +59,7 @@ SHAPES: dict[str, Callable[..., Any]] = {section.shape: section for section in S
 DAMPINGS: dict[str, Callable[..., Any]] = {law.form: law for law in DAMPING_LAWS}
 HISTORIES: dict[str, Callable[..., Any]] = {history.kind: history for history in histories.HISTORIES}
 DRIVES: dict[str, type[Drive]] = {drive.kind: drive for drive in drives.DRIVES}
+OF_MODES = {one.quantity: one for one in (ModalDisplacement, ModalVelocity)}
 MOTIONS = {"displacement": Displacement, "velocity": Velocity, "acceleration": Acceleration}
 FRICTIONS: dict[str, Callable[..., Any]] = {law.law: law for law in LAWS}
 STIFFNESS: dict[str, Callable[..., Any]] = {kind.kind: kind for kind in STIFFNESSES}
@@ -403,6 +413,8 @@ class Builder:
             body = self._named_body((*path, "body"), name)
             if table["quantity"] == "support_force":
                 return SupportForce(body, table.get("end", "left"))
+            if table["quantity"] in OF_MODES:
+                return OF_MODES[table["quantity"]](body, table["mode"]) if body is not None else None
             point = self._point((*path, "point"), body, table.get("point"), "tip")
             return MOTIONS[table["quantity"]](point, table.get("direction", "y"))
 

@@ -17,7 +17,7 @@ from .schema_drives import Drive
 
 class Motion(Table):
     quantity: Literal["displacement", "velocity", "acceleration"]
-    """displacement, velocity, acceleration, reaction or support_force"""
+    """displacement, velocity, acceleration, reaction, support_force, modal_displacement or modal_velocity"""
     body: str | None = None
     """body: slider, track or its name; the track if left out, the slider on a rigid track"""
     point: is_.Point | None = None
@@ -28,21 +28,30 @@ class Motion(Table):
 
 class Reaction(Table):
     quantity: Literal["reaction"]
-    """displacement, velocity, acceleration, reaction or support_force"""
+    """displacement, velocity, acceleration, reaction, support_force, modal_displacement or modal_velocity"""
     direction: Literal["x", "y", "moment"] = "moment"
     """x, y or moment"""
 
 
 class SupportForce(Table):
     quantity: Literal["support_force"]
-    """displacement, velocity, acceleration, reaction or support_force"""
+    """displacement, velocity, acceleration, reaction, support_force, modal_displacement or modal_velocity"""
     body: str | None = None
     """modal beam: track or its name; the track if left out, the slider on a rigid track"""
     end: Literal["left", "right"] = "left"
     """left or right"""
 
 
-Probe = Annotated[Motion | Reaction | SupportForce, Field(discriminator="quantity")]
+class MotionOfMode(Table):
+    quantity: Literal["modal_displacement", "modal_velocity"]
+    """displacement, velocity, acceleration, reaction, support_force, modal_displacement or modal_velocity"""
+    body: str | None = None
+    """body: slider, track or its name; the track if left out, the slider on a rigid track"""
+    mode: Annotated[int, is_.Whole(0)]
+    """number of the mode from 0, by rising frequency, residual shapes last"""
+
+
+Probe = Annotated[Motion | Reaction | SupportForce | MotionOfMode, Field(discriminator="quantity")]
 
 
 class ContactSolve(Table):

@@ -1,0 +1,177 @@
+"""Films of the modes that linear theory finds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ..arrays import Array
+from ..assembly import assemble
+from ..checks import ArgumentError, count, instance
+from ..system import System
+from .colours import LINE
+from .films import THICK, limits_of
+from .motion import body_places, pair_of
+from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Drawn, Film, still, write_film, writer_for
+from .scenes import VIEW, Scene, checked_view, extent_of, surfaces_of
+from .space_motion import ModalMotion, has_surfaces
+
+# Frames of a period.
+FRAMES = 32
+# Largest displacement, as a share of the bodies' extent.
+SHARE = 0.05
+SCENE, COLOUR_BAR = (0.02, 0.03, 0.86, 0.87), (0.905, 0.2, 0.015, 0.55)
+
+
+def animate_mode(
+    system: System,
+    theory: xr.Dataset,
+    number: int,
+    out: str | Path,
+    *,
+    view: tuple[float, float] = VIEW,
+    title: str = "",
+    progress: Callable[[int, int], None] = still,
+) -> Film:
+    """Film one period of a mode of linear theory, its largest displacement drawn as 5 % of the bodies' extent.
+
+    Growth and damping are left out. In space colours show the velocity out of the surfaces, relative to the largest.
+
+    Parameters
+    ----------
+    system : System
+        The system: with a `SolidBody` or an `AxisymmetricBody`, or one contact of a finite-element beam on a modal
+        beam, a modal plate or a rigid track.
+    theory : xarray.Dataset
+        What `sliding_stability` returned for the system.
+    number : int
+        Number of the mode, from 0.
+    out : str or Path
+        The file, ``.mp4`` or ``.gif``, written whole or not at all. MP4 takes an encoder, as for `animate`.
+    view : tuple of float, optional
+        In space, elevation of the eye above the plane across y and its azimuth from z towards x [rad].
+    title : str, optional
+        Title of the film.
+    progress : callable, optional
+        Told the number of each frame drawn, and of how many.
+
+    Returns
+    -------
+    Film
+        What was written.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, the mode does not oscillate, the system is of another kind than can be
+        drawn or not that of the theory, or there is no encoder for the file.
+    OSError
+        If the file cannot be written.
+    """
+    shapes = _shapes(system, theory, number)
+    seen = checked_view(view)
+    frequency, growth = (float(theory[name].values[number]) for name in ("frequency", "growth_rate"))
+    words = f"{frequency:.6g} Hz, growth {growth:.4g} /s"
+    writer = writer_for(out)
+    picture: Drawn
+    if has_surfaces(system):
+        picture = _InSpace(system, shapes, complex(growth, 2.0 * np.pi * frequency), seen)
+    else:
+        picture = _InPlane(system, shapes)
+    picture.figure.text(0.01, 0.98, words, fontsize=9, verticalalignment="top")
+    picture.figure.suptitle(title, fontsize=11)
+    write_film(picture, out, writer, progress)
+    return Film(str(out), FRAMES, 0.0, 1.0 / frequency, FRAMES / FRAMES_PER_SECOND * frequency)
+
+
+def turned(shape: Array) -> Array:
+    """Return a complex shape over one period, shape (frames, ...)."""
+    phases = np.exp(2.0j * np.pi * np.arange(FRAMES) / FRAMES)
+    return np.multiply.outer(phases, shape).real
+
+
+class _InSpace:
+    """A mode of a system in space, frame by frame."""
+
+    def __init__(self, system: System, shapes: dict[str, Array], exponent: complex, view: tuple[float, float]) -> None:
+        self.frames, self.figure = FRAMES, Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI)
+        bodies = surfaces_of(system, np.zeros(3))
+        moved = [np.abs(one.surface.shapes @ shapes[one.name]).max() for one in bodies]
+        factor = SHARE * extent_of(bodies) / float(max(moved))
+        motion = ModalMotion(
+            {name: turned(factor * shape) for name, shape in shapes.items()},
+            {name: turned(factor * exponent * shape) for name, shape in shapes.items()},
+        )
+        self.scene = Scene(self.figure, SCENE, system, motion, 1.0, view)
+        largest = self.scene.largest_velocity or 1.0
+        self.scene.motion = replace(motion, velocity={name: v / largest for name, v in motion.velocity.items()})
+        label = "velocity out of the surface over the largest [1]"
+        self.scene.colour_bar(self.figure.add_axes(COLOUR_BAR), 1.0, label)
+        self.show(0)
+        self.scene.fill()
+
+    def show(self, frame: int) -> None:
+        """Draw one frame."""
+        self.scene.show(frame)
+
+
+class _InPlane:
+    """A mode of a slider and its track, frame by frame."""
+
+    def __init__(self, system: System, shapes: dict[str, Array]) -> None:
+        slider, track = pair_of(system)
+        contact = system.contacts[0]
+        normal, tangent = contact.frame
+        bodies: list[Any] = [slider] if contact.rigid_track is track else [slider, track]
+        along = [body_places(body) for body in bodies]
+        tip = contact.at * tangent + contact.gap * normal
+        rest = [tip + along[0][:, None] * slider.axes[0]]
+        rest += [np.stack([one, np.zeros_like(one)], axis=1) for one in along[1:]]
+        moved = [_lines(body, places, shapes, system) for body, places in zip(bodies, along, strict=True)]
+        extent = float(np.ptp(np.concatenate(rest), axis=0).max())
+        factor = SHARE * extent / float(max(np.abs(one).max() for one in moved))
+        self.places = [start + turned(factor * one) for start, one in zip(rest, moved, strict=True)]
+        self.frames, self.figure = FRAMES, Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI)
+        axes = self.figure.add_axes((0.09, 0.1, 0.88, 0.78))
+        for one in rest:
+            axes.plot(*one.T, color="0.8", linewidth=1.0)
+        self.lines = [axes.plot([], [], color=colour, linewidth=THICK)[0] for colour in (LINE, "0.45")[: len(rest)]]
+        low, high = limits_of(self.places)
+        axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", xlabel="x [m]", ylabel="y [m]")
+        self.show(0)
+
+    def show(self, frame: int) -> None:
+        """Draw one frame."""
+        for line, places in zip(self.lines, self.places, strict=True):
+            line.set_data(*places[frame].T)
+
+
+def _lines(body: Any, along: Array, shapes: dict[str, Array], system: System) -> Array:
+    """Return the complex displacements of places along a body, shape (places, 2)."""
+    held = system.is_held(body)
+    return np.array([body.trace(float(s), held)[:2] @ shapes[system.body_name(body)] for s in along])
+
+
+def _shapes(system: System, theory: xr.Dataset, number: int) -> dict[str, Array]:
+    """Return the complex shape of a mode of linear theory in the modes of each body, by its name."""
+    instance("system", system, System)
+    instance("theory", theory, xr.Dataset)
+    if "mode_shape" not in theory or not theory.sizes.get("mode"):
+        raise ArgumentError("theory", "be what sliding_stability returned, with at least one mode", theory)
+    count("number", number, low=0, high=theory.sizes["mode"] - 1)
+    if not theory["frequency"].values[number] > 0.0:
+        raise ArgumentError("number", "be that of a mode that oscillates", number)
+    flat = assemble(system)
+    if theory["mode_shape"].shape[1] != flat.mode_count:
+        got = theory["mode_shape"].shape[1]
+        raise ArgumentError("theory", f"have the modes of this system, {flat.mode_count}", theory, got=got)
+    shape = theory["mode_shape"].values[number] @ np.array([1.0, 1.0j])
+    joined = len(flat.blend)
+    shape[:joined] = flat.blend @ shape[:joined]
+    return {name: shape[first:end] for name, (first, end) in flat.spans.items()}

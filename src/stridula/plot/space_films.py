@@ -1,0 +1,189 @@
+"""Pictures and films of systems in space."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..checks import positive
+from ..integration.schemes import Scheme
+from ..system import System
+from .motion import SAMPLE_RATE
+from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Film, write_film, writer_for
+from .scenes import VIEW, Scene, checked_view, extent_of, largest_departure, surfaces_of
+from .space_motion import ModalMotion, SpaceMotion, check_surfaces, space_motion_of
+from .timelines import draw_line, draw_status
+
+# Without a number, the largest vibration is drawn as this share of the bodies' extent.
+SHARE = 0.04
+# Time before a picture over which the mean is taken, and between its samples [s].
+BEFORE, FRAME = 2e-3, 4e-5
+# Where things are in the figure: left and lower edge, width, height. A layout found by matplotlib makes way for
+# axes in space as if all of them were seen.
+SCENE, COLOUR_BAR = (0.02, 0.31, 0.86, 0.62), (0.905, 0.36, 0.015, 0.5)
+FORCE, STATUS = (0.09, 0.17, 0.79, 0.11), (0.09, 0.075, 0.79, 0.03)
+
+
+def bodies(
+    system: System,
+    time: float,
+    *,
+    exaggeration: float | None = None,
+    view: tuple[float, float] = VIEW,
+    scheme: Scheme | None = None,
+    step: float | None = None,
+    sample_rate: float = SAMPLE_RATE,
+    title: str = "",
+) -> Figure:
+    """Draw the bodies of a system in space at a time, coloured by the velocity across their surfaces.
+
+    The system is simulated from its start. Contact points have the colour of their status. What departs from the mean
+    of the last 2 ms is exaggerated.
+
+    Parameters
+    ----------
+    system : System
+        A system with a `SolidBody` or an `AxisymmetricBody`.
+    time : float
+        When [s].
+    exaggeration, view, scheme, step, sample_rate, title
+        As for `animate`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Save it with `save`.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, no body has a surface, or the run ends before the time.
+    """
+    check_surfaces(system)
+    seen = checked_view(view)
+    duration = min(positive("time", time), BEFORE)
+    frame = min(FRAME, 0.5 * duration)
+    start = max(time - duration, 0.0)
+    motion = space_motion_of(system, start, duration, frame, scheme, step, sample_rate)
+    times = exaggeration_of(system, motion.modes, exaggeration, seen)
+    picture = SpacePicture(system, motion, times, None, title, seen)
+    picture.show(picture.frames - 1)
+    return picture.figure
+
+
+def animate_in_space(
+    system: System,
+    out: str | Path,
+    window: tuple[float, float],
+    slowdown: float,
+    exaggeration: float | None,
+    view: tuple[float, float],
+    timing: tuple[Scheme | None, float | None, float],
+    title: str,
+    progress: Callable[[int, int], None],
+) -> Film:
+    """Film a system in space, see `animate`; `window` is start and duration, `timing` scheme, step and sample rate."""
+    seen = checked_view(view)
+    writer = writer_for(out)
+    frame = 1.0 / (FRAMES_PER_SECOND * slowdown)
+    scheme, step, sample_rate = timing
+    motion = space_motion_of(system, *window, frame, scheme, step, sample_rate)
+    times = exaggeration_of(system, motion.modes, exaggeration, seen)
+    interval = float(motion.run.attrs["sample_interval"])
+    slowed = 1.0 / (FRAMES_PER_SECOND * interval)
+    picture = SpacePicture(system, motion, times, slowed, title, seen)
+    write_film(picture, out, writer, progress)
+    return Film(str(out), picture.frames, window[0], picture.frames * interval, slowed, times)
+
+
+def exaggeration_of(system: System, modes: ModalMotion, given: float | None, view: tuple[float, float]) -> float:
+    """Return how many times larger than life vibration is drawn: as given, else near `SHARE` of the bodies' extent."""
+    if given is not None:
+        return positive("exaggeration", given)
+    from .films import rounded
+
+    shown = surfaces_of(system, np.zeros(3))
+    largest = largest_departure(shown, modes)
+    return rounded(SHARE * extent_of(shown) / largest) if largest > 0.0 else 1.0
+
+
+class SpacePicture:
+    """The picture of a system in space, to be drawn frame by frame.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    motion : SpaceMotion
+        How it moves.
+    exaggeration : float
+        How many times larger than life vibration is drawn.
+    slowdown : float or None
+        How much slower than life it is, None for a picture that stands.
+    title : str
+        Title.
+    view : tuple of float
+        Elevation and azimuth of the eye [rad].
+
+    Attributes
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    scene : Scene
+        The bodies.
+    frames : int
+        Number of frames.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        motion: SpaceMotion,
+        exaggeration: float,
+        slowdown: float | None,
+        title: str,
+        view: tuple[float, float],
+    ) -> None:
+        self.run, self.frames = motion.run, motion.modes.frames
+        slowed = "" if slowdown is None else f"slowed down {slowdown:.6g} times, "
+        self.scales = f"{slowed}vibration drawn {exaggeration:.6g} times"
+        self.figure = Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI)
+        self.scene = Scene(self.figure, SCENE, system, motion.modes, exaggeration, view)
+        self.scene.colour_bar(self.figure.add_axes(COLOUR_BAR), self.scene.largest_velocity)
+        self.words = self.figure.text(0.01, 0.98, "", fontsize=9, verticalalignment="top")
+        self._draw_contacts(self.figure.add_axes(FORCE), self.figure.add_axes(STATUS))
+        self.figure.suptitle(title, fontsize=11)
+        self.show(0)
+        self.scene.fill()
+
+    def show(self, frame: int) -> None:
+        """Draw one frame."""
+        self.scene.show(frame, np.atleast_1d(self.run["status"].values[frame]))
+        time = float(self.run["time"].values[frame])
+        for cursor in self.cursors:
+            cursor.set_xdata([time, time])
+        self.words.set_text(f"{self.scales}\nt = {1e3 * time:.3f} ms")
+
+    def _draw_contacts(self, above: Axes, below: Axes) -> None:
+        """Draw the normal force of all contacts and their status, the mean of their shares."""
+        together = self.run[["normal_force", "status_share"]]
+        if "contact" in together.dims:
+            force = together["normal_force"].sum("contact", keep_attrs=True)
+            together = xr.Dataset({"normal_force": force, "status_share": together["status_share"].mean("contact")})
+        draw_line(above, together, "normal_force")
+        draw_status(below, together, "status")
+        first, last = self.run["time"].values[[0, -1]]
+        self.cursors: list[Any] = []
+        for axes in (above, below):
+            axes.set_xlim(first, last)
+            axes.tick_params(labelsize=8)
+            axes.yaxis.label.set_fontsize(8)
+            self.cursors.append(axes.axvline(first, color="black", linewidth=1.0))
+        above.tick_params(labelbottom=False)
+        below.set_xlabel("time [s]", fontsize=8)
