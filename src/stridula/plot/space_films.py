@@ -52,8 +52,18 @@ def bodies(
         A system with a `SolidBody` or an `AxisymmetricBody`.
     time : float
         When [s].
-    exaggeration, view, scheme, step, sample_rate, title
-        As for `animate`.
+    exaggeration : float, optional
+        How many times larger than life the vibration is drawn; what brings it near 4 % of their extent if left out.
+    view : tuple of float, optional
+        Elevation of the eye above the plane across y and its azimuth from z towards x [rad].
+    scheme : ExactModal or CentralDifference, optional
+        Time scheme, the exact modal one if left out.
+    step : float, optional
+        Time step [s], that of `simulate` at `sample_rate` if left out.
+    sample_rate : float, optional
+        Sample rate [Hz] of the run that is shown, of no effect where a step is given.
+    title : str, optional
+        Title of the picture.
 
     Returns
     -------
