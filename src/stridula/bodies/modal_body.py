@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -14,9 +14,12 @@ from ..arrays import Array
 from ..checks import ArgumentError, choice, count, instance
 from .body_surfaces import PointSurface, RingSurface, check_surface
 from .matrix_input import check_finite, numbers, rows_of
-from .modes import Modes
+from .modes import Body, Modes
 from .named_points import NamedPoints
 from .turning import Turning
+
+# Error of unit vectors at right angles that rounding may make.
+SQUARE = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +93,54 @@ class ModalBody(NamedPoints):
         self._check_turning(size)
         if self.outer_surface is not None:
             check_surface("outer_surface", self.outer_surface, angular.size)
+
+    @classmethod
+    def placed(
+        cls,
+        body: Body,
+        points: Mapping[str, Any],
+        x: Sequence[float] = (1.0, 0.0, 0.0),
+        y: Sequence[float] = (0.0, 1.0, 0.0),
+        name: str = "",
+    ) -> ModalBody:
+        """Return a planar body as one in space, its plane anywhere.
+
+        Parameters
+        ----------
+        body : FiniteElementBeam, ModalBeam, PointMass or ReducedBody
+            A body of the plane, without a damping matrix of its own.
+        points : mapping
+            Positions on it by the names that they get, such as ``{"tip": "tip"}`` or ``{"middle": 0.5}``.
+        x, y : sequence of float, optional
+            World components in space of what is world x and y in the plane: two unit vectors at right angles.
+        name : str, optional
+            What it is called in records, as the body if left out.
+
+        Raises
+        ------
+        ValueError
+            If the body is one in space or has coupled modes, a position is not on it, or the vectors are no such pair.
+        """
+        if not hasattr(body, "trace") or body.is_spatial:
+            raise ArgumentError("body", "be a body of the plane", body)
+        axes = np.array([numbers("x", x), numbers("y", y)])
+        if axes.shape != (2, 3) or not np.allclose(axes @ axes.T, np.eye(2), rtol=0.0, atol=SQUARE):
+            raise ArgumentError("x and y", "be unit vectors at right angles, three numbers each", (x, y))
+        modes = body.modes()
+        if modes.damping_matrix is not None:
+            raise ArgumentError("body", "be without a damping matrix of its own", body, got="one with")
+        instance("points", points, Mapping)
+        named = {one: getattr(body, one).position for one in body.point_names if body.has_positions}
+        rows = {one: axes.T @ body.trace(named.get(place, place)) for one, place in points.items()}
+        elastic = ~modes.massless
+        return cls(
+            modes.angular_frequency[elastic],
+            rows,
+            modes.damping_rate[elastic],
+            axes.T @ modes.translation if body.has_translation else None,
+            int(modes.massless.sum()),
+            name or body.name,
+        )
 
     def _check_turning(self, size: int) -> None:
         if self.turning is not None:
