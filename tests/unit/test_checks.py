@@ -204,7 +204,7 @@ def test_lists_of_what_a_record_holds_are_short():
     run = st.simulate(st.System(contacts, [st.Gravity()]), 1e-3, step=1e-4, sample_rate=1e4, probes=[])
     stateless = run.drop_vars("state_modal")
     for check, said in (
-        (lambda: analysis.regime(run), "run must be of one contact, got those of 'tooth 1 of the comb', "),
+        (lambda: analysis.bursts(run), "run must be of one contact, got those of 'tooth 1 of the comb', "),
         (
             lambda: st.simulate(st.System(contacts), 1e-3, start=stateless),
             "start must be a record of simulate with ",
