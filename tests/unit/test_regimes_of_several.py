@@ -8,8 +8,9 @@ import xarray as xr
 
 import stridula as st
 from stridula import analysis
-from stridula.analysis.several_contacts import groups, loads, mean_shares, stretches, together
+from stridula.analysis.several_contacts import loads, mean_shares, stretches, together
 from stridula.analysis.status_changes import MIXED, last_rest
+from stridula.records.by_surface import groups
 from stridula.studies.measures import asked_for
 
 RATE = 20e3

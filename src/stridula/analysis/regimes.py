@@ -10,9 +10,10 @@ import xarray as xr
 
 from ..checks import ArgumentError, instance, listed, within
 from ..records import checked
+from ..records.by_surface import groups
 from ..records.plain import PlainRecord, plain_of
 from .regime_measures import BUDDING, Measures, Signals, Thresholds, measures
-from .several_contacts import groups, sums
+from .several_contacts import sums
 
 REGIMES = ("stable sliding", "sticking", "stick-slip", "squeal", "judder", "off the track")
 SLIDES, STICKS, SLIPS, SQUEALS, JUDDERS, LEFT = REGIMES

@@ -126,22 +126,6 @@ def landings_of(landings: Array | None, separated: Array) -> Array:
     return np.asarray(landings.sum(axis=0), dtype=float)
 
 
-def groups(contacts: Sequence[str], surfaces: Sequence[str]) -> list[list[int]]:
-    """Return the numbers of the contacts of each surface, and of each contact that is of none.
-
-    Parameters
-    ----------
-    contacts : sequence of str
-        Names of the contacts.
-    surfaces : sequence of str
-        Name of the surface that each is a point of, empty for none; or nothing, where there are no surfaces.
-    """
-    found: dict[str | int, list[int]] = {}
-    for number in range(len(contacts)):
-        found.setdefault((surfaces[number] if surfaces else "") or number, []).append(number)
-    return list(found.values())
-
-
 def sums(values: Array, members: Sequence[Sequence[int]]) -> list[Array]:
     """Return the sum of a value over the contacts of each group, each of shape (samples,).
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arrays import Array
 from .profile_mesh import ProfileMesh
+from .solid_kinds import outer_faces
 from .solid_mesh import SolidMesh
 
 
@@ -53,9 +54,8 @@ def surface_of_mesh(mesh: SolidMesh, shapes: Array) -> DrawnSurface:
     """
     kind = mesh.element_kind
     corners = len(kind.faces[0])
-    nodes = mesh.elements[:, kind.face_nodes].reshape(-1, kind.face_nodes.shape[1])
-    _, which, times = np.unique(np.sort(nodes[:, :corners], axis=1), axis=0, return_inverse=True, return_counts=True)
-    outer = nodes[times[which.ravel()] == 1]
+    element, side = outer_faces(kind, mesh.elements).T
+    outer = mesh.elements[element[:, None], kind.face_nodes[side]]
     if kind.middles:
         # Round the face: corner, middle of the next edge, corner.
         outer = np.stack([outer[:, :corners], outer[:, corners : 2 * corners]], axis=2).reshape(len(outer), -1)

@@ -14,7 +14,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, in_one_line, listed
 from ..disk import one_line
-from .solid_kinds import KINDS, ElementKind
+from .solid_kinds import KINDS, ElementKind, outer_faces
 
 LARGEST_FILE = 2 * 1024**3
 FORMATS = {
@@ -161,11 +161,8 @@ def _add(groups: dict[str, Array], name: str, those: Array) -> None:
 
 def _surface(kind: ElementKind, elements: Array) -> dict[tuple[int, ...], tuple[int, int]]:
     """Return the faces that one element alone has, by their sorted corners: number of the element and of its face."""
-    corners = np.sort(elements[:, np.array(kind.faces)], axis=2).reshape(-1, len(kind.faces[0]))
-    _, first, times = np.unique(corners, axis=0, return_index=True, return_counts=True)
-    alone = first[times == 1]
-    element, side = np.divmod(alone, len(kind.faces))
-    keys = map(tuple, corners[alone].tolist())
+    element, side = outer_faces(kind, elements).T
+    keys = map(tuple, np.sort(elements[element[:, None], np.array(kind.faces)[side]], axis=1).tolist())
     return dict(zip(keys, zip(element.tolist(), side.tolist(), strict=True), strict=True))
 
 

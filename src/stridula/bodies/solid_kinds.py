@@ -91,3 +91,10 @@ KINDS = {
         ElementKind("hexahedron27", "hexahedra of 27 nodes", *_HEXAHEDRA, 2, "ElementHex2", "hexahedron27"),
     )
 }
+
+
+def outer_faces(kind: ElementKind, elements: Array) -> Array:
+    """Return the faces that belong to one element alone: its number and that of its face, shape (faces, 2)."""
+    corners = np.sort(elements[:, np.array(kind.faces)], axis=2).reshape(-1, len(kind.faces[0]))
+    _, which, times = np.unique(corners, axis=0, return_inverse=True, return_counts=True)
+    return np.stack(np.divmod(np.flatnonzero(times[which.ravel()] == 1), len(kind.faces)), axis=1)

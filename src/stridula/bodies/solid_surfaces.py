@@ -11,7 +11,7 @@ import scipy.sparse
 from ..arrays import Array
 from .body_surfaces import PointSurface, inscribed_radius
 from .solid_elements import shape_functions
-from .solid_kinds import ElementKind
+from .solid_kinds import ElementKind, outer_faces
 
 if TYPE_CHECKING:
     from .solid_mesh import SolidMesh
@@ -22,16 +22,6 @@ PATCH_OF_BALL, PATCH_OF_PART = 1.0, 0.8
 MOST = 1000
 # Points at which thickness is looked for, about.
 SAMPLES = 300
-
-
-def outer_faces(mesh: SolidMesh) -> Array:
-    """Return the faces that belong to one element alone: its number and that of its face, shape (faces, 2)."""
-    kind = mesh.element_kind
-    sides = np.array([mesh.elements[:, list(face)] for face in kind.faces])
-    corners = np.sort(np.moveaxis(sides, 0, 1).reshape(-1, sides.shape[2]), axis=1)
-    _, which, times = np.unique(corners, axis=0, return_inverse=True, return_counts=True)
-    alone = np.flatnonzero(times[which.ravel()] == 1)
-    return np.stack([alone // len(kind.faces), alone % len(kind.faces)], axis=1)
 
 
 def cut_faces(mesh: SolidMesh, shapes: Array, largest: float) -> PointSurface:
@@ -58,7 +48,7 @@ def cut_faces(mesh: SolidMesh, shapes: Array, largest: float) -> PointSurface:
 def _cut(mesh: SolidMesh, shapes: Array, size: float) -> PointSurface:
     """Return the middles of patches whose sides are about as long as a size."""
     kind, found = mesh.element_kind, []
-    for element, side in outer_faces(mesh):
+    for element, side in outer_faces(kind, mesh.elements):
         nodes = mesh.elements[element]
         ends = mesh.nodes[nodes[list(kind.faces[side])]]
         lengths = np.linalg.norm(ends - np.roll(ends, -1, axis=0), axis=1)

@@ -15,8 +15,9 @@ from rich.table import Table
 from ..analysis import bowed_motion, bursts, dominant_frequency, regime_of
 from ..analysis.phases import inside
 from ..analysis.regimes import LIMITS
-from ..analysis.several_contacts import groups, loads, mean_shares
+from ..analysis.several_contacts import loads, mean_shares
 from ..arrays import Array
+from ..records.by_surface import groups
 from ..records.variables import ENERGY, STATUS_WORDS
 from ..system import System
 from .counts import counted

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,11 +16,11 @@ from ..records.variables import STATUS_WORDS
 from ..system import System
 from .colours import LINE, STATUS_COLOURS
 from .motion import SAMPLE_RATE, Motion, motion_of
-from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Film, still, write_film, writer_for
+from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Film, rounded, still, write_film, writer_for
 from .scenes import VIEW
 from .space_films import animate_in_space
 from .space_motion import has_surfaces
-from .timelines import draw_line, draw_status
+from .timelines import draw_contact
 
 DURATION, SLOWDOWN = 0.01, 1000.0
 # Without a number, the largest vibration is drawn as this share of the bodies' extent.
@@ -143,7 +142,7 @@ class Picture:
         self.figure = Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI, layout="constrained")
         bodies, force, status = self.figure.subplots(3, 1, height_ratios=[4.2, 1.0, 0.35])
         self._draw_bodies(bodies, "x along the cut through the plate [m]" if motion.is_cut else "x [m]")
-        self._draw_contact(force, status)
+        self.cursors = draw_contact(force, status, self.run)
         self.figure.suptitle(title, fontsize=11)
         self.show(0)
         # Laid out once: the axes must not move from frame to frame.
@@ -180,19 +179,6 @@ class Picture:
         # On two lines from one edge: side by side they would run into each other above a tall picture.
         self.words = axes.set_title("", fontsize=9, loc="left")
 
-    def _draw_contact(self, above: Axes, below: Axes) -> None:
-        draw_line(above, self.run, "normal_force")
-        draw_status(below, self.run, "status")
-        first, last = self.run["time"].values[[0, -1]]
-        self.cursors: list[Any] = []
-        for axes in (above, below):
-            axes.set_xlim(first, last)
-            axes.tick_params(labelsize=8)
-            axes.yaxis.label.set_fontsize(8)
-            self.cursors.append(axes.axvline(first, color="black", linewidth=1.0))
-        above.tick_params(labelbottom=False)
-        below.set_xlabel("time [s]", fontsize=8)
-
 
 def limits_of(places: list[Array]) -> tuple[Array, Array]:
     """Return the least and the largest x and y of what is drawn, with a margin."""
@@ -200,11 +186,3 @@ def limits_of(places: list[Array]) -> tuple[Array, Array]:
     high = np.max([place.max(axis=(0, 1)) for place in places], axis=0)
     margin = 0.04 * float((high - low).max())
     return low - margin, high + margin
-
-
-def rounded(number: float) -> float:
-    """Return the largest of 1, 2 and 5 times a power of ten that is not above a number; 1 for what does not move."""
-    if not np.isfinite(number):
-        return 1.0
-    power = 10.0 ** np.floor(np.log10(number))
-    return float(power * max(factor for factor in (1.0, 2.0, 5.0) if factor <= number / power * (1.0 + 1e-9)))

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Protocol
 
 import matplotlib
+import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.figure import Figure
 
@@ -139,6 +140,14 @@ def _writer(out: str | Path) -> AbstractMovieWriter:
     return FFMpegWriter(
         fps=FRAMES_PER_SECOND, codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-crf", "20", "-threads", "1"]
     )
+
+
+def rounded(number: float) -> float:
+    """Return the largest of 1, 2 and 5 times a power of ten that is not above a number; 1 for what does not move."""
+    if not np.isfinite(number):
+        return 1.0
+    power = 10.0 ** np.floor(np.log10(number))
+    return float(power * max(factor for factor in (1.0, 2.0, 5.0) if factor <= number / power * (1.0 + 1e-9)))
 
 
 @contextmanager

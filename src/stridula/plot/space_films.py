@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..checks import positive
 from ..integration.schemes import Scheme
 from ..system import System
 from .motion import SAMPLE_RATE
-from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Film, write_film, writer_for
+from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Film, rounded, write_film, writer_for
 from .scenes import VIEW, Scene, checked_view, extent_of, largest_departure, surfaces_of
 from .space_motion import ModalMotion, SpaceMotion, check_surfaces, space_motion_of
-from .timelines import draw_line, draw_status
+from .timelines import draw_contact
 
 # Without a number, the largest vibration is drawn as this share of the bodies' extent.
 SHARE = 0.04
@@ -116,8 +114,6 @@ def exaggeration_of(system: System, modes: ModalMotion, given: float | None, vie
     """Return how many times larger than life vibration is drawn: as given, else near `SHARE` of the bodies' extent."""
     if given is not None:
         return positive("exaggeration", given)
-    from .films import rounded
-
     shown = surfaces_of(system, np.zeros(3))
     largest = largest_departure(shown, modes)
     return rounded(SHARE * extent_of(shown) / largest) if largest > 0.0 else 1.0
@@ -167,7 +163,7 @@ class SpacePicture:
         self.scene = Scene(self.figure, SCENE, system, motion.modes, exaggeration, view)
         self.scene.colour_bar(self.figure.add_axes(COLOUR_BAR), self.scene.largest_velocity)
         self.words = self.figure.text(0.01, 0.98, "", fontsize=9, verticalalignment="top")
-        self._draw_contacts(self.figure.add_axes(FORCE), self.figure.add_axes(STATUS))
+        self.cursors = draw_contact(self.figure.add_axes(FORCE), self.figure.add_axes(STATUS), self._contacts())
         self.figure.suptitle(title, fontsize=11)
         self.show(0)
         self.scene.fill()
@@ -180,20 +176,10 @@ class SpacePicture:
             cursor.set_xdata([time, time])
         self.words.set_text(f"{self.scales}\nt = {1e3 * time:.3f} ms")
 
-    def _draw_contacts(self, above: Axes, below: Axes) -> None:
-        """Draw the normal force of all contacts and their status, the mean of their shares."""
+    def _contacts(self) -> xr.Dataset:
+        """Return the normal force of all contacts together and the mean of their shares."""
         together = self.run[["normal_force", "status_share"]]
-        if "contact" in together.dims:
-            force = together["normal_force"].sum("contact", keep_attrs=True)
-            together = xr.Dataset({"normal_force": force, "status_share": together["status_share"].mean("contact")})
-        draw_line(above, together, "normal_force")
-        draw_status(below, together, "status")
-        first, last = self.run["time"].values[[0, -1]]
-        self.cursors: list[Any] = []
-        for axes in (above, below):
-            axes.set_xlim(first, last)
-            axes.tick_params(labelsize=8)
-            axes.yaxis.label.set_fontsize(8)
-            self.cursors.append(axes.axvline(first, color="black", linewidth=1.0))
-        above.tick_params(labelbottom=False)
-        below.set_xlabel("time [s]", fontsize=8)
+        if "contact" not in together.dims:
+            return together
+        force = together["normal_force"].sum("contact", keep_attrs=True)
+        return xr.Dataset({"normal_force": force, "status_share": together["status_share"].mean("contact")})

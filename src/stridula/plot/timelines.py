@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from ..arrays import Array
 from ..checks import ArgumentError, finite, listed
@@ -148,6 +149,22 @@ def draw_status(axes: Axes, run: xr.Dataset, name: str) -> None:
         axes.set_yticks([count - 0.5 - row for row in range(count)], names, fontsize=8)
         axes.hlines(range(1, count), *run["time"].values[[0, -1]], color="white", linewidth=1.5)
     _legend(axes, 3)
+
+
+def draw_contact(above: Axes, below: Axes, run: xr.Dataset) -> list[Line2D]:
+    """Draw normal force and status under a film, and return the lines that say where in time it is."""
+    draw_line(above, run, "normal_force")
+    draw_status(below, run, "status")
+    first, last = run["time"].values[[0, -1]]
+    cursors = []
+    for axes in (above, below):
+        axes.set_xlim(first, last)
+        axes.tick_params(labelsize=8)
+        axes.yaxis.label.set_fontsize(8)
+        cursors.append(axes.axvline(first, color="black", linewidth=1.0))
+    above.tick_params(labelbottom=False)
+    below.set_xlabel("time [s]", fontsize=8)
+    return cursors
 
 
 def _draw_ribbon(axes: Axes, time: Array, share: Array, bottom: float, labelled: bool) -> None:

@@ -2,11 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 
 # Variables that add up over the points of a surface; of all others there is a mean.
 SUMMED = ("normal_force", "tangential_force", "jammed_steps", "landings")
+
+
+def groups(contacts: Sequence[str], surfaces: Sequence[str]) -> list[list[int]]:
+    """Return the numbers of the contacts of each surface, and of each contact that is of none.
+
+    Parameters
+    ----------
+    contacts : sequence of str
+        Names of the contacts.
+    surfaces : sequence of str
+        Name of the surface that each is a point of, empty for none; or nothing, where there are no surfaces.
+    """
+    found: dict[str | int, list[int]] = {}
+    for number in range(len(contacts)):
+        found.setdefault((surfaces[number] if surfaces else "") or number, []).append(number)
+    return list(found.values())
 
 
 def by_surface(run: xr.Dataset) -> xr.Dataset:
@@ -22,17 +40,15 @@ def by_surface(run: xr.Dataset) -> xr.Dataset:
     """
     if "surface" not in run.coords or "contact" not in run.dims:
         return run
-    groups: dict[str, list[int]] = {}
-    for number, (surface, contact) in enumerate(zip(run["surface"].values, run["contact"].values, strict=True)):
-        groups.setdefault(str(surface) or str(contact), []).append(number)
-    found = {}
+    contacts, surfaces = ([str(name) for name in run[kind].values] for kind in ("contact", "surface"))
+    members, found = groups(contacts, surfaces), {}
     for name, variable in run.data_vars.items():
         if "contact" not in variable.dims or not np.issubdtype(variable.dtype, np.number):
             continue
-        parts = [variable.isel(contact=those) for those in groups.values()]
+        parts = [variable.isel(contact=those) for those in members]
         whole = [part.sum("contact") if name in SUMMED else part.mean("contact") for part in parts]
         joined = xr.concat(whole, "contact", coords="minimal", compat="override").transpose(*variable.dims)
         found[name] = joined.assign_attrs(variable.attrs)
     kept = run.drop_vars([name for name in run.data_vars if "contact" in run[name].dims]).drop_vars("surface")
-    kept = kept.drop_dims("contact").assign_coords(contact=list(groups))
+    kept = kept.drop_dims("contact").assign_coords(contact=[surfaces[one[0]] or contacts[one[0]] for one in members])
     return kept.assign(found)
