@@ -236,9 +236,9 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
         if everywhere(done > 0.5):
             break
         before = change
-        # In space the directions of friction still turn, and later it finds ever other forces of contacts that hold the
-        # same motions.
-        early = sweep + 1 <= 8 if sizes.space else sweep + 1 == FIRST_DIRECT_SOLVE
+        # In space the directions of friction turn from sweep to sweep: a solve after each of the first is Newton's
+        # method on these. Late it finds ever other forces of contacts that hold the same motions.
+        early = sweep + 1 <= SWEEPS_PER_DIRECT_SOLVE if sizes.space else sweep + 1 == FIRST_DIRECT_SOLVE
         late = sizes.space and sweep + 1 > PATIENCE
         if early or ((sweep + 1) % SWEEPS_PER_DIRECT_SOLVE == 0 and not late):
             tried = choose(done < 0.5, settled, zero)

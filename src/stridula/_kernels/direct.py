@@ -88,10 +88,9 @@ def is_closed(now, i, run, zero):
 
 
 @numba.njit(**OPTIONS)
-def is_held(now, codes, i, run, zero):
-    """Return whether contact `i` of a law that sticks exactly sticks."""
-    sticks = magnitude(held(now, i * at.IN_STEP + at.STATUS_NOW, run, zero) - STICKING) < 0.5
-    return choose(sticks, 1.0, zero) > 0.5
+def is_held(now, i, run, zero):
+    """Return whether contact `i` sticks; one with an equation of its tangential force is then held."""
+    return magnitude(held(now, i * at.IN_STEP + at.STATUS_NOW, run, zero) - STICKING) < 0.5
 
 
 @numba.njit(**OPTIONS)
@@ -117,7 +116,7 @@ def put_columns(contacts, sizes, j, in_space, run, zero):
             row = equation(now, i, which, run, zero)
             if row < 0:
                 continue
-            moves = is_closed(now, i, run, zero) if k == 0 else is_held(now, contacts.codes, i, run, zero)
+            moves = is_closed(now, i, run, zero) if k == 0 else is_held(now, i, run, zero)
             # Where this run has no such equation, the unknown is zero.
             idle = zero + 1.0
             along = component(scratch, 2 * i + k, last, run, zero)
@@ -143,7 +142,7 @@ def put_rights(contacts, carried, j, in_space, size, run, zero):
         of_tangential = equation(now, i, at.TANGENTIAL_EQUATION, run, zero)
         if of_tangential >= 0:
             slip = held(now, i * at.IN_STEP + at.FREE_SLIP, run, zero) + strayed(carried, i, run, zero)
-            holds = is_held(now, contacts.codes, i, run, zero)
+            holds = is_held(now, i, run, zero)
             set_component(scratch, of_tangential, size, run, choose(holds, -slip, zero))
 
 
@@ -156,7 +155,7 @@ def found_forces(contacts, j, i, size, run, zero):
     of_tangential = equation(now, i, at.TANGENTIAL_EQUATION, run, zero)
     if of_tangential >= 0:
         pulled = -component(scratch, of_tangential, size, run, zero)
-        tangential = choose(is_held(now, contacts.codes, i, run, zero), pulled, tangential)
+        tangential = choose(is_held(now, i, run, zero), pulled, tangential)
     return normal, tangential
 
 
