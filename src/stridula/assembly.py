@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array
-from .bodies import BodyPoint, HasRoot
+from .bodies import BodyPoint, has_root
 from .bodies.modes import Modes
 from .bodies.ordinary import check_coupled_count, of_ordinary_size
 from .bodies.turning import Turning
@@ -603,7 +603,7 @@ def _loads(system: System, layout: _Layout) -> tuple[list[_Load], list[Signal], 
 def _inertia(system: System) -> Array:
     """Return the slider's inertia as its root feels it, zero for bodies without a root."""
     slider = system.slider
-    if not isinstance(slider, HasRoot):
+    if not has_root(slider):
         return np.zeros((3, 2))
     inertia: Array = slider.root_reaction(system.is_held(slider)).inertia
     return inertia
@@ -612,7 +612,7 @@ def _inertia(system: System) -> Array:
 def _force(point: BodyPoint, components: Array, layout: _Layout) -> tuple[Array, Array]:
     slider = layout.system.slider
     root = np.zeros(3)
-    if point.body == slider and isinstance(slider, HasRoot):
+    if point.body == slider and has_root(slider):
         root = slider.root_lever(point.position) @ components[:2]
     return components @ layout.trace(point), root
 

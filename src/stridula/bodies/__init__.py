@@ -6,8 +6,8 @@ from .finite_element_beam import FiniteElementBeam
 from .modal_beam import ModalBeam
 from .modal_body import ModalBody
 from .modal_plate import Line, ModalPlate
-from .modes import Body, BodyPoint, HasRoot, Modes
-from .paths import Path, Track, Waves
+from .modes import Body, BodyPoint, HasRoot, Modes, has_root
+from .paths import Path, Track, Waves, is_track
 from .point_mass import PointMass
 from .profiles import LineProfile, MeshProfile, Profile, RectangleProfile
 from .reduced_body import ReducedBody
@@ -49,4 +49,6 @@ __all__ = [
     "Track",
     "Turning",
     "Waves",
+    "has_root",
+    "is_track",
 ]

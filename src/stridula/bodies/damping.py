@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated, Any, ClassVar, Protocol, runtime_checkable
+from typing import Annotated, Any, ClassVar, Protocol, TypeGuard
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from ..checks import ArgumentError
 from ..declared import DAMPING_RATIO, DampingRatio, Each, Number, check_declared
 
 
-@runtime_checkable
 class DampingLaw(Protocol):
     """How the damping of a mode follows from its frequency; ratios may reach 1 and more, modes are overdamped then."""
 
@@ -22,6 +21,11 @@ class DampingLaw(Protocol):
 
     def rates(self, angular_frequency: Array) -> Array:
         """Return ``2 zeta w`` [1/s] for modes of angular frequency w [rad/s], zero for rigid ones."""
+
+
+def is_damping_law(given: Any) -> TypeGuard[DampingLaw]:
+    """Return whether an object is a law of damping, not a class of them."""
+    return hasattr(given, "form") and hasattr(given, "rates") and not isinstance(given, type)
 
 
 @dataclass(frozen=True)
@@ -144,7 +148,7 @@ def checked_damping(given: Any) -> float | tuple[float, ...] | DampingLaw:
     ValueError
         If a ratio is not from 0 to 1, 1 excluded.
     """
-    if isinstance(given, DampingLaw) and not isinstance(given, type):
+    if is_damping_law(given):
         return given
     if isinstance(given, (Sequence, np.ndarray)) and not isinstance(given, str):
         if np.ndim(given) != 1:
@@ -161,7 +165,7 @@ def check_damping_count(damping: Any, modes: int) -> None:
 
 def damping_rates(damping: Any, angular_frequency: Array) -> Array:
     """Return ``2 zeta w`` [1/s] of every mode under checked damping, shape (modes,)."""
-    if isinstance(damping, DampingLaw):
+    if is_damping_law(damping):
         return damping.rates(angular_frequency)
     check_damping_count(damping, angular_frequency.size)
     return np.asarray(2.0 * np.asarray(damping) * angular_frequency)

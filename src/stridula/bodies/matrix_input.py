@@ -13,7 +13,7 @@ import scipy.sparse
 from ..arrays import Array
 from ..checks import ArgumentError, instance
 from ..declared import DAMPING_RATIO
-from .damping import DampingLaw, checked_damping
+from .damping import DampingLaw, checked_damping, is_damping_law
 from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
 
 SYMMETRY = 1e-8
@@ -224,7 +224,7 @@ def is_pair(value: Any, kind: type | tuple[type, ...]) -> bool:
 
 def damping_of(value: Any, size: int) -> float | Array | DampingLaw:
     """Return a damping as a ratio, ratios per mode, a law of frequency, or a symmetric matrix."""
-    if isinstance(value, DampingLaw):
+    if is_damping_law(value):
         return value
     if isinstance(value, (Real, str)) or value is None:
         return DAMPING_RATIO.check("damping", value)

@@ -161,8 +161,7 @@ class ModalBeam:
 
     def path(self) -> Path:
         """Return the line along which others slide: its axis."""
-        bending, axial = (along_one_angle(np.arange(1, count + 1), self.amplitude) for count in self.harmonics)
-        return Path(self.ends, np.array([np.pi / self.length, 0.0]), np.zeros(2), bending, axial)
+        return _path(self)
 
     def support_force(self, end: str) -> Array:
         """Return the rows that give the force along y on the support of an end from the modes, shape (modes,).
@@ -194,6 +193,12 @@ class ModalBeam:
 
     def _axial(self, harmonic: int | Array) -> Array:
         return np.asarray(harmonic * np.pi / self.length * np.sqrt(self.material.young / self.material.density))
+
+
+@lru_cache(maxsize=16)
+def _path(beam: ModalBeam) -> Path:
+    bending, axial = (along_one_angle(np.arange(1, count + 1), beam.amplitude) for count in beam.harmonics)
+    return Path(beam.ends, np.array([np.pi / beam.length, 0.0]), np.zeros(2), bending, axial)
 
 
 @lru_cache(maxsize=16)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, runtime_checkable
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeGuard, TypeVar
 
 import numpy as np
 
@@ -151,7 +151,6 @@ class Body(Protocol):
         """Raise ValueError if it has no point at `position`."""
 
 
-@runtime_checkable
 class HasRoot(Protocol):
     """A body with a driven end, its root."""
 
@@ -171,6 +170,11 @@ class HasRoot(Protocol):
 
     def root_reaction(self, held_x: bool = False) -> Any:
         """Return what tells the forces of the support of the root."""
+
+
+def has_root(body: Any) -> TypeGuard[HasRoot]:
+    """Return whether a body has a driven end."""
+    return hasattr(body, "root_reaction")
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, TypeGuard
 
 import numpy as np
 
@@ -82,7 +82,6 @@ class Path:
         return rows, slopes
 
 
-@runtime_checkable
 class Track(Body, Protocol):
     """A body that others slide along: any that has a path."""
 
@@ -96,6 +95,11 @@ class Track(Body, Protocol):
 
     def path(self) -> Path:
         """Return the line along which others slide."""
+
+
+def is_track(body: Any) -> TypeGuard[Track]:
+    """Return whether others slide along a body: asked of every run, a Protocol takes long to be asked."""
+    return hasattr(body, "path")
 
 
 def along_one_angle(numbers: Array, amplitude: float | Array, cosines: bool = False) -> Waves:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
 
 from ..arrays import Array
-from ..bodies import BodyPoint, ModalBeam, ModalPlate, Track
+from ..bodies import BodyPoint, ModalBeam, ModalPlate, Track, is_track
 from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, instance, within
 from ..declared import Angle, Distance, Each, Number, OneOrEach, Position, check_declared
@@ -196,22 +197,22 @@ class PointContact:
         """The point that the tip touches, None where it moves along a track."""
         return self.track if isinstance(self.track, BodyPoint) else None
 
-    @property
+    @cached_property
     def path_body(self) -> Track | None:
         """The body that the tip moves along, None on a rigid track and against a point."""
-        return self.track if isinstance(self.track, Track) else None
+        return self.track if is_track(self.track) else None
 
     @property
     def track_body(self) -> object | None:
         """The body on the track's side, None for a rigid track."""
         return self.path_body or (self.touched_point and self.touched_point.body)
 
-    @property
+    @cached_property
     def frame(self) -> Array:
         """World components of the track's normal and tangent, shape (2, 2); in space of both tangents, (3, 3)."""
-        if self.is_spatial:
-            return self._frame_in_space
-        return self._plane_frame
+        axes = self._frame_in_space if self.is_spatial else self._plane_frame
+        axes.flags.writeable = False
+        return axes
 
     @property
     def _frame_in_space(self) -> Array:

@@ -13,7 +13,7 @@ from .._kernels import layout as at
 from .._kernels.contact import SEPARATED
 from ..arrays import Array
 from ..assembly import Assembly, Signal, assemble, with_travel
-from ..bodies import Track
+from ..bodies import is_track
 from ..checks import ArgumentError, instance, positive
 from ..records import Probe
 from ..records.state import State
@@ -337,7 +337,7 @@ def assembled(system: System, probes: Sequence[Probe]) -> Assembly:
     instance("system", system, System)
     if len(system.contacts) != 1:
         raise ArgumentError("system", "have one contact to march without end", system, got=len(system.contacts))
-    if not isinstance(system.contacts[0].track, Track):
+    if not is_track(system.contacts[0].track):
         kind = type(system.contacts[0].track).__name__
         raise ArgumentError("track", "be a ModalBeam or a ModalPlate to march without end", got=f"a {kind}")
     return assemble(system, probes)

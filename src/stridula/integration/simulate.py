@@ -10,7 +10,7 @@ import xarray as xr
 
 from .._kernels.layout import COLUMNS, ENERGIES
 from ..assembly import Assembly, assemble
-from ..bodies import Track
+from ..bodies import is_track
 from ..bodies.ordinary import of_ordinary_size
 from ..checks import ArgumentError, at_least, at_most, instance, positive
 from ..records import Acceleration, Probe
@@ -151,7 +151,7 @@ class Asked:
     def arrays(self, system: System) -> Arrays:
         """Return a system as flat arrays."""
         instance("system", system, System)
-        default = (Acceleration(system.track.centre, "y"),) if isinstance(system.track, Track) else ()
+        default = (Acceleration(system.track.centre, "y"),) if is_track(system.track) else ()
         probes = tuple(self.probes) if self.probes is not None else default
         for number, probe in enumerate(probes):
             instance(f"probes[{number}]", probe, Probe.__args__)

@@ -13,7 +13,7 @@ import tomli_w
 
 from ..arrays import Array
 from ..bodies import AxisymmetricBody, BodyPoint, FiniteElementBeam, ModalBeam, ModalBody
-from ..bodies.damping import DampingLaw
+from ..bodies.damping import is_damping_law
 from ..bodies.turning import Turning
 from ..connections import Connection, ends
 from ..contact import PointContact
@@ -144,7 +144,7 @@ def _value(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {name: _value(entry) for name, entry in value.items()}
     if is_dataclass(value) and not isinstance(value, type):
-        return ({"form": value.form} if isinstance(value, DampingLaw) else {}) | _plain(value)
+        return ({"form": value.form} if is_damping_law(value) else {}) | _plain(value)
     if isinstance(value, bool):
         return value
     if isinstance(value, Integral):

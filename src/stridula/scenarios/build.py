@@ -15,7 +15,6 @@ from ..bodies import (
     AxisymmetricBody,
     BodyPoint,
     FiniteElementBeam,
-    HasRoot,
     Line,
     Material,
     ModalBeam,
@@ -25,6 +24,7 @@ from ..bodies import (
     ReducedBody,
     RigidBody,
     SolidBody,
+    has_root,
 )
 from ..bodies.body_surfaces import surface_of
 from ..bodies.damping import DAMPING_LAWS
@@ -102,7 +102,7 @@ class Builder:
             system = System(contacts[0] if len(contacts) == 1 else contacts, drives, connections)
         self._stop_at_problems()
         for name, body in self.bodies.items():
-            if isinstance(body, HasRoot) or body.kind in MESHED:
+            if has_root(body) or body.kind in MESHED:
                 with self._within(*self.places.get(name, ("bodies", name))):
                     body.modes(system.is_held(body))
         self._stop_at_problems()
@@ -386,7 +386,7 @@ class Builder:
         return (body,) if place else ()
 
     def _root(self, path: Place, body: Any) -> Any:
-        if not isinstance(body, HasRoot):
+        if not has_root(body):
             self.problems.append(f"{self.words((*path, 'body'))} must be a finite-element beam, whose root is driven")
             return None
         return body.root
