@@ -213,6 +213,7 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
     done = choose(touching > 0.5, zero, 1.0)
     rounding = rounding_of_slips(carried, sizes, run, zero)
     made, error, before = zero, choose(touching > 0.5, math.inf, zero), zero + math.inf
+    given_up = zero
     for sweep in range(timing.sweeps):
         change, largest, misfit, reach, settled = sweep_once(
             contacts, carried, sizes, timing.step, done, run, runs, zero
@@ -241,9 +242,10 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
         early = sweep + 1 <= SWEEPS_PER_DIRECT_SOLVE if sizes.space else sweep + 1 == FIRST_DIRECT_SOLVE
         late = sizes.space and sweep + 1 > PATIENCE
         if early or ((sweep + 1) % SWEEPS_PER_DIRECT_SOLVE == 0 and not late):
-            tried = choose(done < 0.5, settled, zero)
+            changeable = choose(given_up > 0.5, settled, zero + 1.0) if early else settled
+            tried = choose(done < 0.5, changeable, zero)
             if anywhere(tried > 0.5):
-                solve_states(contacts, carried, sizes, run, tried, zero)
+                given_up = solve_states(contacts, carried, sizes, timing.step, run, tried, zero)
                 again = sizes.space and sweep > 0 and early
                 before = choose(tried > 0.5, change if again else zero + math.inf, before)
         if sweep + 1 == PATIENCE:

@@ -1,51 +1,251 @@
-"""The forces of contacts whose states are given: one linear system.
+"""The forces of all contacts at once, from the states found last: linear systems, until no state has to change.
 
 Unknown are the normal forces of those that are closed and the tangential forces of those that are held; where a contact
-slides, its tangential force is the ratio found last times its normal force. The system lies in blocks like the
-compliance, ``scratch[row, block, lane]``: a row for each equation, one for right sides, one to work with. Runs side by
-side have the equations of all of them.
+slides, its tangential force is the ratio found last times its normal force. Contacts that pull then open, open ones
+that overlap close, those held beyond their cone slide and those that slide against their friction are held: an active
+set. The system lies in blocks like the compliance, ``scratch[row, block, lane]``: a row for each equation, one for
+right sides, one to work with, one for displacements to come back to. Runs side by side have the equations of all.
 """
+
+import math
 
 import numba
 
 from . import layout as at
-from .block_rows import COMPLIANCE
-from .contact import STICKING
+from .block_rows import COMPLIANCE, DISPLACEMENT
+from .contact import SLIDING, STICKING
 from .faces import displace
 from .friction import set_valued
 from .lanes import anywhere, choose, component, fused, held, hold, lane, load, magnitude, set_component, store
 from .modes import OPTIONS
 from .solves import strayed
-from .space import is_second
+from .space import direction, is_second
+from .yielding import give_of, yields_anywhere, yields_of
 
 # Share of the cone that a force may be beyond it by rounding.
 BEYOND = 1.0 + 1e-9
+# Systems solved before states that still change are given up, and of these in a row that may leave as many contacts at
+# odds as before, all of which change: then the last of them changes alone (Judice & Pires 1994).
+TRIALS, BLOCKS_IN_VAIN = 100, 3
+# Overlap of an open contact that is rounding, relative to the largest displacement without forces.
+TOUCH = 1e-12
 
 
 @numba.njit(**OPTIONS)
-def solve_states(contacts, carried, sizes, run, tried, zero):
-    """Put the forces of the states found into what the contacts are, ratios of sliding kept, and what they displace.
+def solve_states(contacts, carried, sizes, step, run, tried, zero):
+    """Put forces and states of all contacts into what they are, ratios of sliding kept, and what they displace.
 
-    `tried` says in which runs. Where the states admit no forces nothing is changed.
+    `tried` says in which runs. Where no states are found that admit forces nothing is changed; returns where that is.
     """
     now, codes, scratch = contacts.now, contacts.codes, contacts.scratch
-    size = number_equations(now, codes, sizes.contacts, run, zero)
+    keep_found(contacts, sizes, run, zero)
+    slack = TOUCH * farthest(now, sizes.contacts, run, zero)
+    active, given_up = choose(tried > 0.5, 1.0, zero), zero
+    fewest, vain = zero + math.inf, zero
+    for _ in range(TRIALS):
+        size = number_equations(now, codes, sizes.contacts, run, zero)
+        for j in range(sizes.contacts):
+            if equation(now, j, at.NORMAL_EQUATION, run, zero) >= 0:
+                in_space = sizes.space and is_second(codes, j + 1)
+                put_columns(contacts, sizes, j, in_space, run, zero)
+                put_rights(contacts, carried, j, in_space, size, run, zero)
+        blocks = (size + sizes.per_block - 1) // sizes.per_block
+        regular = eliminate(scratch, size, blocks, sizes.per_block, run, active, zero)
+        for j in range(sizes.contacts):
+            if equation(now, j, at.NORMAL_EQUATION, run, zero) >= 0:
+                take(contacts, sizes, j, j, size, regular, run, zero)
+                if sizes.space and is_second(codes, j + 1):
+                    take(contacts, sizes, j, j + 1, size, regular, run, zero)
+        given_up = choose(active - regular > 0.5, 1.0, given_up)
+        at_odds, last, fails = compare(contacts, carried, sizes, slack, regular, run, zero)
+        given_up = choose(fails > 0.5, 1.0, given_up)
+        active = choose(given_up > 0.5, zero, choose(at_odds > 0.5, regular, zero))
+        if not anywhere(active > 0.5):
+            break
+        vain = choose(at_odds < fewest, zero, vain + 1.0)
+        fewest = choose(at_odds < fewest, at_odds, fewest)
+        for j in range(sizes.contacts):
+            alone = choose(vain > BLOCKS_IN_VAIN, choose(magnitude(last - j) < 0.5, active, zero), active)
+            if not is_second(codes, j):
+                in_space = sizes.space and is_second(codes, j + 1)
+                change(contacts, carried, sizes, j, in_space, step, alone, run, zero)
+    given_up = choose(active > 0.5, 1.0, given_up)
+    put_back(contacts, sizes, given_up, run, zero)
+    return given_up
+
+
+@numba.njit(**OPTIONS)
+def farthest(now, count, run, zero):
+    """Return the largest gap or slip of all contacts without their forces."""
+    found = zero
+    for i in range(count):
+        gap = magnitude(held(now, i * at.IN_STEP + at.FREE_GAP, run, zero))
+        slip = magnitude(held(now, i * at.IN_STEP + at.FREE_SLIP, run, zero))
+        found = choose(gap > found, gap, found)
+        found = choose(slip > found, slip, found)
+    return found
+
+
+@numba.njit(**OPTIONS)
+def keep_found(contacts, sizes, run, zero):
+    """Keep forces, states and displacements to come back to, and put the ratios of those that slide."""
+    now, saved = contacts.now, 2 * sizes.contacts + 2
+    for i in range(sizes.contacts):
+        here = i * at.IN_STEP
+        normal, tangential, status = (
+            held(now, here + at.NORMAL_NOW, run, zero),
+            held(now, here + at.TANGENTIAL_NOW, run, zero),
+            held(now, here + at.STATUS_NOW, run, zero),
+        )
+        hold(now, here + at.NORMAL_KEPT, run, normal)
+        hold(now, here + at.TANGENTIAL_KEPT, run, tangential)
+        hold(now, here + at.STATUS_KEPT, run, status)
+        ratio = choose(normal > 0.0, tangential, zero) / choose(normal > 0.0, normal, 1.0)
+        hold(now, here + at.RATIO, run, ratio)
+        for k in range(2 * i, 2 * i + 2):
+            set_component(contacts.scratch, k, saved, run, component(contacts.faces, k, DISPLACEMENT, run, zero))
+
+
+@numba.njit(**OPTIONS)
+def put_back(contacts, sizes, given_up, run, zero):
+    """Put back what was kept, in runs that are given up."""
+    if not anywhere(given_up > 0.5):
+        return
+    now, saved = contacts.now, 2 * sizes.contacts + 2
+    for i in range(sizes.contacts):
+        here = i * at.IN_STEP
+        for row, kept in (
+            (at.NORMAL_NOW, at.NORMAL_KEPT),
+            (at.TANGENTIAL_NOW, at.TANGENTIAL_KEPT),
+            (at.STATUS_NOW, at.STATUS_KEPT),
+        ):
+            found = held(now, here + row, run, zero)
+            hold(now, here + row, run, choose(given_up > 0.5, held(now, here + kept, run, zero), found))
+        for k in range(2 * i, 2 * i + 2):
+            found = component(contacts.faces, k, DISPLACEMENT, run, zero)
+            before = component(contacts.scratch, k, saved, run, zero)
+            set_component(contacts.faces, k, DISPLACEMENT, run, choose(given_up > 0.5, before, found))
+
+
+@numba.njit(**OPTIONS)
+def compare(contacts, carried, sizes, slack, active, run, zero):
+    """Put which state each contact wants, in runs that are `active`.
+
+    Laws but Coulomb's say by themselves, in a sweep, when a contact breaks away or comes to rest.
+
+    Returns
+    -------
+    at_odds, last : float or vector
+        How many contacts want another than they have, and the number of the last of them.
+    fails : float or vector
+        Where a contact can have none.
+    """
+    now, at_odds, last, fails = contacts.now, zero, zero - 1.0, zero
     for j in range(sizes.contacts):
-        if equation(now, j, at.NORMAL_EQUATION, run, zero) >= 0:
-            in_space = sizes.space and is_second(codes, j + 1)
-            put_columns(contacts, sizes, j, in_space, run, zero)
-            put_rights(contacts, carried, j, in_space, size, run, zero)
-    blocks = (size + sizes.per_block - 1) // sizes.per_block
-    regular = eliminate(scratch, size, blocks, sizes.per_block, run, tried, zero)
-    for j in range(sizes.contacts):
-        if equation(now, j, at.NORMAL_EQUATION, run, zero) >= 0:
-            in_space = sizes.space and is_second(codes, j + 1)
-            regular = admitted(contacts, j, in_space, size, regular, run, zero)
-    for j in range(sizes.contacts):
-        if equation(now, j, at.NORMAL_EQUATION, run, zero) >= 0:
-            take(contacts, sizes, j, j, size, regular, run, zero)
-            if sizes.space and is_second(codes, j + 1):
-                take(contacts, sizes, j, j + 1, size, regular, run, zero)
+        if is_second(contacts.codes, j):
+            continue
+        here, in_space = j * at.IN_STEP, sizes.space and is_second(contacts.codes, j + 1)
+        status, normal = held(now, here + at.STATUS_NOW, run, zero), held(now, here + at.NORMAL_NOW, run, zero)
+        gap = component(contacts.faces, 2 * j, DISPLACEMENT, run, zero)
+        closed, sticks = status > 0.5 * STICKING, magnitude(status - STICKING) < 0.5
+        wanted = choose(closed, choose(normal < 0.0, zero, status), choose(gap < -slack, zero + SLIDING, zero))
+        first, second = held(now, here + at.TANGENTIAL_NOW, run, zero), zero
+        along, across = velocity_of(contacts, carried, j, run, zero), zero
+        if in_space:
+            second = held(now, here + at.IN_STEP + at.TANGENTIAL_NOW, run, zero)
+            across = velocity_of(contacts, carried, j + 1, run, zero)
+        if set_valued(contacts.codes[j]):
+            most = BEYOND * held(contacts.constants, j * at.CONTACT_CONSTANTS + at.AT_REST, run, zero) * normal
+            beyond = choose(sticks, first * first + second * second, zero) > most * most
+            breaks = choose(beyond, choose(normal < 0.0, zero, 1.0), zero)
+            if contacts.codes[j] == at.COULOMB:
+                wanted = choose(breaks > 0.5, zero + SLIDING, wanted)
+                free = held(now, here + at.LET_GO, run, zero) > 0.5
+                against = choose(free, zero, first * along + second * across) < 0.0
+                slides = choose(sticks, zero, choose(normal < 0.0, zero, 1.0))
+                wanted = choose(choose(against, slides, zero) > 0.5, zero + STICKING, wanted)
+            else:
+                fails = choose(choose(active > 0.5, breaks, zero) > 0.5, 1.0, fails)
+        wanted = choose(active > 0.5, wanted, status)
+        odd = magnitude(wanted - status) > 0.5
+        at_odds += choose(odd, 1.0, zero)
+        last = choose(odd, zero + float(j), last)
+        hold(now, here + at.STATUS_WANTED, run, wanted)
+    return at_odds, last, fails
+
+
+@numba.njit(**OPTIONS)
+def change(contacts, carried, sizes, j, in_space, step, active, run, zero):
+    """Give contact `j` the state that it wants, in runs that are `active`."""
+    now, faces, here = contacts.now, contacts.faces, j * at.IN_STEP
+    there = here + at.IN_STEP
+    status, wanted = held(now, here + at.STATUS_NOW, run, zero), held(now, here + at.STATUS_WANTED, run, zero)
+    wanted = choose(active > 0.5, wanted, status)
+    if not anywhere(magnitude(wanted - status) > 0.5):
+        return
+    opens = choose(status > 0.5 * STICKING, choose(wanted < 0.5 * STICKING, 1.0, zero), zero) > 0.5
+    closes = choose(status < 0.5 * STICKING, choose(wanted > 0.5 * STICKING, 1.0, zero), zero) > 0.5
+    moves = choose(status < SLIDING - 0.5, choose(wanted > SLIDING - 0.5, 1.0, zero), zero) > 0.5
+    stops = choose(wanted < SLIDING - 0.5, choose(status > SLIDING - 0.5, 1.0, zero), zero) > 0.5
+    normal = held(now, here + at.NORMAL_NOW, run, zero)
+    first, second = held(now, here + at.TANGENTIAL_NOW, run, zero), zero
+    # A contact that closes slides the way that it moves, one that breaks away as it was pulled.
+    along, across = choose(closes, velocity_of(contacts, carried, j, run, zero), first), zero
+    if in_space:
+        second = held(now, there + at.TANGENTIAL_NOW, run, zero)
+        across = choose(closes, velocity_of(contacts, carried, j + 1, run, zero), second)
+    at_rest = held(contacts.constants, j * at.CONTACT_CONSTANTS + at.AT_REST, run, zero)
+    c, s = direction((along, across), (zero, zero))
+    ratio = choose(moves, at_rest * c, held(now, here + at.RATIO, run, zero))
+    hold(now, here + at.RATIO, run, choose(stops, zero, ratio))
+    hold(now, here + at.STATUS_NOW, run, wanted)
+    hold(now, here + at.JAMMED_NOW, run, choose(closes, zero, held(now, here + at.JAMMED_NOW, run, zero)))
+    hold(now, here + at.MAY_TOUCH, run, choose(closes, 1.0, held(now, here + at.MAY_TOUCH, run, zero)))
+    hold(now, here + at.BROKE, run, choose(moves, 1.0, held(now, here + at.BROKE, run, zero)))
+    soften_closed(contacts, carried, j, closes, step, run, zero)
+    left, pulled = choose(opens, zero, normal), choose(opens, zero, first)
+    hold(now, here + at.NORMAL_NOW, run, left)
+    hold(now, here + at.TANGENTIAL_NOW, run, pulled)
+    displace(faces, sizes.faces, j, run, left - normal, pulled - first)
+    if in_space:
+        ratio = choose(moves, at_rest * s, held(now, there + at.RATIO, run, zero))
+        hold(now, there + at.RATIO, run, choose(stops, zero, ratio))
+        hold(now, there + at.STATUS_NOW, run, wanted)
+        hold(now, there + at.NORMAL_NOW, run, left)
+        swerved = choose(opens, zero, second)
+        hold(now, there + at.TANGENTIAL_NOW, run, swerved)
+        displace(faces, sizes.faces, j + 1, run, zero, swerved - second)
+
+
+@numba.njit(**OPTIONS)
+def velocity_of(contacts, carried, i, run, zero):
+    """Return the velocity along the tangent of pair `i` that friction acts against, in units of a ninth of a slip."""
+    slip = component(contacts.faces, 2 * i + 1, DISPLACEMENT, run, zero)
+    if not (is_second(contacts.codes, i) or is_second(contacts.codes, i + 1)):
+        return 9.0 * slip
+    base, first = i * at.CARRIED, i - 1 if is_second(contacts.codes, i) else i
+    last, earlier = (
+        held(carried, base + at.LAST_SLIP, run, zero),
+        held(carried, base + at.EARLIER_SLIP, run, zero),
+    )
+    late = held(contacts.now, first * at.IN_STEP + at.LET_GO, run, zero) > 0.0
+    return 9.0 * slip + choose(late, zero, 6.0 * last + earlier)
+
+
+@numba.njit(**OPTIONS)
+def soften_closed(contacts, carried, j, closes, step, run, zero):
+    """Put how contact `j` yields about its indentation, in runs in which it has closed."""
+    yields = yields_of(j, contacts.constants, run, zero)
+    if not yields_anywhere(yields):
+        return
+    here, n = j * at.IN_STEP, 2 * j
+    before = -held(carried, j * at.CARRIED + at.EARLIER_GAP, run, zero)
+    own = component(contacts.faces, n, COMPLIANCE + n, run, zero)
+    indented = -component(contacts.faces, n, DISPLACEMENT, run, zero)
+    give, beyond = give_of(indented, before, yields, own, step, zero)
+    hold(contacts.now, here + at.GIVE, run, choose(closes, give, held(contacts.now, here + at.GIVE, run, zero)))
+    kept = held(contacts.now, here + at.BEYOND, run, zero)
+    hold(contacts.now, here + at.BEYOND, run, choose(closes, beyond, kept))
 
 
 @numba.njit(**OPTIONS)
@@ -56,7 +256,7 @@ def equation(now, i, which, run, zero):
 
 @numba.njit(**OPTIONS)
 def number_equations(now, codes, count, run, zero):
-    """Number the equations of all contacts and put their ratios; return how many equations there are."""
+    """Number the equations of all contacts; return how many there are."""
     size = 0
     for i in range(count):
         here = i * at.IN_STEP
@@ -70,14 +270,9 @@ def number_equations(now, codes, count, run, zero):
             of_normal, size = size, size + 1
         if anywhere(holds > 0.5):
             of_tangential, size = size, size + 1
-        normal, tangential = (
-            held(now, here + at.NORMAL_NOW, run, zero),
-            held(now, here + at.TANGENTIAL_NOW, run, zero),
-        )
-        ratio = choose(normal > 0.0, tangential, zero) / choose(normal > 0.0, normal, 1.0)
         hold(now, here + at.NORMAL_EQUATION, run, zero + float(of_normal))
         hold(now, here + at.TANGENTIAL_EQUATION, run, zero + float(of_tangential))
-        hold(now, here + at.RATIO, run, choose(holds > 0.5, zero, ratio))
+        hold(now, here + at.RATIO, run, choose(holds > 0.5, zero, held(now, here + at.RATIO, run, zero)))
     return size
 
 
@@ -157,24 +352,6 @@ def found_forces(contacts, j, i, size, run, zero):
         pulled = -component(scratch, of_tangential, size, run, zero)
         tangential = choose(is_held(now, i, run, zero), pulled, tangential)
     return normal, tangential
-
-
-@numba.njit(**OPTIONS)
-def admitted(contacts, j, in_space, size, regular, run, zero):
-    """Return in which runs the forces found for contact `j` press and, where it is held, lie in the cone.
-
-    Where more contacts stick than bodies have motions, elimination divides by round-off.
-    """
-    normal, tangential = found_forces(contacts, j, j, size, run, zero)
-    regular = choose(normal >= 0.0, regular, zero)
-    if set_valued(contacts.codes[j]):
-        most = BEYOND * held(contacts.constants, j * at.CONTACT_CONSTANTS + at.AT_REST, run, zero) * normal
-        squared = tangential * tangential
-        if in_space:
-            across = found_forces(contacts, j, j + 1, size, run, zero)[1]
-            squared += across * across
-        regular = choose(squared > most * most, zero, regular)
-    return regular
 
 
 @numba.njit(**OPTIONS)

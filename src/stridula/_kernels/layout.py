@@ -74,7 +74,8 @@ CARRIED = 13
 # What a contact is in a step: gap, slip and abscissa, without its forces, then with them; forces, status, whether it is
 # jammed; while the contacts are solved together whether it may touch, has broken away, has been let go. How much more
 # it yields for a unit of force than the bodies, and beyond that. In the system of all contacts: numbers of the
-# equations of its normal and its tangential force, below 0 without one, and the ratio of these where it slides.
+# equations of its normal and its tangential force, below 0 without one, the ratio of these where it slides; forces and
+# status to come back to, and the status that it wants.
 (
     FREE_GAP,
     FREE_SLIP,
@@ -93,8 +94,12 @@ CARRIED = 13
     NORMAL_EQUATION,
     TANGENTIAL_EQUATION,
     RATIO,
-) = range(17)
-IN_STEP = 17
+    NORMAL_KEPT,
+    TANGENTIAL_KEPT,
+    STATUS_KEPT,
+    STATUS_WANTED,
+) = range(21)
+IN_STEP = 21
 
 # Sums over the steps of a sample, of each contact, and where it was at its beginning.
 (

@@ -52,7 +52,7 @@ def forces_of(
         columns(side_by_side([constants.ravel()])),
         columns(aligned(3, 1)),
         compliance_in_blocks([compliance], sizes, 1 if PLAIN else LANES),
-        aligned(2 * count + 2, sizes.faces * per_block).reshape(2 * count + 2, sizes.faces, per_block),
+        aligned(2 * count + 3, sizes.faces * per_block).reshape(2 * count + 3, sizes.faces, per_block),
         columns(side_by_side([now.ravel()])),
         columns(aligned(count * at.SUMS, 1)),
     )

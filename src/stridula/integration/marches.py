@@ -196,7 +196,7 @@ class March:
 
     def _contacts(self, contacts: Sequence[ContactBlocks], width: int) -> Contacts:
         runs, count, sizes = self.runs, self.contact_count, self.layout.sizes
-        equations = aligned(2 * count + 2, sizes.faces * width).reshape(2 * count + 2, sizes.faces, width)
+        equations = aligned(2 * count + 3, sizes.faces * width).reshape(2 * count + 3, sizes.faces, width)
         return Contacts(
             contacts[0].codes,
             np.stack([one.laws for one in contacts], axis=1).reshape(count * runs, -1),
