@@ -26,6 +26,7 @@ LAWS = [
     st.Stribeck(0.4, 0.3, 0.5),
     st.LinearWeakening(0.4, 0.1, 0.2),
     st.RateAndState(0.5, 0.02, 0.01, 1e-4, 1e-3),
+    st.LuGre(0.4, 0.3, 0.05, 2e4, 5.0, 0.1),
 ]
 
 
@@ -643,9 +644,15 @@ BAD = {
         lambda: st.PointContact(FLAT.centre, st.RigidTrack(lateral_velocity=1.0)),
         "track.lateral_velocity must be 0 under a body in the plane",
     ),
-    "bristles": (
-        lambda: st.PointContact(BODY.centre, st.RigidTrack(), friction=st.LuGre(0.4, 0.3, 0.1, 1e4, 10.0)),
-        "friction must be a law other than LuGre for a body in space",
+    "bristles across in the plane": (
+        lambda: st.PointContact(
+            FLAT.centre, st.RigidTrack(), friction=st.LuGre(0.4, 0.3, 0.1, 1e4, initial_state=(0.0, 1e-6))
+        ),
+        r"friction.initial_state.1. must be 0 under a body in the plane, got 1e-06",
+    ),
+    "three bristles": (
+        lambda: st.LuGre(0.4, 0.3, 0.1, 1e4, initial_state=(0.0, 1e-6, 0.0)),
+        "initial_state must be one number, or two in space, got",
     ),
     "beam": (
         lambda: st.PointContact(
