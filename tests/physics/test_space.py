@@ -212,6 +212,21 @@ def test_a_mass_is_held_in_all_directions_alike(degrees):
     np.testing.assert_allclose(run.tangential_force.values[-1], [cos(way), sin(way)], atol=1e-9)
 
 
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.law)
+def test_a_mass_is_stopped_in_all_directions_alike(law):
+    """Thrown along either tangent or between them it slides as far, from the first step on."""
+    found = []
+    for degrees in (0.0, 90.0, 215.0):
+        mass, way = st.RigidBody(1.0), radians(degrees)
+        thrown = st.InitialVelocity(mass, x=0.05 * cos(way), z=0.05 * sin(way))
+        contact = st.PointContact(mass.centre, st.RigidTrack(), friction=law)
+        system = st.System(contact, [st.Gravity(10.0), thrown])
+        run = st.simulate(system, 0.02, step=1e-4, sample_rate=1e4, probes=[])
+        found.append(run.slip_velocity.values @ [cos(way), sin(way)])
+    for other in found[1:]:
+        np.testing.assert_allclose(other, found[0], atol=1e-9 * 0.05)
+
+
 def rubbed(direction: tuple[float, float]) -> st.System:
     """8 kg on springs of 315 N/m along both tangents, pressed with 1 N on a belt at 10 m/s, mu = 0.5."""
     mass = st.RigidBody(8.0)

@@ -151,7 +151,8 @@ class _Start:
             if one.contact.has_state_vector:
                 carried[i, at.FRICTION_STATE] = self._bristles_before(int(self.first[i]))[i - self.first[i]]
             elif not one.is_second:
-                carried[i, at.FRICTION_STATE] = self._state_before(i, one.contact.friction, float(self.speeds[i]))
+                speed = float(self.slip_speeds[i] if one.contact.is_spatial else self.speeds[i])
+                carried[i, at.FRICTION_STATE] = self._state_before(i, one.contact.friction, speed)
         carried[:, at.ANCHOR], carried[:, at.LAST_GAP] = carried[:, at.MATERIAL], self.gaps
         carried[:, at.EARLIER_GAP] = self.gaps - self.rows[self.first, 0] @ first - self.before[self.first, 2]
         carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - self.fixed[:, 1] @ first - tip
