@@ -50,15 +50,15 @@ def on_a_belt(friction, velocities=(0.02, -0.05, 0.3)) -> list[st.System]:
     return found
 
 
-def on_a_table(velocities=(0.02, -0.05, 0.3)) -> list[st.System]:
-    """Masses in space on bristles, dragged along both tangents."""
+def on_a_table() -> list[st.System]:
+    """Masses in space on bristles, pressed and dragged along both tangents."""
     found = []
-    for velocity in velocities:
+    for velocity, load in ((2.0, 100.0), (-5.0, 300.0), (3.0, 900.0)):
         mass = st.RigidBody(0.1)
-        table = st.RigidTrack(velocity=velocity, lateral_velocity=0.04, history=st.Ramp(1e-4))
+        table = st.RigidTrack(velocity=velocity, lateral_velocity=1.0, history=st.Ramp(1e-4))
         contact = st.PointContact(mass.centre, table, friction=st.LuGre(0.6, 0.4, 0.01, 1e5, 10.0), gap=1e-9)
         springs = [st.Spring(mass.centre, stiffness=1e6, direction=way) for way in ("x", "z")]
-        found.append(st.System(contact, [st.Force(mass.centre, y=-30.0)], springs))
+        found.append(st.System(contact, [st.Force(mass.centre, y=-load)], springs))
     return found
 
 
