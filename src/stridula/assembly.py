@@ -224,7 +224,7 @@ def _assembled(system: System) -> tuple[Assembly, _Layout, list[_Load]]:
         position=position,
         velocity=velocity,
         friction_state=np.array(
-            [state for one in system.contacts for state in [one.friction.state_at_start] * _pairs(one)]
+            [state for one in system.contacts for state in one.friction.states_at_start[: _pairs(one)]]
         ),
         probes=[],
         prescribed=_prescribed(system, histories),

@@ -83,6 +83,11 @@ class System:
         """Whether a contact is one of a body in space."""
         return any(contact.is_spatial for contact in self.contacts)
 
+    @property
+    def has_state_vectors(self) -> bool:
+        """Whether the internal state of a law has components along two tangents."""
+        return any(contact.has_state_vector for contact in self.contacts)
+
     @cached_property
     def kept(self) -> dict[str, Any]:
         """What has been made of the system, by whom: it never changes, and is asked for in several places."""

@@ -50,6 +50,18 @@ def on_a_belt(friction, velocities=(0.02, -0.05, 0.3)) -> list[st.System]:
     return found
 
 
+def on_a_table() -> list[st.System]:
+    """Masses in space on bristles, pressed and dragged along both tangents."""
+    found = []
+    for velocity, load in ((2.0, 100.0), (-5.0, 300.0), (3.0, 900.0)):
+        mass = st.RigidBody(0.1)
+        table = st.RigidTrack(velocity=velocity, lateral_velocity=1.0, history=st.Ramp(1e-4))
+        contact = st.PointContact(mass.centre, table, friction=st.LuGre(0.6, 0.4, 0.01, 1e5, 10.0), gap=1e-9)
+        springs = [st.Spring(mass.centre, stiffness=1e6, direction=way) for way in ("x", "z")]
+        found.append(st.System(contact, [st.Force(mass.centre, y=-load)], springs))
+    return found
+
+
 def off_the_track() -> list[st.System]:
     """The second run leaves its track, the others go on."""
     return [
@@ -63,6 +75,7 @@ CASES = {
     "shaken force": shaken_force,
     "stribeck on a belt": lambda: on_a_belt(st.Stribeck(0.6, 0.35, 0.01)),
     "lugre on a belt": lambda: on_a_belt(st.LuGre(0.6, 0.4, 0.01, stiffness=1e5, damping=10.0)),
+    "lugre in space": on_a_table,
     "off the track": off_the_track,
 }
 

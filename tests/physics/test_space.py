@@ -26,6 +26,7 @@ LAWS = [
     st.Stribeck(0.4, 0.3, 0.5),
     st.LinearWeakening(0.4, 0.1, 0.2),
     st.RateAndState(0.5, 0.02, 0.01, 1e-4, 1e-3),
+    st.LuGre(0.4, 0.3, 0.05, 2e4, 5.0, 0.1),
 ]
 
 
@@ -209,6 +210,21 @@ def test_a_mass_is_held_in_all_directions_alike(degrees):
     # Loads are taken at the beginning of a step, samples at its end.
     assert 0.5 < moving[0] < 0.5025
     np.testing.assert_allclose(run.tangential_force.values[-1], [cos(way), sin(way)], atol=1e-9)
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.law)
+def test_a_mass_is_stopped_in_all_directions_alike(law):
+    """Thrown along either tangent or between them it slides as far, from the first step on."""
+    found = []
+    for degrees in (0.0, 90.0, 215.0):
+        mass, way = st.RigidBody(1.0), radians(degrees)
+        thrown = st.InitialVelocity(mass, x=0.05 * cos(way), z=0.05 * sin(way))
+        contact = st.PointContact(mass.centre, st.RigidTrack(), friction=law)
+        system = st.System(contact, [st.Gravity(10.0), thrown])
+        run = st.simulate(system, 0.02, step=1e-4, sample_rate=1e4, probes=[])
+        found.append(run.slip_velocity.values @ [cos(way), sin(way)])
+    for other in found[1:]:
+        np.testing.assert_allclose(other, found[0], atol=1e-9 * 0.05)
 
 
 def rubbed(direction: tuple[float, float]) -> st.System:
@@ -643,9 +659,15 @@ BAD = {
         lambda: st.PointContact(FLAT.centre, st.RigidTrack(lateral_velocity=1.0)),
         "track.lateral_velocity must be 0 under a body in the plane",
     ),
-    "bristles": (
-        lambda: st.PointContact(BODY.centre, st.RigidTrack(), friction=st.LuGre(0.4, 0.3, 0.1, 1e4, 10.0)),
-        "friction must be a law other than LuGre for a body in space",
+    "bristles across in the plane": (
+        lambda: st.PointContact(
+            FLAT.centre, st.RigidTrack(), friction=st.LuGre(0.4, 0.3, 0.1, 1e4, initial_state=(0.0, 1e-6))
+        ),
+        r"friction.initial_state.1. must be 0 under a body in the plane, got 1e-06",
+    ),
+    "three bristles": (
+        lambda: st.LuGre(0.4, 0.3, 0.1, 1e4, initial_state=(0.0, 1e-6, 0.0)),
+        "initial_state must be one number, or two in space, got",
     ),
     "beam": (
         lambda: st.PointContact(

@@ -70,15 +70,22 @@ def driven_work(i, touch, motion, n, run, runs, zero):
 
 
 @numba.njit(**OPTIONS)
-def keep_forces(i, touch, moved, before, carried, contacts, closed, step, run, runs, zero):
-    """Carry normal force and state of the law of contact `i` to the next step; return what friction took."""
-    base, law, laws = i * at.CARRIED, contacts.codes[i], contacts.laws
+def keep_state(i, slip, status, before, carried, contacts, step, run, runs, zero):
+    """Carry the state of the law of contact `i` to the next step."""
+    law, laws, number = contacts.codes[i], contacts.laws, i * runs + run
+    if not set_valued(law):
+        velocity = velocity_at(slip, before, step)
+        state = next_states(law, laws, number, status, before[3], velocity, step)
+        hold(carried, i * at.CARRIED + at.FRICTION_STATE, run, state)
+
+
+@numba.njit(**OPTIONS)
+def keep_forces(i, touch, moved, carried, contacts, closed, run, zero):
+    """Carry status and normal force of contact `i` to the next step; return what friction took."""
+    base, law = i * at.CARRIED, contacts.codes[i]
     normal, tangential, status, _ = touch
     slip = moved[3]
     add(contacts.sums, i * at.SUMS + at.NORMALS, run, normal, zero)
-    if not set_valued(law):
-        velocity, number = velocity_at(slip, before, step), i * runs + run
-        hold(carried, base + at.FRICTION_STATE, run, next_states(law, laws, number, status, before[3], velocity, step))
     hold(carried, base + at.STATUS, run, status)
     hold(carried, base + at.CLOSED_SHARE, run, closed)
     hold(carried, base + at.LAST_NORMAL, run, normal)
@@ -163,7 +170,8 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
             driven = driven_work(i, touch, imposed.motion, n, run, runs, zero)
             add(state.energies, at.CONTACT_WORK, run, -driven, zero)
             add(state.energies, at.DRIVE_WORK, run, driven, zero)
-        lost = keep_forces(i, touch, moved, before, carried, contacts, closed, timing.step, run, runs, zero)
+        keep_state(i, moved[3], touch[2], before, carried, contacts, timing.step, run, runs, zero)
+        lost = keep_forces(i, touch, moved, carried, contacts, closed, run, zero)
         keep_tangential(i, touch[1], carried, sums, run, zero)
         add(state.energies, at.FRICTION_LOSS, run, lost, zero)
     keep_motion(i, moved, before, carried, run, zero)

@@ -88,15 +88,37 @@ def speed_scale(law, laws, i, state):
     return 2.0 * laws[i, 4] * math.exp(-min(exponent, 600.0))
 
 
+@numba.njit(inline="always", **STRICT)
+def bristles_over(laws, i, speed, step):
+    """Return what becomes of LuGre's bristles over a step at constant slip speed.
+
+    Returns
+    -------
+    kept : float
+        Share of their deflection that they keep.
+    share : float
+        Share of the slip that they take up.
+    passed, passed_slope, share_slope : float
+        Slip over the deflection at which they give way, its derivative by the speed, that of the share by it.
+    """
+    weakened = (laws[i, 0] - laws[i, 1]) * math.exp(-((speed / laws[i, 2]) ** 2))
+    limit = (laws[i, 1] + weakened) / laws[i, 3]
+    limit_slope = -2.0 * speed / (laws[i, 2] * laws[i, 2]) * weakened / laws[i, 3]
+    passed = speed * step / limit
+    passed_slope = step / limit * (1.0 - speed * limit_slope / limit)
+    kept = math.exp(-passed)
+    share = 1.0 - 0.5 * passed if passed < 1e-8 else -math.expm1(-passed) / passed
+    share_slope = passed / 3.0 - 0.5 if passed < 1e-4 else (kept - share) / passed
+    return kept, share, passed, passed_slope, share_slope
+
+
 @numba.njit(**STRICT)
 def next_state(law, laws, i, state, velocity, step):
     """Return the internal state after a step at constant slip velocity, exactly."""
     speed = abs(velocity)
     if law == at.LUGRE:
-        limit = (laws[i, 1] + (laws[i, 0] - laws[i, 1]) * math.exp(-((speed / laws[i, 2]) ** 2))) / laws[i, 3]
-        passed = speed * step / limit
-        share = 1.0 - 0.5 * passed if passed < 1e-8 else -math.expm1(-passed) / passed
-        return state * math.exp(-passed) + velocity * step * share
+        kept, share, _, _, _ = bristles_over(laws, i, speed, step)
+        return state * kept + velocity * step * share
     turned = speed * step / laws[i, 3]
     if law == at.AGING:
         share = 1.0 - 0.5 * turned if turned < 1e-8 else -math.expm1(-turned) / turned
@@ -128,14 +150,8 @@ def state_ratio_and_slope(law, laws, i, state, velocity, step):
     """Return the ratio of a law with internal state over a step, and its derivative by the slip velocity."""
     speed = abs(velocity)
     if law == at.LUGRE:
-        weakened = (laws[i, 0] - laws[i, 1]) * math.exp(-((speed / laws[i, 2]) ** 2))
-        limit = (laws[i, 1] + weakened) / laws[i, 3]
-        limit_slope = -2.0 * speed / (laws[i, 2] * laws[i, 2]) * weakened / laws[i, 3]
-        passed = speed * step / limit
-        passed_slope = math.copysign(step / limit * (1.0 - speed * limit_slope / limit), velocity)
-        kept = math.exp(-passed)
-        share = 1.0 - 0.5 * passed if passed < 1e-8 else -math.expm1(-passed) / passed
-        share_slope = passed / 3.0 - 0.5 if passed < 1e-4 else (kept - share) / passed
+        kept, share, _, by_speed, share_slope = bristles_over(laws, i, speed, step)
+        passed_slope = math.copysign(by_speed, velocity)
         new = state * kept + velocity * step * share
         new_slope = -state * kept * passed_slope + step * (share + velocity * share_slope * passed_slope)
         ratio = laws[i, 3] * 0.5 * (state + new) + laws[i, 4] * (new - state) / step + laws[i, 5] * velocity

@@ -12,6 +12,7 @@ from .bookkeeping import (
     keep_forces,
     keep_motion,
     keep_place,
+    keep_state,
     keep_tangential,
     share_states,
     store_in,
@@ -29,6 +30,7 @@ from .space import (
     direction,
     free_in_space,
     is_second,
+    keep_bristles,
     keep_second_anchor,
     on,
     pair_of,
@@ -100,9 +102,9 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
     forces = pair_of(now, here + at.TANGENTIAL_NOW, at.IN_STEP, run, zero)
     slips = pair_of(now, here + at.NEW_SLIP, at.IN_STEP, run, zero)
     free = pair_of(now, here + at.FREE_SLIP, at.IN_STEP, run, zero)
-    was, last, earlier, kept, last_normal, last_forces = carried_in_space(carried, i, run, zero)
+    was, last, earlier, states, last_normal, last_forces = carried_in_space(carried, i, run, zero)
     c, s = direction(forces, last_forces)
-    before = (was, on(last, c, s), on(earlier, c, s), kept, last_normal, on(last_forces, c, s))
+    before = (was, on(last, c, s), on(earlier, c, s), states[0], last_normal, on(last_forces, c, s))
     law = contacts.codes[i]
     store_in(i, held(now, here + at.NEW_GAP, run, zero), contacts, state, run, zero)
     if not set_valued(law) or anywhere(status + was > 0.5):
@@ -126,7 +128,11 @@ def keep_books_in_space(i, contacts, state, imposed, timing, n, run, runs, zero)
             driven += driven_work(i + 1, pushes[1], imposed.motion, n, run, runs, zero)
             add(state.energies, at.CONTACT_WORK, run, -driven, zero)
             add(state.energies, at.DRIVE_WORK, run, driven, zero)
-        lost = keep_forces(i, touch, moved, before, carried, contacts, closed, timing.step, run, runs, zero)
+        if law == at.LUGRE:
+            keep_bristles(i, slips, (was, last, earlier, states), status, carried, contacts, timing.step, run, runs)
+        else:
+            keep_state(i, moved[3], status, before, carried, contacts, timing.step, run, runs, zero)
+        lost = keep_forces(i, touch, moved, carried, contacts, closed, run, zero)
         add(state.energies, at.FRICTION_LOSS, run, lost, zero)
         for k in range(2):
             keep_tangential(i + k, forces[k], carried, contacts.sums, run, zero)

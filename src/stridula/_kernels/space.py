@@ -2,7 +2,7 @@
 
 The march has a pair of rows for each: the normal with the first tangent, then nothing with the second tangent. Friction
 acts along one direction u of the tangent plane. Along it the contact is one of the plane, and u is where no velocity is
-left across it.
+left across it. LuGre's bristles are not along the slip: see `bristles`.
 """
 
 import math
@@ -12,7 +12,8 @@ from numba.extending import overload
 
 from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
-from .contact import SLIDING, STICKING
+from .bristles import next_bristles, slide_on_bristles
+from .contact import SLIDING, STICKING, velocity_at
 from .faces import displace
 from .friction import STRICT
 from .lanes import choose, component, held, hold, lane, magnitude, spread, with_lane
@@ -133,7 +134,7 @@ def solve_along(c, s, free, law, laws, number, before, let_go, step):
             was,
             c * last[0] + s * last[1],
             c * earlier[0] + s * earlier[1],
-            state,
+            state[0],
             last_normal,
             c * last_forces[0] + s * last_forces[1],
         ),
@@ -165,10 +166,12 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
     """Return normal force, both tangential forces, status and whether it is jammed.
 
     Arguments are those of `contact.solve_contact`, with a number for each tangent; `before` are status, slips of the
-    last two steps, internal state, forces of the last step and a guess of those along the tangents.
+    last two steps, internal states, forces of the last step and a guess of those along the tangents.
     """
     if gap >= 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0
+    if law == at.LUGRE:
+        return slide_on_bristles(gap, slips, w, laws, number, before, step)
     first, second, held = sticking_direction(gap, slips[0] + strays[0], slips[1] + strays[1], w)
     may_hold = law != at.COULOMB or held <= laws[number, 0] or laws[number, 0] == 0.0
     was, last, guess = before[0], before[1], before[6]
@@ -284,7 +287,7 @@ def solve_runs_in_space(gap, slips, strays, w, law, laws, run, before, let_go, s
                 lane(before[0], i),
                 lane_of_pair(before[1], i),
                 lane_of_pair(before[2], i),
-                lane(before[3], i),
+                lane_of_pair(before[3], i),
                 lane(before[4], i),
                 lane_of_pair(before[5], i),
                 lane_of_pair(before[6], i),
@@ -309,9 +312,13 @@ def _overload_solve_in_space(gap, slips, strays, w, law, laws, run, before, let_
 
 @numba.njit(**OPTIONS)
 def carried_in_space(carried, i, run, zero):
-    """Return status, slips of the last two steps, internal state and forces of a contact in space."""
+    """Return status, slips of the last two steps, internal states and forces of a contact in space.
+
+    Only bristles have a state along the second tangent.
+    """
     first, second = carried_by(carried, i, run, zero), carried_by(carried, i + 1, run, zero)
-    return first[0], (first[1], second[1]), (first[2], second[2]), first[3], first[4], (first[5], second[5])
+    states = first[3], second[3]
+    return first[0], (first[1], second[1]), (first[2], second[2]), states, first[4], (first[5], second[5])
 
 
 @numba.njit(**PASTED)
@@ -327,8 +334,8 @@ def free_of_own(contacts, carried, i, run, runs, zero):
     slip = component(faces, 2 * i + 1, DISPLACEMENT, run, zero) - (w[3] * normal - w[4] * first - w[5] * second)
     swerve = component(faces, 2 * i + 3, DISPLACEMENT, run, zero) - (w[6] * normal - w[7] * first - w[8] * second)
     strays = strayed(carried, i, run, zero), strayed(carried, i + 1, run, zero)
-    was, last, earlier, state, last_normal, last_forces = carried_in_space(carried, i, run, zero)
-    before = (was, last, earlier, state, last_normal, last_forces, (first, second))
+    was, last, earlier, states, last_normal, last_forces = carried_in_space(carried, i, run, zero)
+    before = (was, last, earlier, states, last_normal, last_forces, (first, second))
     return (gap, (slip, swerve), strays, w, contacts.codes[i], i * runs + run, before), contacts.laws
 
 
@@ -417,3 +424,16 @@ def keep_second_anchor(i, status, was, carried, run, zero):
     anchor = held(carried, base + at.ANCHOR, run, zero)
     begun = choose(stuck, anchor, held(carried, base + at.MATERIAL, run, zero))
     hold(carried, base + at.ANCHOR, run, choose(sticks, begun, anchor))
+
+
+@numba.njit(**OPTIONS)
+def keep_bristles(i, slips, before, status, carried, contacts, step, run, runs):
+    """Carry the bristles of contact `i` to the next step; `before` are its status, the last two slips and these."""
+    was, last, earlier, states = before
+    velocity = (
+        velocity_at(slips[0], (was, last[0], earlier[0]), step),
+        velocity_at(slips[1], (was, last[1], earlier[1]), step),
+    )
+    first, second = next_bristles(contacts.laws, i * runs + run, status, states, velocity, step)
+    hold(carried, i * at.CARRIED + at.FRICTION_STATE, run, first)
+    hold(carried, (i + 1) * at.CARRIED + at.FRICTION_STATE, run, second)

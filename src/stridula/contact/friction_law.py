@@ -30,6 +30,8 @@ class FrictionLaw(ABC):
         SI unit of its internal state, empty without one.
     state_is_positive : bool
         Whether the internal state stays above zero.
+    state_is_vector : bool
+        Whether the internal state has a component along each tangent in space.
     """
 
     law: ClassVar[str]
@@ -38,6 +40,7 @@ class FrictionLaw(ABC):
     over_decades: ClassVar[bool] = False
     state_units: ClassVar[str] = ""
     state_is_positive: ClassVar[bool] = False
+    state_is_vector: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         check_declared(self)
@@ -51,6 +54,11 @@ class FrictionLaw(ABC):
     def state_at_start(self) -> float:
         """Internal state at the start, in its unit."""
         return 0.0
+
+    @property
+    def states_at_start(self) -> tuple[float, float]:
+        """Internal states at the start along both tangents of a contact in space, 0 along the second without one."""
+        return self.state_at_start, 0.0
 
     @property
     def state_at_landing(self) -> float:
@@ -77,6 +85,10 @@ class FrictionLaw(ABC):
     def linearised_at(self, velocity: float) -> Linearised:
         """Return small changes about steady sliding at `velocity` [m/s], not 0; none by default."""
         return Linearised()
+
+    def linearised_across(self, velocity: float) -> Linearised:
+        """Return small changes across steady sliding at `velocity` [m/s], not 0: by default friction turns with it."""
+        return Linearised(slope=float(self.coefficient_at(velocity)) / abs(velocity))
 
     @property
     def holding(self) -> float:

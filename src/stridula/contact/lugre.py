@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
 
 from ..arrays import Array
-from ..declared import Coefficient, Number, Position, PositiveRatio, Slope, Speed
+from ..checks import ArgumentError
+from ..declared import Coefficient, Number, OneOrEach, PositiveRatio, Slope, Speed
 from .friction_law import StaticAndKinetic
 from .linearised import Linearised
 from .weakening import stribeck_curve, stribeck_slope
@@ -22,6 +24,8 @@ class LuGre(StaticAndKinetic):
 
         z' = v - stiffness |v| z / g(v),    g(v) = kinetic + (static - kinetic) exp(-(v / velocity)²)
         tangential force = normal force * (stiffness z + damping z' + viscous v)
+
+    In space z, v and the force are vectors of the tangent plane, with |v| in g: bent bristles turn after the slip.
 
     All coefficients are per unit of normal force. The deflection moves exactly over a step at constant slip velocity
     and the force is solved for together with the contact, so that the step need not resolve the bristles. There is no
@@ -42,25 +46,38 @@ class LuGre(StaticAndKinetic):
         Damping of the bristles per unit of normal force [s/m], sigma1.
     viscous : float, optional
         Rise with speed per unit of normal force [s/m], sigma2.
-    initial_state : float, optional
-        Deflection of the bristles at the start [m]; in steady sliding at v it is ``sign(v) g(v) / stiffness``.
+    initial_state : float or sequence of float, optional
+        Deflection of the bristles at the start [m]; in steady sliding at v it is ``sign(v) g(v) / stiffness``. In space
+        along the first tangent, or two numbers, one for each.
     """
 
     law: ClassVar[str] = "lugre"
     set_valued: ClassVar[bool] = False
     state_units: ClassVar[str] = "m"
+    state_is_vector: ClassVar[bool] = True
     static: Coefficient
     kinetic: PositiveRatio
     velocity: Speed
     stiffness: Annotated[float, Number("1/m", above=0.0)]
     damping: Slope = 0.0
     viscous: Slope = 0.0
-    initial_state: Position = 0.0
+    initial_state: Annotated[float | Sequence[float], OneOrEach(Number("m"))] = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if np.size(self.initial_state) not in (1, 2):
+            raise ArgumentError("initial_state", "be one number, or two in space", self.initial_state)
 
     @property
     def state_at_start(self) -> float:
         """Deflection of the bristles at the start [m]; those of a contact that lands later are straight."""
-        return self.initial_state
+        return self.states_at_start[0]
+
+    @property
+    def states_at_start(self) -> tuple[float, float]:
+        """Deflection of the bristles at the start along both tangents [m]."""
+        first, *others = np.atleast_1d(self.initial_state).tolist()
+        return first, others[0] if others else 0.0
 
     def state_in_sliding(self, velocity: float, change: float = 0.0) -> float:
         """Return the deflection of the bristles [m] in steady sliding at `velocity` [m/s], not 0, and `change` more."""
@@ -96,6 +113,13 @@ class LuGre(StaticAndKinetic):
         return Linearised(
             self.damping * by_velocity + self.viscous, self.stiffness + self.damping * by_state, by_velocity, by_state
         )
+
+    def linearised_across(self, velocity: float) -> Linearised:
+        """Return small changes across steady sliding at `velocity` [m/s], not 0: the bristles turn after the slip."""
+        speed = abs(velocity)
+        curve = float(stribeck_curve(self.static, self.kinetic, self.velocity, 2.0, 0.0, speed))
+        by_state = -self.stiffness * speed / curve
+        return Linearised(self.damping + self.viscous, self.stiffness + self.damping * by_state, 1.0, by_state)
 
     def __str__(self) -> str:
         return f"LuGre, {self.static:.4g} to {self.kinetic:.4g}, bristles {self.stiffness:.3g} 1/m"

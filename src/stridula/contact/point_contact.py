@@ -127,11 +127,13 @@ class PointContact:
         if self.is_spatial:
             if self.path_body is not None:
                 raise ArgumentError("track", "be a RigidTrack or a BodyPoint for a body in space", self.track)
-            if self.friction.law == "lugre":
-                raise ArgumentError("friction", "be a law other than LuGre for a body in space", self.friction)
-        elif self.rigid_track is not None and self.rigid_track.lateral_velocity:
-            words = "be 0 under a body in the plane"
-            raise ArgumentError("track.lateral_velocity", words, self.rigid_track.lateral_velocity)
+            return
+        for name, across in (
+            ("track.lateral_velocity", self.rigid_track.lateral_velocity if self.rigid_track else 0.0),
+            ("friction.initial_state[1]", self.friction.states_at_start[1]),
+        ):
+            if across:
+                raise ArgumentError(name, "be 0 under a body in the plane", across)
 
     def _check_turning(self) -> None:
         for name, point in (("tip", self.tip), ("track", self.touched_point)):
@@ -186,6 +188,11 @@ class PointContact:
         """Whether a body in space touches, so that there are two tangents."""
         touched = self.touched_point
         return self.tip.body.is_spatial or (touched is not None and touched.body.is_spatial)
+
+    @property
+    def has_state_vector(self) -> bool:
+        """Whether the internal state of its law has a component along each of two tangents."""
+        return self.is_spatial and self.friction.state_is_vector
 
     @property
     def rigid_track(self) -> RigidTrack | None:

@@ -17,7 +17,7 @@ from ..records.dataset import RECORDED, over_time, to_dataset
 from ..records.plain import PlainRecord
 from ..records.provenance import scenario_toml
 from ..records.state import LAYOUT, State
-from ..records.variables import ALONG_TANGENTS, STATUS_SHARE
+from ..records.variables import ALONG_TANGENTS, FRICTION_STATE, STATUS_SHARE
 from ..system import System
 from ..version import __version__
 from .belief import Belief
@@ -205,7 +205,8 @@ class Run:
         record = pairs if firsts.all() else pairs[:, firsts]
         columns = {name: record[column] for name, column in CONTACT_COLUMN.items()}
         if not firsts.all():
-            columns |= {name: _along_both(pairs[CONTACT_COLUMN[name]], firsts) for name in ALONG_TANGENTS}
+            doubled = (*ALONG_TANGENTS, FRICTION_STATE.name) if self.system.has_state_vectors else ALONG_TANGENTS
+            columns |= {name: _along_both(pairs[CONTACT_COLUMN[name]], firsts) for name in doubled}
         sums = {name: energies[column] for name, column in ENERGY_COLUMN.items()}
         if "impact_loss" in self.wanted:
             sums["impact_loss"] = sums["convection_work"] - sums["friction_loss"] - sums["contact_work"]

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from .._kernels import layout as at
+from .._kernels.bristles import bristles_ratio, next_bristles_of_run
 from .._kernels.contact import SEPARATED, SLIDING, STICKING
 from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
 from ..arrays import Array
@@ -126,7 +127,11 @@ class _Start:
             number, whole = int(self.first[i]), float(self.slip_speeds[i])
             law = int(self.contacts.codes[number])
             share = speed / whole if whole else 0.0
-            if not set_valued(law):
+            if self.arrays.contacts[number].contact.has_state_vector:
+                pair = slice(number, number + 2)
+                states, speeds = tuple(carried[pair, at.FRICTION_STATE]), tuple(self.speeds[pair])
+                ratios[i] = bristles_ratio(laws, number, states, speeds, self.step)[i - number]
+            elif not set_valued(law):
                 # Forward in the sense of the slip: bristles may be bent either way.
                 sense = -1.0 if share == -1.0 else 1.0
                 found = state_ratio(law, laws, number, carried[number, at.FRICTION_STATE], sense * whole, self.step)
@@ -143,9 +148,11 @@ class _Start:
             carried[i, at.MATERIAL] = one.at + self.rows[i, 1] @ self.arrays.position
             carried[i, at.ABSCISSA] = one.at + self.fixed[i, 1] @ self.arrays.position
             carried[i, at.STATUS] = STICKING if self.is_closed[i] and self.slip_speeds[i] == 0.0 else SEPARATED
-            if one.is_second:
-                continue
-            carried[i, at.FRICTION_STATE] = self._state_before(i, one.contact.friction, float(self.speeds[i]))
+            if one.contact.has_state_vector:
+                carried[i, at.FRICTION_STATE] = self._bristles_before(int(self.first[i]))[i - self.first[i]]
+            elif not one.is_second:
+                speed = float(self.slip_speeds[i] if one.contact.is_spatial else self.speeds[i])
+                carried[i, at.FRICTION_STATE] = self._state_before(i, one.contact.friction, speed)
         carried[:, at.ANCHOR], carried[:, at.LAST_GAP] = carried[:, at.MATERIAL], self.gaps
         carried[:, at.EARLIER_GAP] = self.gaps - self.rows[self.first, 0] @ first - self.before[self.first, 2]
         carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - self.fixed[:, 1] @ first - tip
@@ -153,6 +160,12 @@ class _Start:
         # One step more back, under the same acceleration.
         carried[:, at.EARLIER_SLIP] = 3.0 * carried[:, at.LAST_SLIP] - 2.0 * self.step * self.speeds
         return carried
+
+    def _bristles_before(self, number: int) -> Array:
+        """Return the bristles of a contact in space half a step before the start, as `_state_before`."""
+        states, speeds = (tuple(values[number : number + 2]) for values in (self.arrays.friction_state, self.speeds))
+        after = next_bristles_of_run(self.contacts.laws, number, float(SLIDING), states, speeds, self.step / 2.0)
+        return np.asarray(2.0 * np.array(states) - np.array(after))
 
     def _state_before(self, i: int, law: FrictionLaw, velocity: float) -> float:
         """Return the internal state of a law half a step before the start: the march keeps it between the steps."""

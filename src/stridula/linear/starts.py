@@ -39,8 +39,8 @@ class Start:
     ----------
     position, velocity : ndarray, shape (modes,)
         Modal positions and velocities.
-    friction_state : ndarray, shape (contacts,)
-        Internal states of the laws of friction.
+    friction_state : ndarray, shape (contacts, 2)
+        Internal states of the laws of friction along both tangents; of bristles in space alone is there a second one.
     """
 
     position: Array
@@ -64,15 +64,15 @@ def start_of(system: System, asked: InitialEquilibrium) -> Start:
     along = np.array([line.along for line in structure.lines])
     slides = np.array([one != STICKING for one in at.status])
     velocity = moves + travelling(structure, at, slides * (structure.rates[0] + along @ moves))
-    position, states = at.displacement, np.zeros(len(structure.lines))
+    position, states = at.displacement, np.zeros((len(structure.lines), 2))
     if asked.mode is not None:
         shape, exponent, changes = _mode(structure, at, asked)
         position = position + shape.real
         velocity = velocity + (exponent * shape).real
         states = changes.real
     laws = [contact.friction for contact in system.contacts]
-    slips = at.slip_velocity.tolist()
-    friction_state = [_state(*one) for one in zip(laws, slips, states.tolist(), strict=True)]
+    slips, ways = at.slip_velocity.tolist(), structure.ways.tolist()
+    friction_state = [_states(*one) for one in zip(laws, slips, ways, states.tolist(), strict=True)]
     return Start(_closed(whole, at.status, position), velocity, np.array(friction_state))
 
 
@@ -132,7 +132,10 @@ def _check(structure: Structure, at: Equilibrium, status: Sequence[str] | None) 
 
 
 def _mode(structure: Structure, at: Equilibrium, asked: InitialEquilibrium) -> tuple[Array, complex, Array]:
-    """Return the displacements of a mode as large as asked for, its exponent, and changes of the states of friction."""
+    """Return the displacements of a mode as large as asked for, its exponent, and changes of the states of friction.
+
+    These have the shape (contacts, 2), along the slip and across it.
+    """
     motion = vibration(structure, at)
     found = modes_of(structure, motion)
     number = _number(found.values, asked.mode, round_off(structure))
@@ -141,10 +144,10 @@ def _mode(structure: Structure, at: Equilibrium, asked: InitialEquilibrium) -> t
     if not largest:
         raise ArgumentError("mode", "be one that moves a contact point", got=f"{number}, which moves none")
     shape = shape * (asked.amplitude * np.exp(1.0j * asked.phase) / largest)
-    states = np.zeros(len(structure.lines), dtype=complex)
-    known = [k for k, contact in enumerate(structure.system.contacts) if contact.friction.has_state]
+    states = np.zeros((len(structure.lines), 2), dtype=complex)
     rates = motion.from_velocity @ (exponent * shape) + motion.from_displacement @ shape
-    states[[k for k in known if at.slip_velocity[k]]] = rates / (exponent - motion.state)
+    for owner, change in zip(motion.owners, rates / (exponent - motion.state), strict=True):
+        states[owner[0], int(owner[1])] = change
     return shape, exponent, states
 
 
@@ -184,6 +187,14 @@ def _closed(whole: Structure, status: Sequence[str], position: Array) -> Array:
     return position
 
 
-def _state(law: FrictionLaw, slip: float, change: float) -> float:
-    """Return the internal state of a law in steady sliding at a slip velocity [m/s], moved in its sense by a change."""
-    return law.state_in_sliding(slip, change) if slip else law.state_at_start
+def _states(law: FrictionLaw, slip: float, way: Sequence[float], change: Sequence[float]) -> tuple[float, float]:
+    """Return the internal states of a law in steady sliding at a slip velocity [m/s] along a way among the tangents.
+
+    They are moved by changes in its sense and across the way.
+    """
+    if not slip:
+        return law.states_at_start
+    along = law.state_in_sliding(slip, change[0])
+    if not law.state_is_vector:
+        return along, 0.0
+    return way[0] * along - way[1] * change[1], way[1] * along + way[0] * change[1]

@@ -46,6 +46,8 @@ class Vibration:
         How states act, and how motion moves them.
     state : ndarray, shape (states,)
         How each moves itself [1/s].
+    owners : tuple of (int, bool)
+        The contact that each state is of, and whether it is the one across the slip.
     free : ndarray, shape (modes, motions)
         Rigid motions that nothing holds, orthonormal: only their velocity counts, since the contact point is taken
         where it is.
@@ -60,6 +62,7 @@ class Vibration:
     from_velocity: Array
     from_displacement: Array
     state: Array
+    owners: tuple[tuple[int, bool], ...]
     free: Array
 
 
@@ -72,7 +75,7 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
     stiffness, damping = structure.stiffness.copy(), structure.damping.copy()
     share, passing = equilibrium.sense * equilibrium.ratio, structure.passing
     held, pushes, closed, stuck = held_rows(structure, equilibrium.status, share)
-    held, answers = held.copy(), []
+    held, answers = held.copy(), list[_Answer]()
     for row, k in enumerate(closed):
         line, shape = structure.lines[k], equilibrium.displacement
         held[row] -= (line.normal_slope @ shape) * line.along
@@ -87,17 +90,10 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
                     "status", f"not let {name} stick to a body that turns: it is carried away", STICKING
                 )
             held[len(closed) + stuck.index(k)] = slip
-        law = structure.system.contacts[k].friction
-        if equilibrium.slip_velocity[k] and equilibrium.status[k] == SLIDING:
-            # Across the slip friction turns with it.
-            turning = equilibrium.ratio[k] * normal / abs(float(equilibrium.slip_velocity[k]))
-            damping += turning * np.outer(line.across, line.across)
-            stiffness += turning * np.outer(line.across, line.across @ passing)
-        if equilibrium.slip_velocity[k] and law.depends_on_speed:
-            near = law.linearised_at(abs(float(equilibrium.slip_velocity[k])))
-            damping += normal * near.slope * np.outer(line.tangent, slip)
-            stiffness += normal * near.slope * np.outer(line.tangent, slip @ passing)
-            answers.append((near, equilibrium.sense[k], normal, line.tangent, slip))
+        for one in _answers(structure, equilibrium, k, slip):
+            damping += one.normal * one.near.slope * np.outer(one.pull, one.slip)
+            stiffness += one.normal * one.near.slope * np.outer(one.pull, one.slip @ passing)
+            answers.append(one)
     free = structure.free_motions(held)
     for row, k in enumerate(closed):
         yields = structure.system.contacts[k].yields
@@ -107,20 +103,54 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
             damping += rate * np.outer(pushes[row], held[row])
     rigid = rigid_rows(structure, closed, len(held))
     held, pushes = held[rigid], pushes[rigid]
-    by_state, from_velocity, state = _states(answers, structure)
-    moved = from_velocity, from_velocity @ passing
-    return Vibration(structure.mass, stiffness, damping, held, pushes, by_state, *moved, state, free)
+    by_state, from_velocity, state = _states(kept := [one for one in answers if one.near.state_by_state], structure)
+    moved, owners = (from_velocity, from_velocity @ passing), tuple(one.owner for one in kept)
+    return Vibration(structure.mass, stiffness, damping, held, pushes, by_state, *moved, state, owners, free)
 
 
-def _states(
-    answers: list[tuple[Linearised, float, float, Array, Array]], structure: Structure
-) -> tuple[Array, Array, Array]:
+@dataclass(frozen=True)
+class _Answer:
+    """What friction does in small motions along the slip of a contact, or across it.
+
+    Attributes
+    ----------
+    owner : tuple of (int, bool)
+        The contact, and whether across.
+    near : Linearised
+        Small changes of the ratio and of the state, in the sense of sliding.
+    sense, normal : float
+        That sense, and the normal force [N].
+    pull, slip : ndarray, shape (modes,)
+        How the tangential force acts, and what slips.
+    """
+
+    owner: tuple[int, bool]
+    near: Linearised
+    sense: float
+    normal: float
+    pull: Array
+    slip: Array
+
+
+def _answers(structure: Structure, equilibrium: Equilibrium, k: int, slip: Array) -> list[_Answer]:
+    """Return what friction does across the slip of contact `k`, where it can move so, and along it."""
+    line, law = structure.lines[k], structure.system.contacts[k].friction
+    speed, normal = abs(float(equilibrium.slip_velocity[k])), float(equilibrium.normal_force[k])
+    found = []
+    if speed and equilibrium.status[k] == SLIDING and line.across.any():
+        found.append(_Answer((k, True), law.linearised_across(speed), 1.0, normal, line.across, line.across))
+    if speed and law.depends_on_speed:
+        sense = float(equilibrium.sense[k])
+        found.append(_Answer((k, False), law.linearised_at(speed), sense, normal, line.tangent, slip))
+    return found
+
+
+def _states(answers: list[_Answer], structure: Structure) -> tuple[Array, Array, Array]:
     """Return how the internal states of laws act, how motion moves them, and how they move themselves."""
-    kept = [one for one in answers if one[0].state_by_state]
-    size = structure.mode_count, len(kept)
-    by_state = np.array([sense * normal * near.by_state * tangent for near, sense, normal, tangent, _ in kept])
-    moved = np.array([sense * near.state_by_velocity * slip for near, sense, _, _, slip in kept])
-    own = np.array([near.state_by_state for near, *_ in kept])
+    size = structure.mode_count, len(answers)
+    by_state = np.array([one.sense * one.normal * one.near.by_state * one.pull for one in answers])
+    moved = np.array([one.sense * one.near.state_by_velocity * one.slip for one in answers])
+    own = np.array([one.near.state_by_state for one in answers])
     return by_state.reshape(size[::-1]).T, moved.reshape(size[::-1]), own
 
 

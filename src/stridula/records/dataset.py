@@ -116,8 +116,12 @@ def over_time(
     units = _units_of_states(system)
     if FRICTION_STATE.name in wanted and any(units):
         # NaN for contacts whose law has no state.
-        kept = np.where(np.array(units)[:, None] != "", contact_columns[FRICTION_STATE.name], np.nan).T
-        found[FRICTION_STATE.name] = (along, kept)
+        kept = np.swapaxes(contact_columns[FRICTION_STATE.name], 0, 1).copy()
+        kept[:, np.array(units) == ""] = np.nan
+        if kept.ndim > 2:
+            # Another law than one of bristles has one state in space, too.
+            kept[:, [not contact.has_state_vector for contact in system.contacts], 1] = np.nan
+        found[FRICTION_STATE.name] = ((*along, "tangent")[: kept.ndim], kept)
     if len(system.contacts) > 1:
         solved = [one.name for one in SOLVE if one.name in wanted]
         return found | {name: (("time",), energies[name].astype(np.int64)) for name in solved}
