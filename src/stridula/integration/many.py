@@ -210,7 +210,13 @@ def _kind(arrays: Arrays, most_modes: int | None) -> Hashable | None:
         return None
     contacts = tuple((one.bending, one.axial, one.is_second, _waves(one), _law(one)) for one in flat.contacts)
     probes = tuple(type(probe) for probe in arrays.probes)
-    return flat.mode_count, flat.coupled, contacts, len(flat.loads), probes
+    return flat.mode_count, flat.coupled, contacts, _turned(flat), len(flat.loads), probes
+
+
+def _turned(flat: Any) -> Hashable:
+    """Return which modes are carried round in pairs, and round which bodies contacts move."""
+    bodies = tuple((one.span, one.pairs.tobytes(), one.has_circle) for one in flat.turning)
+    return bodies, tuple(one.circle and one.circle.span for one in flat.contacts)
 
 
 def _law(one: ContactRows) -> Hashable:

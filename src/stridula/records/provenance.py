@@ -78,6 +78,10 @@ def _general(system: System, probed: Sequence[BodyPoint]) -> dict[str, Any]:
             return {"kind": rigid.kind, **_plain(rigid, "history", "normal_history"), **_histories(rigid)}
         if body is not None:
             return {"kind": body.kind.removeprefix("modal "), "body": system.body_name(body)}
+        if contact.circle is not None:
+            circle = contact.circle
+            velocity = {"velocity": circle.velocity, **_histories(circle)} if circle.velocity else {}
+            return {"kind": "circle", **place(circle), **velocity}
         return {"kind": "point", **(place(touched) if touched is not None else {})}
 
     tables: dict[str, Any] = {
