@@ -528,7 +528,7 @@ def _turning(layout: _Layout) -> tuple[TurningModes, ...]:
     return tuple(found)
 
 
-def _check_round(layout: _Layout, body: Any, turning: Turning) -> None:
+def _check_round(layout: _Layout, body: Any, turning: Any) -> None:
     """Raise unless a body is the same all round."""
     name, modes = layout.system.body_name(body), layout.modes(body)
     if not turning.pairs:

@@ -171,7 +171,8 @@ class System:
     def _check_turning(self) -> None:
         for number, connection in enumerate(self.connections):
             for point in ends(connection):
-                if getattr(point.body, "turning", None):
+                turning = getattr(point.body, "turning", None)
+                if getattr(turning, "velocity", turning):
                     name = self.body_name(point.body)
                     raise ArgumentError(f"connections[{number}]", "leave a body that turns", got=f"one to {name}")
 

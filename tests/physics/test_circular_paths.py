@@ -66,11 +66,14 @@ def carried_past(velocity: float):
     plate = disc(1.0)
     modes, point = plate.modes(), plate.at(HERE)
     turning = Turning(-velocity / RADIUS, modes.turning.pairs, modes.turning.order, modes.turning.order)
-    speed = -velocity * plate.direction_round(HERE)
+    speed = -velocity * plate.circle(HERE).direction(0.0)
     rows = {"here": plate.trace(HERE)}
     words = {"turning": turning, "velocities": {"here": speed}, "name": "disc"}
     body = st.ModalBody(modes.angular_frequency, rows, modes.damping_rate, modes.translation, **words)
-    return lambda abscissa: (st.BodyPoint(body, "here"), {"tangent": tuple(plate.direction_round(point.position))})
+    return lambda abscissa: (
+        st.BodyPoint(body, "here"),
+        {"tangent": tuple(plate.circle(point.position).direction(0.0))},
+    )
 
 
 def forces(run) -> np.ndarray:
@@ -96,8 +99,8 @@ def test_without_travel_of_its_own_a_circle_is_a_fixed_point(tracks, scheme):
             for track in (circle, point)
         ]
         apart.append(np.abs(forces(runs[0]) - forces(runs[1]))[:, 0].max())
-        travels.append(np.abs(runs[1].contact_position.values.reshape(-1, 2)[:, 0]).max())
-    assert travels[0] < 1e-6
+        carried = (speed if circle is on_a_circle_at else 0.0) * runs[0].time.values
+        travels.append(np.abs(runs[0].contact_position.values.reshape(-1, 2)[:, 0] - carried).max())
     assert apart[2] > 1e-7
     for k in (0, 1):
         assert travels[k] / travels[k + 1] == pytest.approx(2.0, rel=0.01)
@@ -206,7 +209,7 @@ def test_energy_is_kept_and_laws_hold_in_every_step(case, scheme):
     assert float(np.abs(run.ledger_residual).max()) < 1e-10 * largest
     normal = run.normal_force.values.reshape(run.time.size, -1)
     pulled = np.hypot(*np.moveaxis(run.tangential_force.values.reshape(*normal.shape, 2), -1, 0))
-    gap = run.contact_gap.values.reshape(normal.shape)
+    gap = run.gap.values.reshape(normal.shape)
     assert (normal >= 0.0).all()
     assert (pulled <= 0.4 * normal * (1.0 + 1e-9) + 1e-9).all()
     assert (np.abs(gap) * normal).max() < 1e-12 * normal.max()
@@ -230,8 +233,8 @@ def test_what_is_lost_in_impacts_is_small_where_nothing_lifts_off():
         assert (run.normal_force > 0.0).all()
         lost.append(float(np.abs(run.impact_loss).max()))
         share = float(np.abs(run.convection_work).max())
-    assert share > 20.0 * lost[1]
-    assert lost[1] < 0.7 * lost[0]
+    assert share > 10.0 * lost[1]
+    assert lost[0] / lost[1] == pytest.approx(2.0, rel=0.01)
 
 
 def test_several_contacts_on_a_circle_are_one_body_round():
@@ -346,10 +349,10 @@ BAD = {
         lambda: st.AxisymmetricBody(
             st.RectangleProfile({"disc": ((0.0, 0.1), (0.0, 0.01))}), STEEL, 4000.0, "outer"
         ).circle((0.0, 0.0, 0.01)),
-        "position must be .* with r above 0",
+        "position must be off the axis",
     ),
     "outside": (lambda: disc().circle((0.5, 0.0, 0.01)), "position must be .* in the profile"),
-    "velocity": (lambda: disc().circle(HERE, np.inf), "velocity must be a finite number"),
+    "velocity": (lambda: disc().circle(HERE, np.inf), "velocity must be finite"),
     "linear": (
         lambda: st.sliding_stability(riders(on_a_circle(velocity=1.0))),
         "must not be carried along its circle .* in linear theory",

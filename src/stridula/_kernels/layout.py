@@ -27,8 +27,9 @@ TIP_MOTION, TRACK_MOTION, GAP_MOTION = range(3)
 MOTIONS = 3
 
 # Constants of a contact: where it starts, its gap, the ends of its path, rate along the path and value at abscissa zero
-# of the two angles whose sines the modes of the path are, on a circle of the angle from where it starts, ratio at rest of the law of friction; stiffness of the
-# contact itself, 0 of a rigid one, its exponent, damping, and damping rate over the force.
+# of the two angles whose sines the modes of the path are, on a circle of the angle from where it starts, ratio at rest
+# of the law of friction; stiffness of the contact itself, 0 of a rigid one, its exponent, damping, and damping rate
+# over the force.
 (
     START,
     GAP,

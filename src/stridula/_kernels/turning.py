@@ -16,8 +16,8 @@ from .modes import OPTIONS, PASTED, product
 # Of a block: drag and order; one less the cosine, and the sine, of the turn of the pairs in this step and in the last,
 # and of that of the material in both.
 DRAG, ORDER, VERSINE, SINE, LAST_VERSINE, LAST_SINE, PASSED_VERSINE, PASSED_SINE, MET_VERSINE, MET_SINE = range(10)
-# For contacts that move round the body: half the rise and half the advance for units of the modes, where the material has
-# been carried to, as its modes, and the modes two steps before the end of this one.
+# For contacts that move round the body: half the rise and half the advance for units of the modes, where the material
+# has been carried to, as its modes, and the modes two steps before the end of this one.
 RISEN, ADVANCED, PASSED, EARLIER = range(10, 14)
 # An odd number of vectors, as for the modes.
 TURN_ROWS = 15

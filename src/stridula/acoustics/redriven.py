@@ -120,7 +120,7 @@ def _of_contacts(flat: Assembly, normal: Array, tangential: Array) -> tuple[Arra
 
 
 def _gone_round(flat: Assembly, rows: Array, signals: Array, places: Array) -> tuple[Array, Array]:
-    """Return rows and forces where contacts on circles push each pair of modes by itself, as it is where they have got to.
+    """Return rows and forces where contacts on circles push each pair of modes by itself, as it is where they are.
 
     `places` are their abscissas at the end of each interval [m], shape (contacts, samples).
     """

@@ -304,9 +304,11 @@ class AxisymmetricBody:
         r, theta, _ = self._position(position)
         return np.asarray(self.turning * r * self._directions(theta)[1])
 
-    def direction_round(self, position: Any) -> Array:
-        """Return the world components of the direction round the axis at a point (r, theta, z), shape (3,)."""
-        return np.asarray(self._directions(self._position(position)[1])[1])
+    def circle_at(self, position: Any, abscissa: float | None = None) -> tuple[float, Any, Array]:
+        """Return the radius of a point's circle [m], the point at an abscissa [m], its direction there, shape (3,)."""
+        r, theta, z = self._position(position)
+        theta += (abscissa or 0.0) / r if r > 0.0 else 0.0
+        return r, (r, theta, z), self._directions(theta)[1]
 
     @property
     def waves_round(self) -> Turning:

@@ -19,14 +19,14 @@ from .modes import BodyPoint
 class CircularPath(BodyPoint):
     """The circle through a point of a body of revolution, round its axis: a track without ends.
 
-    The abscissa is the distance along it from that point, in the sense of the angle theta.
+    The abscissa is the distance along it, in the sense of the angle theta.
 
     Parameters
     ----------
-    body : AxisymmetricBody
+    body : AxisymmetricBody or ModalBody
         The body.
-    position : tuple of float
-        The point (r, theta, z) where the abscissa is zero [m, rad, m].
+    position : tuple of float or str
+        The point: (r, theta, z) where the abscissa is zero [m, rad, m], or the name of a point with a circle.
     velocity : float, optional
         Velocity at which what slides on it is carried along as a whole [m/s], as by an arm that turns about the axis:
         its displacements are those against that arm.
@@ -44,10 +44,10 @@ class CircularPath(BodyPoint):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not hasattr(self.body, "direction_round"):
+        if not hasattr(self.body, "circle_at"):
             raise ArgumentError("body", "be a body of revolution", self.body)
         if not self.radius > 0.0:
-            raise ArgumentError("position", "be (r, theta, z) with r above 0", self.position)
+            raise ArgumentError("position", "be off the axis, r above 0", self.position)
         check_declared(self)
         instance("history", self.history, HISTORIES)
 
@@ -59,8 +59,7 @@ class CircularPath(BodyPoint):
     @property
     def radius(self) -> float:
         """Distance from the axis [m]."""
-        position: Any = self.position
-        return float(position[0])
+        return float(self._place(None)[0])
 
     @property
     def length(self) -> float:
@@ -69,14 +68,16 @@ class CircularPath(BodyPoint):
 
     def point_at(self, abscissa: float) -> BodyPoint:
         """Return the point at an abscissa [m]."""
-        position: Any = self.position
-        r, theta, z = position
-        return BodyPoint(self.body, (r, theta + abscissa / r, z))
+        return BodyPoint(self.body, self._place(abscissa)[1])
 
     def direction(self, abscissa: float) -> Array:
         """Return the world components of its direction at an abscissa [m], shape (3,)."""
+        return np.asarray(self._place(abscissa)[2])
+
+    def _place(self, abscissa: float | None) -> tuple[float, Any, Array]:
         body: Any = self.body
-        return np.asarray(body.direction_round(self.point_at(abscissa).position))
+        found: tuple[float, Any, Array] = body.circle_at(self.position, abscissa)
+        return found
 
     def travel(self, time: Array) -> Array:
         """Return how far what slides on it has been carried along [m]."""

@@ -352,12 +352,14 @@ class Builder:
             return RigidTrack(**{name: value for name, value in table.items() if value is not None})
 
     def _circle(self, path: Place, table: Tables) -> Any:
-        body = self._body_of_kind((*path, "body"), table["body"], AxisymmetricBody.kind)
+        body = self.bodies[table["body"]]
+        if not hasattr(body, "circle"):
+            problem = f"must be a body of revolution, got {brief(table['body'])}"
+            self.problems.append(f"{self.words((*path, 'body'))} {problem}")
+            return None
         history = table.get("history")
         if history is not None:
             history = self._history((*path, "history"), history)
-        if body is None:
-            return None
         with self._within(*path):
             try:
                 return body.circle(table["point"], table.get("velocity", 0.0), history)
