@@ -228,6 +228,8 @@ def _body_line(name: str, body: Any) -> str:
 
 def _contact_line(name: str, contact: PointContact) -> str:
     kind = " on a rigid track" if contact.rigid_track else " against a point"
+    if contact.circle is not None:
+        kind = f" of a circle of {contact.circle.length:.4g} m"
     if contact.path_body is not None:
         low, high = contact.path_body.ends
         kind = f" of {high - low:.4g} m"

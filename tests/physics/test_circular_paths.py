@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import stridula as st
+from stridula.acoustics.redriven import redriven
+from stridula.assembly import assemble
 from stridula.bodies import Turning
 
 from .test_equilibrium_starts import growth, starting
@@ -333,6 +335,28 @@ def test_a_start_in_equilibrium_stays_there(scheme):
     assert swings[0] == pytest.approx(2.0 * swings[1], rel=0.02)
 
 
+# Sound.
+
+
+def test_a_disc_that_is_ridden_round_is_driven_again_as_it_moved():
+    """From the forces and the places of a record, the acceleration of a point of the disc."""
+    system = riders(on_a_circle(velocity=20.0), friction=0.3, stiffness=1e5)
+    plate, place = system.track, (0.1, 2.0, 0.01)
+    run = st.simulate(system, 0.03, step=2e-6, sample_rate=1e5, probes=[st.Acceleration(plate.at(place), "z")])
+    known, late = run.acceleration.values.ravel(), slice(400, -200)
+
+    def again(record):
+        moved = redriven(record, system)
+        first, end = assemble(system).spans[system.body_name(plate)]
+        found = plate.trace(place)[2] @ moved.accelerations[first:end]
+        return np.interp(run.time.values, moved.first + moved.interval * np.arange(found.size), found)
+
+    assert np.abs(again(run) - known)[late].max() < 0.05 * np.abs(known[late]).max()
+    # Forces that stay where they began would move it otherwise.
+    stays = run.assign(contact_position=0.0 * run.contact_position)
+    assert np.abs(again(stays) - known)[late].max() > 0.2 * np.abs(known[late]).max()
+
+
 # Errors.
 
 
@@ -353,6 +377,10 @@ BAD = {
     ),
     "outside": (lambda: disc().circle((0.5, 0.0, 0.01)), "position must be .* in the profile"),
     "velocity": (lambda: disc().circle(HERE, np.inf), "velocity must be finite"),
+    "step": (
+        lambda: st.simulate(riders(on_a_circle(velocity=3e4)), 1e-4, step=2e-6),
+        "step must be at most .* s: a contact passes over waves by at most 0.5 rad",
+    ),
     "linear": (
         lambda: st.sliding_stability(riders(on_a_circle(velocity=1.0))),
         "must not be carried along its circle .* in linear theory",

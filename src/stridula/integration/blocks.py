@@ -301,16 +301,22 @@ class Blocks:
         return tuple(sorted({*range(len(self.modes.loads)), *(int(j) for j in taken)}))
 
 
+def _check_turned(rate: float, step: float, words: str) -> None:
+    """Raise where waves turn at a rate [rad/s] by too much in a step."""
+    if rate * step > MOST_TURNED:
+        limit = f"be at most {at_most(MOST_TURNED / rate)} s: {words} at most {MOST_TURNED} rad"
+        raise ArgumentError("step", limit, step)
+
+
 def blocks_of(arrays: Assembly, scheme: Scheme, step: float) -> Blocks:
     """Return a system under a scheme as the march reads it."""
     modes = recurrence(arrays, scheme, step)
     for one in arrays.turning:
-        fastest = abs(one.turning.velocity) * max(one.turning.order)
-        if fastest * step > MOST_TURNED:
-            words = (
-                f"be at most {at_most(MOST_TURNED / fastest)} s: the waves of a body turn by at most {MOST_TURNED} rad"
-            )
-            raise ArgumentError("step", words, step)
+        _check_turned(abs(one.turning.velocity) * max(one.turning.order), step, "the waves of a body turn by")
+    for pair in arrays.contacts:
+        if pair.circle is not None and pair.contact.circle is not None:
+            passed = abs(pair.contact.circle.velocity) * pair.rate * max(pair.circle.turning.order)
+            _check_turned(passed, step, "a contact passes over waves by")
     turning = tuple(
         TurningBlocks(
             one.pairs,
