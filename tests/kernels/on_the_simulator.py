@@ -9,6 +9,7 @@ import json
 
 import numpy as np
 from physics.cases import dragged, pair, slider, track, transverse
+from physics.test_circular_paths import on_a_circle, riders
 
 import stridula as st
 from stridula._kernels import layout as at
@@ -58,12 +59,20 @@ def off_the_track() -> list[st.System]:
     ]
 
 
+def round_a_disc() -> list[st.System]:
+    return [
+        riders(on_a_circle(turning, velocity, cutoff=1500.0), abscissas=(0.0, 0.1), gap=1e-9)
+        for turning, velocity in ((0.0, 20.0), (30.0, 5.0), (-40.0, 0.0))
+    ]
+
+
 CASES = {
     "coulomb on a beam": coulomb_on_a_beam,
     "shaken force": shaken_force,
     "stribeck on a belt": lambda: on_a_belt(st.Stribeck(0.6, 0.35, 0.01)),
     "lugre on a belt": lambda: on_a_belt(st.LuGre(0.6, 0.4, 0.01, stiffness=1e5, damping=10.0)),
     "off the track": off_the_track,
+    "round a disc": round_a_disc,
 }
 
 
