@@ -128,6 +128,23 @@ def test_a_rider_that_goes_round_is_one_that_stands_on_a_disc_that_turns(scheme)
     assert abs(float(runs[0].convection_work[-1])) > 0.02 * given[1]
 
 
+def test_what_sticks_is_carried_round_with_the_disc():
+    """A mass that nothing holds is brought to the speed of the disc, and stays where it is on it, for two turns."""
+    turning, friction, mass = 20.0, 1.0, 0.02
+    system = riders(on_a_circle(turning), friction=friction, stiffness=0.0, mass=mass)
+    run = st.simulate(system, 0.7, step=4e-6, sample_rate=1e4, probes=[])
+    assert run.attrs["ended"] == "finished"
+    status, place = run.status.values.ravel(), run.contact_position.values.reshape(-1, 2)
+    held = int(np.flatnonzero(status != 1)[-1]) + 1
+    speed = turning * RADIUS
+    assert run.time.values[held] == pytest.approx(speed * mass / (friction * 50.0), abs=2e-4)
+    assert place[-1, 0] > 2.0 * disc().circle(HERE).length
+    passed = place[held:, 0] - place[held, 0] - speed * (run.time.values[held:] - run.time.values[held])
+    # But for what the disc itself swings, and no more at the end.
+    assert np.abs(passed).max() < 1e-6
+    assert np.abs(passed[-100:]).max() < 2.0 * np.abs(passed[:100]).max()
+
+
 # Against a plain march.
 
 
