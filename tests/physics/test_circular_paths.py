@@ -316,6 +316,58 @@ def test_a_run_goes_on_to_the_last_bit_and_runs_again(turning, tmp_path):
     assert again.attrs["scenario"] == whole.attrs["scenario"]
 
 
+SCENARIO = """
+[bodies.disc]
+kind = "axisymmetric"
+profile = { shape = "rectangle", inner = "30 mm", outer = "150 mm", bottom = 0.0, top = "10 mm" }
+material = { young = "210 GPa", density = 7850, poisson = 0.3 }
+cutoff = "4 kHz"
+held = ["inner"]
+damping = 0.002
+
+[bodies."pad 0"]
+kind = "rigid body"
+mass = 0.2
+points = { tip = [0, 0, 0] }
+
+[[contacts]]
+tip = { body = "pad 0", point = "tip" }
+at = 0.1
+normal = [0, 0, 1]
+friction = { law = "coulomb", coefficient = 0.3 }
+
+[contacts.track]
+kind = "circle"
+body = "disc"
+point = [0.14, 0.3, 0.01]
+velocity = "20 m/s"
+history = { kind = "ramp", duration = "0.5 ms" }
+
+[[drives]]
+kind = "force"
+body = "pad 0"
+point = "tip"
+z = -50.0
+
+[simulation]
+duration = "1 ms"
+step = "2 us"
+"""
+
+
+def test_scenarios_have_circles(tmp_path):
+    file = tmp_path / "round.toml"
+    file.write_text(SCENARIO)
+    system = riders(on_a_circle(velocity=20.0, history=st.Ramp(5e-4)), stiffness=0.0, abscissas=(0.1,))
+    found = st.load_scenario(file).simulate()
+    known = st.simulate(system, 1e-3, step=2e-6, sample_rate=1.0 / float(np.diff(found.time.values)[0]), probes=[])
+    np.testing.assert_allclose(forces(found), forces(known), rtol=1e-12)
+    block = '[bodies.disc]\nkind = "rigid body"\nmass = 1.0\npoints = { tip = [0, 0, 0] }\n'
+    file.write_text(block + SCENARIO[SCENARIO.index('[bodies."pad 0"]') :])
+    with pytest.raises(st.ScenarioError, match=r"track\.body must be a body of revolution"):
+        st.load_scenario(file)
+
+
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_a_disc_on_springs_is_ridden_round_too(scheme):
     """A spring of no stiffness to speak of couples the modes of the disc, which are then marched in matrices."""
