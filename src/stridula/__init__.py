@@ -12,6 +12,7 @@ _HOME = {
         "AxisymmetricBody",
         "BodyPoint",
         "Circle",
+        "CircularPath",
         "FiniteElementBeam",
         "Held",
         "Line",

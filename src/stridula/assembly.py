@@ -46,6 +46,46 @@ class ProbeRows:
 
 
 @dataclass(frozen=True)
+class TurningModes:
+    """The modes of a body that turns.
+
+    Attributes
+    ----------
+    turning : Turning
+        How it turns.
+    pairs : ndarray of int, shape (pairs, 2)
+        Numbers of the modes of each pair.
+    span : tuple of int
+        First mode of the body and the one after its last.
+    has_circle : bool
+        Whether a contact moves round it.
+    """
+
+    turning: Turning
+    pairs: Array
+    span: tuple[int, int] = (0, 0)
+    has_circle: bool = False
+
+    @property
+    def orders(self) -> Array:
+        """Number of waves round the axis of each pair, shape (pairs,)."""
+        return np.array(self.turning.order)
+
+    @property
+    def others(self) -> Array:
+        """Numbers of the modes of the body that are the same all round."""
+        return np.setdiff1d(np.arange(*self.span), self.pairs)
+
+    def turned(self, modal: Array, by: Array) -> Array:
+        """Return what turning pairs by angles [rad], shape (pairs,), adds to numbers of the modes, shape (modes,)."""
+        (first, second), added = self.pairs.T, np.zeros_like(modal)
+        sine, versine = np.sin(by), 2.0 * np.sin(0.5 * by) ** 2
+        added[first] = -versine * modal[first] - sine * modal[second]
+        added[second] = sine * modal[first] - versine * modal[second]
+        return added
+
+
+@dataclass(frozen=True)
 class ContactRows:
     """One contact as rows on the modes; in space two pairs of rows in a row.
 
@@ -59,6 +99,8 @@ class ContactRows:
         First mode and the one after the last of each kind of a track that the tip moves along.
     is_second : bool
         Whether the tangent is the second of a contact in space; the normal is zero then.
+    circle : TurningModes or None
+        The modes of the body round which the tip moves; its rows in `fixed` are those where the tip is at the start.
     """
 
     contact: PointContact
@@ -66,6 +108,37 @@ class ContactRows:
     bending: tuple[int, int] = (0, 0)
     axial: tuple[int, int] = (0, 0)
     is_second: bool = False
+    circle: TurningModes | None = None
+
+    @property
+    def travel(self) -> Array:
+        """Row of what moves the contact point along the tangent, shape (modes,): on a circle that of the tip alone."""
+        if self.circle is None:
+            return self.fixed[1]
+        row = self.fixed[1].copy()
+        row[slice(*self.circle.span)] = 0.0
+        return row
+
+    def round_at(self, place: float) -> Array:
+        """Return the rows where the tip is at an abscissa [m] of its circle."""
+        assert self.circle is not None
+        angle = (place - self.contact.at) * self.rate
+        return self.fixed + [self.circle.turned(row, angle * self.circle.orders) for row in self.fixed]
+
+    def slopes_round_at(self, place: float) -> Array:
+        """Return the derivatives of these rows along the circle [1/m], shape (2, modes)."""
+        assert self.circle is not None
+        rows, (first, second) = self.round_at(place), self.circle.pairs.T
+        slopes = np.zeros_like(rows)
+        slopes[:, first] = -self.rate * self.circle.orders * rows[:, second]
+        slopes[:, second] = self.rate * self.circle.orders * rows[:, first]
+        return slopes
+
+    @property
+    def rate(self) -> float:
+        """Angle about the axis for a distance along the circle [rad/m]."""
+        assert self.contact.circle is not None
+        return 1.0 / self.contact.circle.radius
 
     @property
     def at(self) -> float:
@@ -76,30 +149,6 @@ class ContactRows:
     def gap(self) -> float:
         """Gap at the start [m]."""
         return 0.0 if self.is_second else self.contact.gap
-
-
-@dataclass(frozen=True)
-class TurningModes:
-    """The modes of a body that turns.
-
-    Attributes
-    ----------
-    turning : Turning
-        How it turns.
-    pairs : ndarray of int, shape (pairs, 2)
-        Numbers of the modes of each pair.
-    """
-
-    turning: Turning
-    pairs: Array
-
-    def turned(self, modal: Array, by: Array) -> Array:
-        """Return what turning pairs by angles [rad], shape (pairs,), adds to numbers of the modes, shape (modes,)."""
-        (first, second), added = self.pairs.T, np.zeros_like(modal)
-        sine, versine = np.sin(by), 2.0 * np.sin(0.5 * by) ** 2
-        added[first] = -versine * modal[first] - sine * modal[second]
-        added[second] = sine * modal[first] - versine * modal[second]
-        return added
 
 
 @dataclass(frozen=True)
@@ -137,7 +186,7 @@ class Assembly:
     blend : ndarray, shape (joined, joined)
         How the first coordinates make those of joined bodies, whose residual shapes connections hold; empty without.
     turning : tuple of TurningModes
-        The bodies that turn.
+        The bodies that turn, or round which contacts move.
     """
 
     angular_frequency: Array
@@ -211,13 +260,14 @@ def _assembled(system: System) -> tuple[Assembly, _Layout, list[_Load]]:
     angular[:size] = rate[:size] = 0.0
     loads, signals, histories = _loads(system, layout)
     position, velocity = _start(system, layout)
+    turning = _turning(layout)
     flat = Assembly(
         angular_frequency=angular,
         damping_rate=rate,
         massless=massless,
         stiffness=stiffness[:size, :size],
         dissipation=dissipation[:size, :size],
-        contacts=[pair for contact in system.contacts for pair in _contact(contact, layout)],
+        contacts=[pair for contact in system.contacts for pair in _contact(contact, layout, turning)],
         motion=_motion(system, signals[-3]),
         loads=np.array([load.modal for load in loads]).reshape(len(loads), layout.size),
         signals=signals,
@@ -230,7 +280,7 @@ def _assembled(system: System) -> tuple[Assembly, _Layout, list[_Load]]:
         prescribed=_prescribed(system, histories),
         spans={system.body_name(body): layout.spans[body] for body in system.bodies},
         blend=layout.blend,
-        turning=_turning(layout),
+        turning=turning,
     )
     return flat, layout, loads
 
@@ -314,6 +364,8 @@ def _prescribed(system: System, histories: tuple[History, ...]) -> Prescribed:
     for contact in system.contacts:
         held = system.is_held(contact.tip.body), _touches_held(contact, system)
         passing = [speed for turning, speeds in contact.turning_velocities for speed in (turning.history, *speeds)]
+        if contact.circle is not None and contact.circle.velocity:
+            passing += [contact.circle.history, contact.circle.velocity]
         moved = (*contact.surface_velocities, *passing)
         contacts.append((contact.frame.tobytes(), *held, contact.rigid_track, moved))
     imposed = system.imposed_velocity
@@ -465,11 +517,29 @@ def without_massless_coupling(stiffness: Array, dissipation: Array, massless: Ar
 
 def _turning(layout: _Layout) -> tuple[TurningModes, ...]:
     found = []
+    tracks = [contact.track_body for contact in layout.system.contacts if contact.circle is not None]
     for body in layout.order:
-        turning = layout.modes(body).turning
+        turning = body.waves_round if body in tracks else layout.modes(body).turning
+        if body in tracks:
+            _check_round(layout, body, turning)
         if turning is not None and turning.pairs:
-            found.append(TurningModes(turning, layout.spans[body][0] + np.array(turning.pairs)))
+            span = layout.spans[body]
+            found.append(TurningModes(turning, span[0] + np.array(turning.pairs), span, body in tracks))
     return tuple(found)
+
+
+def _check_round(layout: _Layout, body: Any, turning: Any) -> None:
+    """Raise unless a body is the same all round."""
+    name, modes = layout.system.body_name(body), layout.modes(body)
+    if not turning.pairs:
+        raise ArgumentError("track", f"have waves round its axis: {name} has none below its cutoff", got="a circle")
+    if body in layout.joined and len(layout.blend):
+        words = f"leave {name}, round which a contact moves, where joined bodies have residual shapes"
+        raise ArgumentError("connections", words, got="one to it")
+    first, second = np.array(turning.pairs).T
+    if (modes.damping_rate[first] != modes.damping_rate[second]).any():
+        words = f"be the same for both modes of each pair of {name}, round which a contact moves"
+        raise ArgumentError("damping", words, body.damping)
 
 
 def _uncoupled(stiffness: Array, dissipation: Array) -> bool:
@@ -493,7 +563,7 @@ def _pairs(contact: PointContact) -> int:
     return len(contact.frame) - 1
 
 
-def _contact(contact: PointContact, layout: _Layout) -> list[ContactRows]:
+def _contact(contact: PointContact, layout: _Layout, turning: tuple[TurningModes, ...]) -> list[ContactRows]:
     frame = contact.frame
     fixed = frame @ layout.trace(contact.tip)[: len(frame)]
     if contact.touched_point is not None:
@@ -503,7 +573,14 @@ def _contact(contact: PointContact, layout: _Layout) -> list[ContactRows]:
         fixed[1:, layout.massless] = 0.0
     if contact.is_spatial:
         second = np.stack([np.zeros_like(fixed[0]), fixed[2]])
-        return [ContactRows(contact, fixed[:2]), ContactRows(contact, second, is_second=True)]
+        circle = None
+        if contact.circle is not None:
+            span = layout.spans[contact.track_body]
+            circle = next(one for one in turning if one.span == span)
+        return [
+            ContactRows(contact, fixed[:2], circle=circle),
+            ContactRows(contact, second, is_second=True, circle=circle),
+        ]
     if contact.path_body is None:
         return [ContactRows(contact, fixed)]
     first, end = layout.spans[contact.path_body]
@@ -531,6 +608,8 @@ def _motion(system: System, imposed: Signal) -> Signal:
             for pair, speed in enumerate(contact.surface_velocities):
                 if speed:
                     values[:, number + pair, 1] += speed * time
+            if contact.circle is not None:
+                values[:, number, 0] += contact.circle.travel(time)
             for turning, speeds in contact.turning_velocities:
                 for pair, speed in enumerate(speeds):
                     values[:, number + pair, 1] += speed * turning.history.integral(time)

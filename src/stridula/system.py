@@ -176,7 +176,8 @@ class System:
     def _check_turning(self) -> None:
         for number, connection in enumerate(self.connections):
             for point in ends(connection):
-                if getattr(point.body, "turning", None):
+                turning = getattr(point.body, "turning", None)
+                if getattr(turning, "velocity", turning):
                     name = self.body_name(point.body)
                     raise ArgumentError(f"connections[{number}]", "leave a body that turns", got=f"one to {name}")
 
@@ -232,6 +233,8 @@ def _body_line(name: str, body: Any) -> str:
 
 def _contact_line(name: str, contact: PointContact) -> str:
     kind = " on a rigid track" if contact.rigid_track else " against a point"
+    if contact.circle is not None:
+        kind = f" of a circle of {contact.circle.length:.4g} m"
     if contact.path_body is not None:
         low, high = contact.path_body.ends
         kind = f" of {high - low:.4g} m"

@@ -9,6 +9,7 @@ import json
 
 import numpy as np
 from physics.cases import dragged, pair, slider, track, transverse
+from physics.test_circular_paths import on_a_circle, riders
 
 import stridula as st
 from stridula._kernels import layout as at
@@ -70,6 +71,13 @@ def off_the_track() -> list[st.System]:
     ]
 
 
+def round_a_disc() -> list[st.System]:
+    return [
+        riders(on_a_circle(turning, velocity, cutoff=1500.0), abscissas=(0.0, 0.1), gap=1e-9)
+        for turning, velocity in ((0.0, 20.0), (30.0, 5.0), (-40.0, 0.0))
+    ]
+
+
 CASES = {
     "coulomb on a beam": coulomb_on_a_beam,
     "shaken force": shaken_force,
@@ -77,6 +85,7 @@ CASES = {
     "lugre on a belt": lambda: on_a_belt(st.LuGre(0.6, 0.4, 0.01, stiffness=1e5, damping=10.0)),
     "lugre in space": on_a_table,
     "off the track": off_the_track,
+    "round a disc": round_a_disc,
 }
 
 

@@ -251,6 +251,15 @@ def test_runs_side_by_side_are_those_alone():
             np.testing.assert_allclose(one[name], alone[name], rtol=1e-9, atol=1e-9 * float(np.abs(alone[name]).max()))
 
 
+def test_discs_at_rest_march_beside_those_that_turn():
+    systems = [rubbed(speed, friction=0.3, damping=0.002) for speed in (0.0, 40.0) for _ in range(8)]
+    words = {"step": 4e-6, "sample_rate": 5e4, "probes": []}
+    together = st.simulate_many(systems, 1e-3, workers=1, **words)
+    for k in (0, 8):
+        alone = st.simulate(systems[k], 1e-3, **words)
+        np.testing.assert_allclose(together[k].normal_force, alone.normal_force, rtol=1e-9)
+
+
 def test_a_disc_that_gathers_speed_ends_as_one_that_always_had_it():
     """Once what the rise has left has decayed."""
     words = {"step": 4e-6, "sample_rate": 1e4, "probes": []}

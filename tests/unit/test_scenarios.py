@@ -763,7 +763,7 @@ def test_every_problem_of_bodies_and_contacts_is_told(tmp_path):
         "bodies.c.kind must be one of finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, "
         "modal body, axisymmetric, solid, got 'mass'",
         "contacts.0.tip.pint must be one of the known keys body, point, got pint = 'centre'; did you mean 'point'?",
-        "contacts.0.track.kind must be one of beam, plate, rigid, point, got 'belt'",
+        "contacts.0.track.kind must be one of beam, plate, rigid, point, circle, got 'belt'",
         "contacts.0.friction.law must be one of coulomb, static-kinetic, stribeck",
         "did you mean 'stribeck'?",
         "connections.0.stiffness must be given: stiffness [N/m]",

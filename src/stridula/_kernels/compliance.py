@@ -10,19 +10,25 @@ from .modes import OPTIONS, product, two_products
 
 
 @numba.njit(**OPTIONS)
-def set_compliance(rows, faces, spans, first_span, path_of, count, run, zero):
+def set_compliance(rows, faces, spans, first_span, paths, count, run, zero):
     """Put the compliance of bodies of uncoupled modes: that of constant rows, and what paths add.
 
     Contacts that share a path, or are on the body of another one's path, are soft together.
     """
     for i in range(count):
-        if path_of[i] < 0:
+        if not moves_along(paths, i):
             continue
         for j in range(count):
             # Of two contacts on the same path, or of two paths, the pair is taken once.
-            if path_of[j] >= 0 and j > i:
+            if j > i and moves_along(paths, j):
                 continue
             set_pair(rows, faces, spans, first_span, i, j, 2 * count, run, zero)
+
+
+@numba.njit(**OPTIONS)
+def moves_along(paths, i):
+    """Return whether contact `i` moves along a path or round a body."""
+    return paths.path_of[i] >= 0 or paths.body_of[i] >= 0
 
 
 @numba.njit(**OPTIONS)

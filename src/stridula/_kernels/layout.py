@@ -18,16 +18,18 @@ NORMAL, TANGENTIAL = range(2)
 # of two waves, whether of cosines.
 BEGIN, END, KIND, TWO_WAVES, COSINES = range(5)
 SPAN = 5
-# Kinds of span: rows are constant; waves of a path along the normal and along the tangent.
-CONSTANT, PATH_NORMAL, PATH_TANGENTIAL = range(3)
+# Kinds of span: rows are constant; waves of a path along the normal and along the tangent; all modes of a body that the
+# contact moves round.
+CONSTANT, PATH_NORMAL, PATH_TANGENTIAL, ROUND = range(4)
 
 # Motion imposed on a contact: of the tip and of the track along the tangent, of the gap.
 TIP_MOTION, TRACK_MOTION, GAP_MOTION = range(3)
 MOTIONS = 3
 
 # Constants of a contact: where it starts, its gap, the ends of its path, rate along the path and value at abscissa zero
-# of the two angles whose sines the modes of the path are, ratio at rest of the law of friction; stiffness of the
-# contact itself, 0 of a rigid one, its exponent, damping, and damping rate over the force.
+# of the two angles whose sines the modes of the path are, on a circle of the angle from where it starts, ratio at rest
+# of the law of friction; stiffness of the contact itself, 0 of a rigid one, its exponent, damping, and damping rate
+# over the force.
 (
     START,
     GAP,

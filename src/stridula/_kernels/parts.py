@@ -22,6 +22,8 @@ class Sizes(NamedTuple):
         Whether a contact is on a path, and on one whose modes are coupled.
     space : bool
         Whether a contact has two tangents.
+    circles : bool
+        Whether a contact moves round a body, along a circle.
     """
 
     blocks: int
@@ -33,6 +35,7 @@ class Sizes(NamedTuple):
     paths: bool
     coupled_paths: bool
     space: bool
+    circles: bool = False
 
 
 class Timing(NamedTuple):
@@ -67,6 +70,10 @@ class Paths(NamedTuple):
         Spans of blocks; those of contact i from ``first_span[i]`` to ``first_span[i + 1]``, constant ones first.
     path_of : ndarray of int, shape (contacts,)
         The first block of the path of a contact, -1 for none.
+    body_of : ndarray of int, shape (contacts,)
+        The turning body that a contact moves round, -1 for none.
+    at_start : ndarray, shape (blocks, rows, lanes)
+        The two rows of each contact where it starts, where any moves round a body.
     """
 
     waves: np.ndarray
@@ -76,6 +83,8 @@ class Paths(NamedTuple):
     spans: np.ndarray
     first_span: np.ndarray
     path_of: np.ndarray
+    body_of: np.ndarray
+    at_start: np.ndarray
 
 
 class Contacts(NamedTuple):

@@ -17,6 +17,7 @@ from .bookkeeping import (
     share_states,
     store_in,
 )
+from .circles import convected
 from .contacts import solve_all, start_from_last
 from .faces import own_compliance
 from .friction import set_valued
@@ -168,7 +169,9 @@ def touch_many(parts, n, ended, run, runs, zero):
     """Try step `n` and find the forces of all contacts; return where a run leaves, and why."""
     sizes, contacts, state = parts.sizes, parts.contacts, parts.state
     after = n + 2 if parts.imposed.motion.shape[0] > 1 else 0
-    try_many(parts.modes, parts.paths, contacts, state, parts.imposed, sizes, after, ended, run, runs, zero)
+    try_many(
+        parts.modes, parts.paths, contacts, parts.turning, state, parts.imposed, sizes, after, ended, run, runs, zero
+    )
     leaves, why = zero, zero
     if sizes.paths:
         leaves, why = any_beyond_ends(sizes, parts.paths, contacts, state, run, zero)
@@ -194,5 +197,8 @@ def keep_many(parts, n, run, runs, zero):
         elif not (parts.sizes.space and is_second(contacts.codes, i)):
             keep_books_of(i, contacts, state, imposed, parts.timing, n, run, runs, zero)
         place, slope = place_after(i, parts.modes, parts.paths, contacts, state, imposed, after, run, runs, zero)
+        if parts.sizes.circles and parts.paths.body_of[i] >= 0 and not is_second(contacts.codes, i):
+            work = convected(i, place, parts.modes, parts.paths, contacts, parts.turning, state.carried, run, zero)
+            add(state.energies, at.CONVECTION_WORK, run, work, zero)
         way = keep_place(i, state.carried, place, run, zero)
         add(state.energies, at.CONVECTION_WORK, run, slope * way, zero)

@@ -4,6 +4,7 @@ import numba
 
 from . import layout as at
 from .block_rows import CONTACTS, POSITION, SINE, Q
+from .circles import go_round
 from .compliance import set_compliance, set_compliance_of_coupled
 from .coupled import complete_coupled, try_coupled
 from .lanes import anywhere, choose, fused, held, hold, read, total
@@ -145,7 +146,7 @@ def complete_one(modes, paths, touch, sine, run, zero):
 
 
 @numba.njit(**OPTIONS)
-def try_many(modes, paths, contacts, state, imposed, sizes, n, ended, run, runs, zero):
+def try_many(modes, paths, contacts, turning, state, imposed, sizes, n, ended, run, runs, zero):
     """Try a step of all modes, and put what each contact is at its end without contact forces."""
     rows, spans, now = modes.rows, paths.spans, contacts.now
     # 1.
@@ -175,6 +176,10 @@ def try_many(modes, paths, contacts, state, imposed, sizes, n, ended, run, runs,
                     moved = product(rows, row, POSITION, begin, end, run, zero)
                     gap += moved if upright else zero
                     slip += zero if upright else moved
+        elif sizes.circles and paths.body_of[i] >= 0:
+            moved = (place, track)
+            rise, slip = go_round(i, moved, modes, paths, contacts, turning, state, imposed, n, run, runs, zero)
+            gap += rise
         put_free(i, now, place, choose(ended > 0.0, zero, gap), slip, run)
 
 
@@ -187,9 +192,7 @@ def soften(modes, paths, contacts, sizes, run, zero):
             modes.rows, modes.matrices, contacts.faces, sizes.blocks, sizes.coupled, places, sizes.contacts, run, zero
         )
     elif sizes.paths:
-        set_compliance(
-            modes.rows, contacts.faces, paths.spans, paths.first_span, paths.path_of, sizes.contacts, run, zero
-        )
+        set_compliance(modes.rows, contacts.faces, paths.spans, paths.first_span, paths, sizes.contacts, run, zero)
 
 
 @numba.njit(**OPTIONS)
@@ -217,7 +220,7 @@ def place_after(i, modes, paths, contacts, state, imposed, n, run, runs, zero):
     """Return the abscissa of contact `i` after the step, and the force along the path that its slopes make."""
     rows, spans, here = modes.rows, paths.spans, i * at.IN_STEP
     along, slope = zero, zero
-    if paths.path_of[i] < 0:
+    if paths.path_of[i] < 0 and paths.body_of[i] < 0:
         # What it slides on does not move but as imposed.
         track = read(imposed.motion, n, (i * at.MOTIONS + at.TRACK_MOTION) * runs + run, zero)
         return held(state.carried, i * at.CARRIED + at.MATERIAL, run, zero) + track, slope
@@ -225,6 +228,8 @@ def place_after(i, modes, paths, contacts, state, imposed, n, run, runs, zero):
         kind, begin, end = spans[s, at.KIND], spans[s, at.BEGIN], spans[s, at.END]
         if kind == at.CONSTANT:
             along += product(rows, CONTACTS + 2 * i + 1, Q, begin, end, run, zero)
+            continue
+        if kind == at.ROUND:
             continue
         turned, two, first = spans[s, at.COSINES], spans[s, at.TWO_WAVES], paths.sets[i, FIRST]
         found = slope_along(rows, paths.waves, paths.wave_of, first, begin, end, two, run, SINE + 1 - turned, zero)

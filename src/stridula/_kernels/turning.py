@@ -16,7 +16,11 @@ from .modes import OPTIONS, PASTED, product
 # Of a block: drag and order; one less the cosine, and the sine, of the turn of the pairs in this step and in the last,
 # and of that of the material in both.
 DRAG, ORDER, VERSINE, SINE, LAST_VERSINE, LAST_SINE, PASSED_VERSINE, PASSED_SINE, MET_VERSINE, MET_SINE = range(10)
-TURN_ROWS = 10
+# For contacts that move round the body: half the rise and half the advance for units of the modes, where the material
+# has been carried to, as its modes, and the modes two steps before the end of this one.
+RISEN, ADVANCED, PASSED, EARLIER = range(10, 14)
+# An odd number of vectors, as for the modes.
+TURN_ROWS = 15
 # Of a body that turns: its first block and the one after the last.
 BEGIN, END = range(2)
 # Of a contact in a step: half the rise of the gap in the last two steps, and half the advance of the slip, that turning
@@ -84,6 +88,24 @@ def carry_round(rows, turns, begin, end, run):
 
 
 @numba.njit(**OPTIONS)
+def keep_position(rows, turns, begin, end, run):
+    """Keep where pairs are before they are carried round."""
+    for k in range(begin, end):
+        store(turns, k, PASSED, run, load(rows, k, Q, run))
+
+
+@numba.njit(**OPTIONS)
+def keep_carried(rows, turns, begin, end, run):
+    """Keep what `carry_round` puts for units of the modes, where the rows of contacts are not yet known."""
+    for k in range(begin, end):
+        risen = load(rows, k, POSITION, run)
+        store(turns, k, RISEN, run, risen)
+        store(turns, k, EARLIER, run, (load(rows, k, Q, run) - load(rows, k, D, run)) - 2.0 * risen)
+        store(turns, k, ADVANCED, run, load(rows, k, INCREMENT, run))
+        store(turns, k, PASSED, run, load(turns, k, PASSED, run) + load(rows, k, PUSH, run))
+
+
+@numba.njit(**OPTIONS)
 def look_ahead(rows, turns, begin, end, run):
     """Put how turning alone has moved pairs in the last step and does in this, and what that adds to work of loads.
 
@@ -119,9 +141,11 @@ def turn_loads_and_probes(parts, begin, end, run, zero):
 
 @numba.njit(**PASTED)
 def turn_contacts(parts, begin, end, first_body, run, zero):
-    """Keep what turning does to the contacts; their anchors are carried along with the material."""
+    """Keep what turning does to the contacts that stay; their anchors are carried along with the material."""
     rows, carried, of_contacts = parts.modes.rows, parts.state.carried, parts.turning.contacts
     for i in range(parts.sizes.contacts):
+        if parts.sizes.circles and parts.paths.body_of[i] >= 0:
+            continue
         row, here, base = CONTACTS + 2 * i, i * OF_CONTACT, i * at.CARRIED
         rise = product(rows, row, POSITION, begin, end, run, zero)
         advance = product(rows, row + 1, INCREMENT, begin, end, run, zero)
@@ -155,7 +179,11 @@ def turn_bodies(parts, n, run, runs, zero):
         if parts.sizes.loads or parts.probes.kinds.size:
             look_ahead(parts.modes.rows, turning.rows, begin, end, run)
             turn_loads_and_probes(parts, begin, end, run, zero)
+        if parts.sizes.circles:
+            keep_position(parts.modes.rows, turning.rows, begin, end, run)
         carry_round(parts.modes.rows, turning.rows, begin, end, run)
+        if parts.sizes.circles:
+            keep_carried(parts.modes.rows, turning.rows, begin, end, run)
         turn_contacts(parts, begin, end, b == 0, run, zero)
 
 

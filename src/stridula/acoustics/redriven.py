@@ -79,6 +79,9 @@ def redriven(run: xr.Dataset, system: System) -> Moved:
     first = start + interval * (0.5 - LEAD) - 0.5 * interval / steps
     times = first + interval * np.arange(samples + 2 * LEAD)
     rows, signals = _of_contacts(flat, normal, tangential)
+    if any(one.circle is not None for one in flat.contacts):
+        *_, (places,) = sampled(run, "contact_position")
+        rows, signals = _gone_round(flat, rows, signals, places[:, 0])
     loads = _of_drives(flat, start, interval, min(steps, MOST_STEPS), samples)
     if system.initial_equilibrium is not None:
         # It has stood so for long.
@@ -114,6 +117,28 @@ def _of_contacts(flat: Assembly, normal: Array, tangential: Array) -> tuple[Arra
         rows.append(-one.fixed[1])
         forces.append(along[number, int(one.is_second)])
     return np.array(rows), np.array(forces)
+
+
+def _gone_round(flat: Assembly, rows: Array, signals: Array, places: Array) -> tuple[Array, Array]:
+    """Return rows and forces where contacts on circles push each pair of modes by itself, as it is where they are.
+
+    `places` are their abscissas at the end of each interval [m], shape (contacts, samples).
+    """
+    rows, own = rows.copy(), np.zeros((rows.shape[1], signals.shape[1]))
+    owners = [one for one in flat.contacts for _ in range(1 if one.is_second else 2)]
+    numbers = np.repeat(flat.contact_numbers, [1 if one.is_second else 2 for one in flat.contacts])
+    for row, signal, one, number in zip(rows, signals, owners, numbers.tolist(), strict=True):
+        if one.circle is None:
+            continue
+        first, second = one.circle.pairs.T
+        middle = places[number] - 0.5 * np.diff(places[number], prepend=places[number, :1])
+        angle = np.multiply.outer(one.circle.orders, (middle - one.contact.at) * one.rate)
+        cosine, sine = np.cos(angle) * signal, np.sin(angle) * signal
+        own[first] += row[first, None] * cosine - row[second, None] * sine
+        own[second] += row[second, None] * cosine + row[first, None] * sine
+        row[one.circle.pairs] = 0.0
+    pushed = np.flatnonzero(own.any(axis=1))
+    return np.concatenate([rows, np.eye(rows.shape[1])[pushed]]), np.concatenate([signals, own[pushed]])
 
 
 def _moved(flat: Assembly, forces: Array, times: Array, interval: float) -> tuple[Array, Array]:

@@ -1,6 +1,7 @@
 """What vibrates: bodies that end as mass-normalised modes and their traces."""
 
 from .axisymmetric_body import AxisymmetricBody, Held
+from .circular_path import CircularPath
 from .damping import Rayleigh, RisingDamping, SampledDamping
 from .finite_element_beam import FiniteElementBeam
 from .modal_beam import ModalBeam
@@ -22,6 +23,7 @@ __all__ = [
     "Body",
     "BodyPoint",
     "Circle",
+    "CircularPath",
     "FiniteElementBeam",
     "HasRoot",
     "Held",

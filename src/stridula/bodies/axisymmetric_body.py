@@ -15,6 +15,7 @@ from ..checks import ArgumentError, at_least, brief, choice, finite, instance, l
 from ..declared import CountFrom0, Each, Frequency, Number, Own, check_declared
 from ..histories import HISTORIES, Constant, History
 from .body_surfaces import HIGHEST, RingSurface, largest_part
+from .circular_path import CircularPath
 from .damping import DampingLaw, checked_damping, damping_rates
 from .drawn_surfaces import DrawnSurface, surface_of_revolution
 from .modes import BodyPoint, Modes, hashed_once
@@ -302,6 +303,37 @@ class AxisymmetricBody:
         """Return the velocity of the material at a point (r, theta, z) by turning alone [m/s], shape (3,)."""
         r, theta, _ = self._position(position)
         return np.asarray(self.turning * r * self._directions(theta)[1])
+
+    def circle_at(self, position: Any, abscissa: float | None = None) -> tuple[float, Any, Array]:
+        """Return the radius of a point's circle [m], the point at an abscissa [m], its direction there, shape (3,)."""
+        r, theta, z = self._position(position)
+        theta += (abscissa or 0.0) / r if r > 0.0 else 0.0
+        return r, (r, theta, z), self._directions(theta)[1]
+
+    @property
+    def waves_round(self) -> Turning:
+        """Its pairs of modes and how they are carried round: as it turns, or at rest."""
+        modes = self.modes()
+        if modes.turning is not None:
+            return modes.turning
+        first = np.flatnonzero((self.numbers[:, 0] > 0) & (self.numbers[:, 2] == 0))
+        order = self.numbers[first, 0].astype(float).tolist()
+        return Turning(0.0, np.stack([first, first + 1], axis=1).tolist(), order, order)
+
+    def circle(self, position: Any, velocity: float = 0.0, history: History | None = None) -> CircularPath:
+        """Return the circle round the axis through a point (r, theta, z) [m, rad, m], for others to slide along.
+
+        Parameters
+        ----------
+        position : tuple of float
+            The point where the abscissa is zero.
+        velocity : float, optional
+            Velocity at which what slides on it is carried along as a whole [m/s].
+        history : Constant, Ramp, Harmonic or Sampled, optional
+            How that velocity goes in time, a factor on it.
+        """
+        point = _triple("position", position, POSITION)
+        return CircularPath(self, point, velocity, Constant() if history is None else history)
 
     def at(self, position: Any) -> BodyPoint:
         """Return the point at a distance r from the axis [m], an angle theta [rad] and a place z along it [m]."""

@@ -11,8 +11,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..checks import ArgumentError, choice, count, instance
+from ..checks import ArgumentError, choice, count, instance, listed
+from ..histories import Constant, History
 from .body_surfaces import PointSurface, RingSurface, check_surface
+from .circular_path import CircularPath
 from .matrix_input import check_finite, numbers, rows_of
 from .modes import Body, Modes
 from .named_points import NamedPoints
@@ -49,6 +51,10 @@ class ModalBody(NamedPoints):
         bodies that turn.
     outer_surface : PointSurface or RingSurface, optional
         Its outer surface and how the modes move it, as `surface` of another body gives it; to be heard it needs one.
+    circles : mapping, optional
+        Of points round whose circle about the axis others may move, by name: its radius [m], the abscissa of the point
+        along it [m], and the world components (x, y, z) of its direction there; for bodies with `turning`, whose
+        velocity may be 0.
 
     Raises
     ------
@@ -66,6 +72,7 @@ class ModalBody(NamedPoints):
     turning: Turning | None = None
     velocities: Mapping[str, Any] | None = None
     outer_surface: PointSurface | RingSurface | None = None
+    circles: Mapping[str, Any] | None = None
 
     def __post_init__(self) -> None:
         instance("name", self.name, str)
@@ -159,6 +166,19 @@ class ModalBody(NamedPoints):
             velocity.flags.writeable = False
             velocities[name] = velocity
         self._set("velocities", MappingProxyType(velocities) if velocities else None)
+        given_circles = {} if self.circles is None else self.circles
+        instance("circles", given_circles, Mapping)
+        circles = {}
+        for name, given in given_circles.items():
+            choice("circles", name, self.point_names)
+            circle = numbers(f"circles[{name!r}]", given)
+            if circle.shape != (5,) or self.turning is None or not (circle[0] > 0.0 and circle[2:].any()):
+                words = "be a radius above 0, an abscissa and a direction, five numbers, of a body with turning"
+                raise ArgumentError(f"circles[{name!r}]", words, given)
+            check_finite(f"circles[{name!r}]", circle)
+            circle.flags.writeable = False
+            circles[name] = circle
+        self._set("circles", MappingProxyType(circles) if circles else None)
 
     @property
     def is_spatial(self) -> bool:
@@ -220,6 +240,27 @@ class ModalBody(NamedPoints):
         """Return the velocity at which the material of a body that turns passes a point [m/s], shape (3,)."""
         return np.asarray((self.velocities or {}).get(position, np.zeros(3)))
 
+    def circle(self, position: str, velocity: float = 0.0, history: History | None = None) -> CircularPath:
+        """Return the circle through a point of `circles`, for others to slide along; see `CircularPath`."""
+        self.check_position(position)
+        return CircularPath(self, position, velocity, Constant() if history is None else history)
+
+    def circle_at(self, position: str, abscissa: float | None = None) -> tuple[float, Any, Array]:
+        """Return the radius of a point's circle [m], the point at an abscissa [m], its direction there, shape (3,)."""
+        circles = self.circles or {}
+        if position not in circles:
+            raise ArgumentError("position", f"be one of the points with circles, {listed(circles) or 'none'}", position)
+        radius, here, *direction = np.asarray(circles[position]).tolist()
+        if abscissa is not None and abscissa != here:
+            raise ArgumentError("at", f"be {here!r} m, where {position} is on its circle", abscissa)
+        return radius, position, np.array(direction) / np.linalg.norm(direction)
+
+    @property
+    def waves_round(self) -> Turning:
+        """Its pairs of modes and how they are carried round."""
+        assert self.turning is not None
+        return self.turning
+
     @cached_property
     def _modes(self) -> Modes:
         further = np.zeros(self.residual)
@@ -236,7 +277,8 @@ class ModalBody(NamedPoints):
 
     def __reduce__(self) -> tuple[Any, ...]:
         given = self.angular_frequency, dict(self.points), self.damping_rate, self.translation, self.residual
-        return ModalBody, (*given, self.name, self.turning, dict(self.velocities or {}), self.outer_surface)
+        turned = self.turning, dict(self.velocities or {}), self.outer_surface, dict(self.circles or {})
+        return ModalBody, (*given, self.name, *turned)
 
     @cached_property
     def _content(self) -> tuple[Any, ...]:
@@ -245,7 +287,8 @@ class ModalBody(NamedPoints):
         passed = tuple((name, velocity.tobytes()) for name, velocity in sorted((self.velocities or {}).items()))
         modes = self.angular_frequency.tobytes(), self.damping_rate.tobytes()
         surface = None if self.outer_surface is None else self.outer_surface.content
-        return *modes, surface, points, moved, self.residual, self.turning, passed, self.name
+        round_about = tuple((name, circle.tobytes()) for name, circle in sorted((self.circles or {}).items()))
+        return *modes, surface, points, moved, self.residual, self.turning, passed, round_about, self.name
 
     def _set(self, name: str, value: Any) -> None:
         if isinstance(value, np.ndarray):

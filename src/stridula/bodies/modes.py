@@ -12,6 +12,7 @@ from ..arrays import Array
 from ..checks import ArgumentError
 
 if TYPE_CHECKING:
+    from .circular_path import CircularPath
     from .turning import Turning
 
 
@@ -222,6 +223,11 @@ class BodyPoint:
             return self.position
         named = ((name, getattr(self.body, name).position) for name in self.body.point_names)
         return next((name for name, position in named if position == self.position), None)
+
+    @property
+    def circle(self) -> CircularPath | None:
+        """The closed path that it stands for, None for a point alone."""
+        return None
 
     @property
     def turning_velocity(self) -> Array:

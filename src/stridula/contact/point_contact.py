@@ -11,7 +11,7 @@ from typing import Annotated
 import numpy as np
 
 from ..arrays import Array
-from ..bodies import BodyPoint, ModalBeam, ModalPlate, Track, is_track
+from ..bodies import BodyPoint, CircularPath, ModalBeam, ModalPlate, Track, is_track
 from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, instance, within
 from ..declared import Angle, Distance, Each, Number, OneOrEach, Position, check_declared
@@ -35,14 +35,16 @@ class PointContact:
 
     The normal force is compressive and never below zero; the tangential force is the force on the track along its
     tangent. On a beam, a plate or a rigid track the contact point moves along the track with the tip; against a
-    point of another body it is frozen.
+    point of another body it is frozen. On a circle of a body of revolution it moves along with the travel of the tip
+    along the first tangent, any number of times round; normal and tangents go round with it.
 
     Parameters
     ----------
     tip : BodyPoint
         The point of the slider that touches.
-    track : ModalBeam, ModalPlate, RigidTrack or BodyPoint
-        What it slides on: a beam, a plate along its line, a rigid track, or a point of another body.
+    track : ModalBeam, ModalPlate, RigidTrack, BodyPoint or CircularPath
+        What it slides on: a beam, a plate along its line, a rigid track, a point of another body, or a circle of a body
+        of revolution.
     at : float, optional
         Abscissa of the tip on the track at the start [m]; strictly between the ends of a beam or of a plate's line.
     friction : Coulomb, StaticKinetic, Stribeck, ExponentialWeakening, LinearWeakening, LuGre or RateAndState, optional
@@ -59,7 +61,8 @@ class PointContact:
         and y as `inclination` says if left out.
     tangent : sequence of float, optional
         World components of what lies along the first tangent in space; world x, or z where the normal is along x, if
-        left out. What it has along the normal is taken off. The second tangent is the first times the normal.
+        left out. What it has along the normal is taken off. The second tangent is the first times the normal. Left out
+        on a circle, whose direction is the first tangent.
     surface_velocity : float or sequence of float, optional
         Velocity at which the surface of a touched point's body moves under the tip [m/s], as that of a disc that turns
         about its axis while its vibration is seen from where it stands: along the tangent, in space along both.
@@ -119,6 +122,7 @@ class PointContact:
             if not self.is_spatial:
                 raise ArgumentError(name, "be left out between bodies in the plane: inclination turns it", given)
         self._check_surface()
+        self._check_circle()
         self._check_turning()
         if self.normal is not None and self.inclination:
             raise ArgumentError("inclination", "be 0 where a normal is given", self.inclination)
@@ -146,9 +150,21 @@ class PointContact:
                 words = f"be square to the velocity at which the body of the {name} turns"
                 raise ArgumentError("normal", words, self.normal)
 
+    def _check_circle(self) -> None:
+        if self.circle is None:
+            return
+        if self.tangent is not None:
+            raise ArgumentError(
+                "tangent", "be left out on a circle, whose direction is the first tangent", self.tangent
+            )
+        if abs(float(self._normal_in_space @ self.circle.direction(self.at))) > ALONG_SURFACE:
+            raise ArgumentError("normal", "be square to the circle where the tip is at the start", self.normal)
+        if self.tip.turning_velocity.any():
+            raise ArgumentError("tip", "be on a body that does not turn, on a circle", self.tip)
+
     def _check_surface(self) -> None:
         given = np.atleast_1d(self.surface_velocity)
-        if self.touched_point is None and given.any():
+        if (self.touched_point is None or self.circle is not None) and given.any():
             words = "be 0 but against a point of a body: tracks have velocities of their own"
             raise ArgumentError("surface_velocity", words, self.surface_velocity)
         if given.size > (2 if self.is_spatial else 1):
@@ -201,8 +217,15 @@ class PointContact:
 
     @property
     def touched_point(self) -> BodyPoint | None:
-        """The point that the tip touches, None where it moves along a track."""
+        """The point that the tip touches, on a circle that at the start; None where it moves along a track."""
+        if self.circle is not None:
+            return self.circle.point_at(self.at)
         return self.track if isinstance(self.track, BodyPoint) else None
+
+    @property
+    def circle(self) -> CircularPath | None:
+        """The circle that the tip moves along, None on any other track."""
+        return getattr(self.track, "circle", None)
 
     @cached_property
     def path_body(self) -> Track | None:
@@ -222,14 +245,20 @@ class PointContact:
         return axes
 
     @property
-    def _frame_in_space(self) -> Array:
+    def _normal_in_space(self) -> Array:
         normal = np.append(self._plane_frame[0], 0.0) if self.normal is None else np.array(self.normal, dtype=float)
-        normal = normal / np.linalg.norm(normal)
+        return np.asarray(normal / np.linalg.norm(normal))
+
+    @property
+    def _frame_in_space(self) -> Array:
+        normal = self._normal_in_space
         along = np.append(self._plane_frame[1], 0.0) if self.normal is None else np.array([1.0, 0.0, 0.0])
         if self.normal is not None and abs(normal[0]) > ALONG_X:
             along = np.array([0.0, 0.0, 1.0])
         if self.tangent is not None:
             along = np.array(self.tangent, dtype=float)
+        if self.circle is not None:
+            along = self.circle.direction(self.at)
         tangent = along - (along @ normal) * normal
         size = np.linalg.norm(tangent)
         tangent = tangent / size if size > ALONG_AN_AXIS * np.linalg.norm(along) else normal

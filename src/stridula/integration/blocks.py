@@ -146,10 +146,13 @@ class TurningBlocks:
         Numbers of the modes of each pair.
     turns : ndarray, shape (2, pairs)
         Radians by which each pair, and the material, turns for one of the body.
+    others : ndarray of int, shape (others,)
+        Numbers of its modes that are the same all round, where a contact moves round it; none where none does.
     """
 
     pairs: Array
     turns: Array
+    others: Array
 
 
 @dataclass(frozen=True)
@@ -170,6 +173,8 @@ class ContactBlocks:
         Relative displacements [m] of the constant rows for unit forces on each.
     paths : tuple of PathModes or None
         What each contact moves along.
+    circles : ndarray of int, shape (contacts,)
+        The turning body that each contact moves round, -1 for none.
     """
 
     constants: Array
@@ -178,6 +183,7 @@ class ContactBlocks:
     rows: Array
     compliance: Array
     paths: tuple[PathModes | None, ...]
+    circles: Array
 
 
 def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
@@ -193,6 +199,8 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
             path = along.path
             angles = np.stack([path.rate, path.phase], axis=1).ravel()
             constants[i, at.LOW : at.AT_REST] = (*path.ends, *angles)
+        if one.circle is not None:
+            constants[i, [at.ALONG, at.ALONG_PHASE]] = one.rate, -one.rate * one.contact.at
         codes[i], laws[i] = _law(one.contact.friction)
         constants[i, at.AT_REST] = laws[i, 0]
         if one.contact.yields is not None and not one.is_second:
@@ -205,9 +213,15 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
                 "be between bodies of which one moves along its normal",
                 got="a tip that does not",
             )
-    flat = rows.reshape(2 * count, -1)
+    constant = rows.copy()
+    circles = np.full(count, -1, dtype=np.int64)
+    for i, one in enumerate(arrays.contacts):
+        if one.circle is not None:
+            circles[i] = next(k for k, body in enumerate(arrays.turning) if body.span == one.circle.span)
+            constant[i, :, slice(*one.circle.span)] = 0.0
+    flat = constant.reshape(2 * count, -1)
     compliance = np.ascontiguousarray(flat @ modes.mobility(flat).T)
-    return ContactBlocks(constants, codes, laws, rows, compliance, paths)
+    return ContactBlocks(constants, codes, laws, rows, compliance, paths, circles)
 
 
 def _path_modes(one: ContactRows) -> PathModes | None:
@@ -287,15 +301,28 @@ class Blocks:
         return tuple(sorted({*range(len(self.modes.loads)), *(int(j) for j in taken)}))
 
 
+def _check_turned(rate: float, step: float, words: str) -> None:
+    """Raise where waves turn at a rate [rad/s] by too much in a step."""
+    if rate * step > MOST_TURNED:
+        limit = f"be at most {at_most(MOST_TURNED / rate)} s: {words} at most {MOST_TURNED} rad"
+        raise ArgumentError("step", limit, step)
+
+
 def blocks_of(arrays: Assembly, scheme: Scheme, step: float) -> Blocks:
     """Return a system under a scheme as the march reads it."""
     modes = recurrence(arrays, scheme, step)
     for one in arrays.turning:
-        fastest = abs(one.turning.velocity) * max(one.turning.order)
-        if fastest * step > MOST_TURNED:
-            words = (
-                f"be at most {at_most(MOST_TURNED / fastest)} s: the waves of a body turn by at most {MOST_TURNED} rad"
-            )
-            raise ArgumentError("step", words, step)
-    turning = tuple(TurningBlocks(one.pairs, np.array([one.turning.drag, one.turning.order])) for one in arrays.turning)
+        _check_turned(abs(one.turning.velocity) * max(one.turning.order), step, "the waves of a body turn by")
+    for pair in arrays.contacts:
+        if pair.circle is not None and pair.contact.circle is not None:
+            passed = abs(pair.contact.circle.velocity) * pair.rate * max(pair.circle.turning.order)
+            _check_turned(passed, step, "a contact passes over waves by")
+    turning = tuple(
+        TurningBlocks(
+            one.pairs,
+            np.array([one.turning.drag, one.turning.order]),
+            one.others if one.has_circle else one.pairs[:0, 0],
+        )
+        for one in arrays.turning
+    )
     return Blocks(modes, contact_blocks(arrays, modes), probe_blocks(arrays, step), turning)

@@ -15,7 +15,7 @@ import xarray as xr
 
 from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
-from ..assembly import ContactRows
+from ..assembly import Assembly, ContactRows
 from ..checks import ArgumentError, choice, count
 from ..records import Probe
 from ..records.dataset import RECORDED
@@ -210,7 +210,13 @@ def _kind(arrays: Arrays, most_modes: int | None) -> Hashable | None:
         return None
     contacts = tuple((one.bending, one.axial, one.is_second, _waves(one), _law(one)) for one in flat.contacts)
     probes = tuple(type(probe) for probe in arrays.probes)
-    return flat.mode_count, flat.coupled, contacts, len(flat.loads), probes
+    return flat.mode_count, flat.coupled, contacts, _turned(flat), len(flat.loads), probes
+
+
+def _turned(flat: Assembly) -> Hashable:
+    """Return which modes are carried round in pairs, and round which bodies contacts move."""
+    bodies = tuple((one.span, one.pairs.tobytes(), one.has_circle) for one in flat.turning)
+    return bodies, tuple(one.circle and one.circle.span for one in flat.contacts)
 
 
 def _law(one: ContactRows) -> Hashable:

@@ -26,6 +26,7 @@ from .contact_solve import GaussSeidel
 from .packing import (
     PLAIN,
     aligned,
+    at_start,
     columns,
     compliance_in_blocks,
     layout_of,
@@ -192,7 +193,8 @@ class March:
     def _paths(self, width: int) -> Paths:
         where = self.layout
         waves = waves_of(where, width)
-        return Paths(waves, where.sets, where.pairs, where.wave_of, where.spans, where.first_span, where.path_of)
+        spans = where.wave_of, where.spans, where.first_span, where.path_of
+        return Paths(waves, where.sets, where.pairs, *spans, where.circles, at_start(where, self.modes.rows))
 
     def _contacts(self, contacts: Sequence[ContactBlocks], width: int) -> Contacts:
         runs, count, sizes = self.runs, self.contact_count, self.layout.sizes

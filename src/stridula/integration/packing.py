@@ -45,6 +45,8 @@ class Layout:
         Waves of each contact; sums and differences among them; multiples of the angles, a row a block of waves.
     turning : ndarray of int, shape (bodies, 2)
         First block of the pairs of each body that turns, and the one after the last.
+    circles : ndarray of int, shape (contacts,)
+        The turning body that each contact moves round, -1 for none.
     """
 
     sizes: Sizes
@@ -58,6 +60,7 @@ class Layout:
     pairs: Array
     numbers: Array
     turning: Array
+    circles: Array
 
     @property
     def coupled_places(self) -> Array:
@@ -77,7 +80,12 @@ def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
         if len(contacts.paths) == 1 and not modes.coupled:
             spans.append((0, places.plain, at.CONSTANT, 0, 0))
         else:
+            body = int(contacts.circles[i])
+            if body >= 0:
+                seen[i, runs[0].turning[body].pairs] = seen[i, runs[0].turning[body].others] = False
             spans += [(*span, at.CONSTANT, 0, 0) for span in _runs_of(places.block[seen[i]])]
+            if body >= 0:
+                spans.append((*places.round_spans[body], at.ROUND, 0, 0))
         if along is not None:
             spans += places.path_spans[_key(along)]
         first_span.append(len(spans))
@@ -90,9 +98,11 @@ def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
         count,
         -(-2 * count // per_block),
         len(modes.loads),
-        any(along is not None for along in contacts.paths),
-        any(along is not None and along.normal.start < modes.coupled for along in contacts.paths),
+        any(along is not None for along in contacts.paths) or bool((contacts.circles >= 0).any()),
+        any(along is not None and along.normal.start < modes.coupled for along in contacts.paths)
+        or any(runs[0].turning[body].pairs.min() < modes.coupled for body in contacts.circles if body >= 0),
         bool((contacts.codes == at.SECOND_TANGENT).any()),
+        bool((contacts.circles >= 0).any()),
     )
     path_of = [-1 if along is None else places.path_spans[_key(along)][0][0] for along in contacts.paths]
     return Layout(
@@ -107,6 +117,7 @@ def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
         pairs,
         numbers,
         np.array(places.turning, dtype=np.int64).reshape(-1, 2),
+        contacts.circles,
     )
 
 
@@ -135,6 +146,7 @@ class _Places:
         self.pairs: dict[int, dict[tuple[int, int], int]] = {}
         self.waves: list[int] = []
         self.bodies, self.turning = bodies, list[tuple[int, int]]()
+        self.round_spans: list[tuple[int, int]] = []
         paths = {_key(along): along for along in contacts.paths if along is not None}
         self._fill(0, coupled, paths)
         self.coupled = self.blocks
@@ -143,19 +155,24 @@ class _Places:
 
     def _fill(self, begin: int, end: int, paths: dict[int, PathModes]) -> None:
         inside = [along for along in paths.values() if begin <= along.normal.start < end]
-        turning = [one.pairs for one in self.bodies if begin <= one.pairs.min() < end]
+        turning = [one for one in self.bodies if begin <= one.pairs.min() < end]
         others = np.setdiff1d(
             np.arange(begin, end),
             [
                 *(k for along in inside for k in range(along.normal.start, along.tangential.stop)),
-                *(k for one in turning for k in one.ravel()),
+                *(k for one in turning for k in (*one.pairs.ravel(), *one.others)),
             ],
         )
         self.block[others] = self.blocks + np.arange(others.size) // self.per_block
         self.lane[others] = np.arange(others.size) % self.per_block
         self.plain = self._take(-(-others.size // self.per_block), 0)
         for one in turning:
-            self.plain = self._take_pairs(one)
+            first = self.blocks
+            self.block[one.others] = first + np.arange(one.others.size) // self.per_block
+            self.lane[one.others] = np.arange(one.others.size) % self.per_block
+            self._take(-(-one.others.size // self.per_block), 0)
+            self.plain = self._take_pairs(one.pairs)
+            self.round_spans.append((first, self.plain))
         for along in inside:
             pairs = self.pairs[_key(along)] = {}
             first, along_count = first_multiple(along), along_blocks(along, self.per_block)
@@ -354,6 +371,15 @@ def turns_of(where: Layout, bodies: Sequence[Sequence[TurningBlocks]], width: in
     for run, own in enumerate(bodies):
         for one in own:
             out[where.block[one.pairs[:, 0]], DRAG : DRAG + 2, where.lane[one.pairs[:, 0]] + run] = one.turns.T
+    return out
+
+
+def at_start(where: Layout, rows: Array) -> Array:
+    """Return the rows of the contacts where they start, shape (blocks, rows, width); none where none moves round."""
+    count = 2 * where.sizes.contacts if where.sizes.circles else 0
+    kept = rows[:, CONTACTS : CONTACTS + count]
+    out = aligned(len(rows), kept.shape[1] * rows.shape[2]).reshape(kept.shape)
+    out[:] = kept
     return out
 
 

@@ -78,8 +78,12 @@ class _Start:
         self.before, self.after = np.diff(arrays.motion(times, step), axis=0)
         self.factors = np.array([signal(times[1:2], step)[0] for signal in arrays.signals[: len(arrays.loads)]])
         self.fixed = np.array([one.fixed for one in arrays.contacts])
-        moved = arrays.motion(times[1:2], step)[0, :, at.TIP_MOTION] + self.fixed[:, 1] @ arrays.position
+        self.travels = self.fixed[:, 1]
+        if any(one.circle is not None for one in arrays.contacts):
+            self.travels = np.array([one.travel for one in arrays.contacts])
+        moved = arrays.motion(times[1:2], step)[0, :, at.TIP_MOTION] + self.travels @ arrays.position
         places = [one.at + shift for one, shift in zip(arrays.contacts, moved.tolist(), strict=True)]
+        self._go_together(places)
         self.rows = np.array([rows_at(*pair) for pair in zip(arrays.contacts, places, strict=True)])
         terms = _terms(arrays, self.factors @ arrays.loads)
         gaps = np.array([_gap(*pair, arrays, terms) for pair in zip(arrays.contacts, self.rows, strict=True)])
@@ -92,6 +96,12 @@ class _Start:
             first, second = one.pairs.T
             self.velocity[first] += rate * arrays.position[second]
             self.velocity[second] -= rate * arrays.position[first]
+
+    def _go_together(self, places: list[float]) -> None:
+        """Let both tangents of contacts on circles be at the abscissa along the first."""
+        for i, one in enumerate(self.arrays.contacts):
+            if one.circle is not None and one.is_second:
+                places[i] = places[i - 1]
 
     @property
     def is_closed(self) -> Array:
@@ -146,7 +156,7 @@ class _Start:
         tip, track = self.before[:, 0], self.before[:, 1]
         for i, one in enumerate(self.arrays.contacts):
             carried[i, at.MATERIAL] = one.at + self.rows[i, 1] @ self.arrays.position
-            carried[i, at.ABSCISSA] = one.at + self.fixed[i, 1] @ self.arrays.position
+            carried[i, at.ABSCISSA] = one.at + self.travels[i] @ self.arrays.position
             carried[i, at.STATUS] = STICKING if self.is_closed[i] and self.slip_speeds[i] == 0.0 else SEPARATED
             if one.contact.has_state_vector:
                 carried[i, at.FRICTION_STATE] = self._bristles_before(int(self.first[i]))[i - self.first[i]]
@@ -155,7 +165,7 @@ class _Start:
                 carried[i, at.FRICTION_STATE] = self._state_before(i, one.contact.friction, speed)
         carried[:, at.ANCHOR], carried[:, at.LAST_GAP] = carried[:, at.MATERIAL], self.gaps
         carried[:, at.EARLIER_GAP] = self.gaps - self.rows[self.first, 0] @ first - self.before[self.first, 2]
-        carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - self.fixed[:, 1] @ first - tip
+        carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - self.travels @ first - tip
         carried[:, at.LAST_SLIP] = self.rows[:, 1] @ first + tip - track
         # One step more back, under the same acceleration.
         carried[:, at.EARLIER_SLIP] = 3.0 * carried[:, at.LAST_SLIP] - 2.0 * self.step * self.speeds
@@ -223,12 +233,17 @@ class _Start:
     def _at_first_step(self, increments: Array) -> tuple[Array, Array]:
         """Return gaps and slips after the first step, without contact force, where the tips are then."""
         places = [
-            one.at + one.fixed[1] @ (self.arrays.position + increments) + moved
-            for one, moved in zip(self.arrays.contacts, self.after[:, 0], strict=True)
+            one.at + travel @ (self.arrays.position + increments) + moved
+            for one, travel, moved in zip(self.arrays.contacts, self.travels, self.after[:, 0], strict=True)
         ]
+        self._go_together(places)
         there = np.array([rows_at(one, place) for one, place in zip(self.arrays.contacts, places, strict=True)])
         # What the rows gain on the way is small: a difference of its own keeps its digits.
         travelled = (there - self.rows) @ (self.arrays.position + increments)
+        for i, one in enumerate(self.arrays.contacts):
+            if one.circle is not None:
+                # The slip is that of the material, which is seen with the same rows before and after.
+                travelled[i, 1] = (there[i, 1] - self.rows[i, 1]) @ increments
         gaps = self.gaps + self.rows[:, 0] @ increments + travelled[:, 0] + self.after[:, 2]
         return gaps, self.rows[:, 1] @ increments + travelled[:, 1] + self.after[:, 0] - self.after[:, 1]
 
@@ -245,6 +260,8 @@ class _Start:
 
 def rows_at(one: ContactRows, place: float) -> Array:
     """Return the rows of a contact along normal and tangent, those of a track's modes at an abscissa [m]."""
+    if one.circle is not None:
+        return one.round_at(place)
     if one.contact.path_body is None:
         return one.fixed
     full, (low, high) = one.fixed.copy(), one.contact.path_body.ends

@@ -152,7 +152,7 @@ def _slides(structure: Structure, at: Equilibrium, exponent: complex, shape: Arr
     """Return slip velocity and its change in a mode [m/s] of the contacts that slide and whose slip changes."""
     found = []
     for k, line in enumerate(structure.lines):
-        slip = line.tangent - (line.tangent_slope @ at.displacement) * line.along
+        slip = line.tangent - (line.slip_slope @ at.displacement) * line.along
         change = float(abs(exponent * (slip @ shape)))
         if at.status[k] == SLIDING and change > ROUND_OFF * abs(exponent) * np.linalg.norm(slip):
             found.append((abs(float(at.slip_velocity[k])), change))

@@ -63,7 +63,11 @@ def start_of(system: System, asked: InitialEquilibrium) -> Start:
     moves = structure.sliding(at.status, at.slip_velocity)
     along = np.array([line.along for line in structure.lines])
     slides = np.array([one != STICKING for one in at.status])
-    velocity = moves + travelling(structure, at, slides * (structure.rates[0] + along @ moves))
+    # Under a tip on a circle what is prescribed is how the body turns.
+    carried = [
+        0.0 if contact.circle else rate for contact, rate in zip(system.contacts, structure.rates[0], strict=True)
+    ]
+    velocity = moves + travelling(structure, at, slides * (carried + along @ moves))
     position, states = at.displacement, np.zeros((len(structure.lines), 2))
     if asked.mode is not None:
         shape, exponent, changes = _mode(structure, at, asked)

@@ -39,9 +39,12 @@ class ContactLine:
         Displacement of the tip less that of the track, along the normal, along the slip and across it, which is zero in
         the plane; also how contact forces act.
     along : ndarray
-        Shift of the contact point along a beam or a plate; zero on other tracks, which look the same everywhere.
+        Shift of the contact point along a beam, a plate or a circle; zero on other tracks, which look the same
+        everywhere.
     normal_slope, tangent_slope : ndarray
         Displacement of the track along normal and tangent, derived along the track [1/m].
+    slip_slope : ndarray
+        What of `tangent_slope` the slip has: none on a circle, where it is that of the material under the tip.
     points : ndarray, shape (2, 2, modes) or (2, 3, modes)
         Displacement of the tip, then of the point of the track that it touches, each along world x, y and, in space, z.
     """
@@ -52,6 +55,7 @@ class ContactLine:
     along: Array
     normal_slope: Array
     tangent_slope: Array
+    slip_slope: Array
     points: Array
 
 
@@ -95,6 +99,7 @@ class Structure:
     """
 
     def __init__(self, system: System, time: float | None = None) -> None:
+        _check_circles(system)
         self.system, self.arrays = system, assemble(system)
         self._known: dict[Any, Any] = {}
         settled = settled_time(system) if time is None else time
@@ -160,8 +165,9 @@ class Structure:
         pairs = iter(self.arrays.contacts)
         lines = []
         for contact, way, shift in zip(self.system.contacts, self.ways, shifts.tolist(), strict=True):
-            line = _line(next(pairs), self.system, self.arrays, shift)
-            lines.append(_turned(line, way, next(pairs).fixed[1]) if contact.is_spatial else line)
+            pair = next(pairs)
+            line = _line(pair, self.system, self.arrays, shift)
+            lines.append(_turned(line, way, *_second(next(pairs), shift)) if contact.is_spatial else line)
         return lines
 
     def prescribed(self, status: Sequence[str]) -> Array:
@@ -329,8 +335,11 @@ def _line(one: ContactRows, system: System, arrays: Assembly, shift: float = 0.0
     place(0, one.contact.tip.body, one.contact.tip.position)
     if touched is not None:
         place(1, touched.body, touched.position)
+    if one.circle is not None:
+        rows, slopes = one.round_at(one.contact.at + shift), -one.slopes_round_at(one.contact.at + shift)
+        return ContactLine(rows[0], rows[1], nothing, one.travel, slopes[0], slopes[1], nothing, points)
     if track is None:
-        return ContactLine(one.fixed[0], one.fixed[1], nothing, nothing, nothing, nothing, points)
+        return ContactLine(one.fixed[0], one.fixed[1], nothing, nothing, nothing, nothing, nothing, points)
     at = one.contact.at + shift
     place(1, track, at)
     slope = np.zeros((2, nothing.size))
@@ -338,12 +347,31 @@ def _line(one: ContactRows, system: System, arrays: Assembly, shift: float = 0.0
     # A trace is along x, then along y: tangent and normal.
     trace = points[1]
     normal, tangent = one.fixed[0] - trace[1], one.fixed[1] - trace[0]
-    return ContactLine(normal, tangent, nothing, one.fixed[1], slope[1], slope[0], points)
+    return ContactLine(normal, tangent, nothing, one.fixed[1], slope[1], slope[0], slope[0], points)
 
 
-def _turned(line: ContactLine, way: Array, second: Array) -> ContactLine:
+def _check_circles(system: System) -> None:
+    """Raise where something is carried along a circle: its body then turns under it."""
+    for name, contact in zip(system.contact_names, system.contacts, strict=True):
+        if contact.circle is not None and (contact.circle.velocity or system.is_held(contact.tip.body)):
+            words = (
+                f"not be carried along its circle by {name} in linear theory: let the body turn the other way instead"
+            )
+            raise ArgumentError("track", words, got=f"a velocity of {contact.circle.velocity!r} m/s")
+
+
+def _second(one: ContactRows, shift: float) -> tuple[Array, Array]:
+    """Return the row of the second tangent of a contact in space, and how the track's share of it goes along it."""
+    if one.circle is None:
+        return one.fixed[1], np.zeros_like(one.fixed[1])
+    place = one.contact.at + shift
+    return one.round_at(place)[1], -one.slopes_round_at(place)[1]
+
+
+def _turned(line: ContactLine, way: Array, second: Array, second_slope: Array) -> ContactLine:
     """Return a contact in space with its tangent along the slip, from the rows of both tangents."""
     c, s = way.tolist()
+    line = replace(line, tangent_slope=c * line.tangent_slope + s * second_slope)
     across = c * second - s * line.tangent
     size = np.linalg.norm(line.normal) + np.linalg.norm(line.tangent)
     if np.linalg.norm(across) < UNMOVED * size:

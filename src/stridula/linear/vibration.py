@@ -82,7 +82,7 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
         normal, tangential = equilibrium.normal_force[k], equilibrium.tangential_force[k]
         if line.along.any():
             stiffness += np.outer(normal * line.normal_slope - tangential * line.tangent_slope, line.along)
-        slip = line.tangent - (line.tangent_slope @ shape) * line.along
+        slip = line.tangent - (line.slip_slope @ shape) * line.along
         if k in stuck:
             if (slip @ passing).any():
                 name = structure.system.contact_names[k]

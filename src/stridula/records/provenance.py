@@ -78,6 +78,10 @@ def _general(system: System, probed: Sequence[BodyPoint]) -> dict[str, Any]:
             return {"kind": rigid.kind, **_plain(rigid, "history", "normal_history"), **_histories(rigid)}
         if body is not None:
             return {"kind": body.kind.removeprefix("modal "), "body": system.body_name(body)}
+        if contact.circle is not None:
+            circle = contact.circle
+            velocity = {"velocity": circle.velocity, **_histories(circle)} if circle.velocity else {}
+            return {"kind": "circle", **place(touched or circle), **velocity}
         return {"kind": "point", **(place(touched) if touched is not None else {})}
 
     tables: dict[str, Any] = {
@@ -153,7 +157,7 @@ def _value(value: Any) -> Any:
 
 
 def _body(body: Any) -> dict[str, Any]:
-    given = _plain(body, "material", "section", "points", "turning", "velocities")
+    given = _plain(body, "material", "section", "points", "turning", "velocities", "circles")
     if hasattr(body, "material"):
         given["material"] = _plain(body.material)
     if hasattr(body, "points"):
@@ -162,6 +166,8 @@ def _body(body: Any) -> dict[str, Any]:
     if getattr(body, "turning", None) is not None:
         velocities = {name: body.turning_velocity(name) for name in body.points}
         given |= {"turning": _turning_table(body.turning), "velocities": _value(velocities)}
+    if getattr(body, "circles", None):
+        given["circles"] = _value({name: circle.tolist() for name, circle in body.circles.items()})
     if not hasattr(body, "section"):
         return given
     return {**given, "section": {"shape": body.section.shape, **_plain(body.section)}}
@@ -185,7 +191,9 @@ def _cells(mesh: Any, *names: str) -> dict[str, Any]:
 
 def _general_body(body: Any, system: System, probed: Sequence[BodyPoint]) -> dict[str, Any]:
     """Return the table of a body, without the name where the table's own name says it."""
-    given = _modes_table(body, [*_points_in(system), *probed]) if _is_meshed(body) else body_table(body)
+    circles = [contact for contact in system.contacts if contact.circle is not None and contact.circle.body == body]
+    points = [*_points_in(system), *probed]
+    given = _modes_table(body, points, circles) if _is_meshed(body) else body_table(body)
     if body.name != _default_name(body, system):
         given.pop("name", None)
     return given
@@ -196,7 +204,7 @@ def _is_meshed(body: Any) -> bool:
     return hasattr(body, "mesh")
 
 
-def _modes_table(body: Any, points: Sequence[BodyPoint]) -> dict[str, Any]:
+def _modes_table(body: Any, points: Sequence[BodyPoint], circles: Sequence[PointContact] = ()) -> dict[str, Any]:
     """Return the table of a body by its modes, with the points that are used."""
     modes = body.modes()
     held = ~modes.massless
@@ -210,16 +218,30 @@ def _modes_table(body: Any, points: Sequence[BodyPoint]) -> dict[str, Any]:
         "points": {name: _value(one) for name, one in rows.items()},
         "translation": _value(modes.translation + 0.0),
         "residual": int(modes.massless.sum()),
-        **_turning(modes.turning, {point.label: point for point in points if point.body == body}),
+        **_turning(
+            body.waves_round if circles else modes.turning,
+            {point.label: point for point in points if point.body == body},
+        ),
+        **_circles(circles),
         "name": body.name,
     }
+
+
+def _circles(contacts: Sequence[PointContact]) -> dict[str, Any]:
+    """Return the circles that contacts move along, by the points where they start, nothing without any."""
+    found = {}
+    for contact in contacts:
+        circle, start = contact.circle, contact.touched_point
+        if circle is not None and start is not None:
+            found[start.label] = _value([circle.radius, contact.at, *circle.direction(contact.at).tolist()])
+    return {"circles": found} if found else {}
 
 
 def _turning(turning: Turning | None, points: dict[str, BodyPoint]) -> dict[str, Any]:
     """Return how a body turns and how fast it passes its points, nothing if it does not."""
     if turning is None:
         return {}
-    velocities = {name: _value(point.turning_velocity) for name, point in points.items()}
+    velocities = {name: _value(point.turning_velocity + 0.0) for name, point in points.items()}
     return {"turning": _turning_table(turning), "velocities": velocities}
 
 

@@ -336,6 +336,8 @@ class Builder:
         kind = table.pop("kind")
         if kind == "point":
             return self._place(path, table)
+        if kind == "circle":
+            return self._circle(path, table)
         if kind != RigidTrack.kind:
             body = self.bodies[table["body"]]
             if body.kind != f"modal {kind}":
@@ -348,6 +350,22 @@ class Builder:
                 table[name] = self._history((*path, name), table[name])
         with self._within(*path):
             return RigidTrack(**{name: value for name, value in table.items() if value is not None})
+
+    def _circle(self, path: Place, table: Tables) -> Any:
+        body = self.bodies[table["body"]]
+        if not hasattr(body, "circle"):
+            problem = f"must be a body of revolution, got {brief(table['body'])}"
+            self.problems.append(f"{self.words((*path, 'body'))} {problem}")
+            return None
+        history = table.get("history")
+        if history is not None:
+            history = self._history((*path, "history"), history)
+        with self._within(*path):
+            try:
+                return body.circle(table["point"], table.get("velocity", 0.0), history)
+            except ArgumentError as error:
+                raise (error.renamed("point") if error.argument == "position" else error) from None
+        return None
 
     def _place(self, path: Place, table: Tables) -> Any:
         return self._point((*path, "point"), self.bodies[table["body"]], table.get("point"), "tip")

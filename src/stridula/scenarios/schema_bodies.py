@@ -167,6 +167,8 @@ class Modal(Table):
     """velocities of the material of a body that turns along x, y and z, by the name of the point [m/s]"""
     outer_surface: OuterSurface | None = None
     """outer surface and how the modes move it, which a body needs to be heard"""
+    circles: is_.PlaceTable | None = None
+    """circles that others may move round, by the name of a point: radius and its abscissa [m], direction there"""
     name: str = ""
     """what it is called in records, the table's own name if left out"""
 

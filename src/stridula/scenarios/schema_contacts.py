@@ -49,25 +49,38 @@ class Place(Table):
 
 class BeamTrack(Table):
     kind: Literal["beam"]
-    """beam, plate, rigid or point"""
+    """beam, plate, rigid, point or circle"""
     body: str
     """modal beam along which it slides: its name among the bodies"""
 
 
 class PlateTrack(Table):
     kind: Literal["plate"]
-    """beam, plate, rigid or point"""
+    """beam, plate, rigid, point or circle"""
     body: str
     """modal plate along whose line it slides: its name among the bodies"""
 
 
 class PointTrack(Table):
     kind: Literal["point"]
-    """beam, plate, rigid or point"""
+    """beam, plate, rigid, point or circle"""
     body: str
     """body that is touched: its name among the bodies"""
     point: is_.Point | None = None
     """which point of it; its tip, centre or only point if left out"""
+
+
+class CircleTrack(Table):
+    kind: Literal["circle"]
+    """beam, plate, rigid, point or circle"""
+    body: str
+    """body of revolution round whose axis it slides: its name among the bodies"""
+    point: is_.Point
+    """point (r, theta, z) where the abscissa is zero [m, rad, m]"""
+    velocity: is_.Velocity = 0.0
+    """velocity at which what slides is carried along the circle as a whole [m/s]"""
+    history: History | None = None
+    """factor on that velocity over time, constant if left out"""
 
 
 class RevolvedTrack(Table):
@@ -99,11 +112,11 @@ else:
         "normal_history": (History | None, None, "the same along its normal"),
         "name": (str, "", "what it is called in records"),
     }
-    _rigid = table_of(RigidTrack, "kind", "rigid", "beam, plate, rigid or point", title="Rigid", after=_moved)
+    _rigid = table_of(RigidTrack, "kind", "rigid", "beam, plate, rigid, point or circle", title="Rigid", after=_moved)
     _sides = {
         "name": (str, "", "what it is called in records"),
         "tip": (Place, ..., "what touches"),
-        "track": (one_of("kind", [BeamTrack, PlateTrack, _rigid, PointTrack]), ..., "what it slides on"),
+        "track": (one_of("kind", [BeamTrack, PlateTrack, _rigid, PointTrack, CircleTrack]), ..., "what it slides on"),
     }
     _friction = {"friction": (Friction | None, None, "friction between tip and track, none if left out")}
     _friction["surface"] = (str, "", "name of the surface that it is a point of, which may lift off in part")
