@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
@@ -44,13 +46,15 @@ class Fits:
     radiator: Radiator
     known: dict[float, Fit] = field(default_factory=dict)
 
-    def at(self, wavenumber: float) -> Fit:
-        """Return the fit at a wavenumber [rad/m]."""
-        if wavenumber not in self.known:
-            # Matrices are too small for threads to help.
-            with threadpool_limits(1):
-                self.known[wavenumber] = self.radiator.fit(wavenumber)
-        return self.known[wavenumber]
+    def at(self, wavenumbers: Sequence[float]) -> list[Fit]:
+        """Return the fits at wavenumbers [rad/m]; those that are new are made on all processors."""
+        new = [one for one in wavenumbers if one not in self.known]
+        # Matrices are too small for threads of linear algebra to help.
+        with threadpool_limits(1), ThreadPoolExecutor(os.cpu_count()) as pool:
+            # What all fits share is made by the first.
+            self.known.update((one, self.radiator.fit(one)) for one in new[:1])
+            self.known.update(zip(new[1:], pool.map(self.radiator.fit, new[1:]), strict=True))
+        return [self.known[one] for one in wavenumbers]
 
 
 @lru_cache(maxsize=8)
@@ -113,7 +117,9 @@ def free_responses(
     for number in range(TIMES):
         frequencies = np.arange(int(np.ceil(STOP * bandwidth * lasts))) / lasts
         waves = 2.0 * np.pi * frequencies / air.speed
-        heard = np.array([fits.radiator.heard(fits.at(float(k)), float(k), places) for k in waves])
+        made = fits.at(waves.tolist())
+        heard = np.array([fits.radiator.heard(fit, k, places) for fit, k in zip(made, waves.tolist(), strict=True)])
+        heard = heard.astype(complex)
         heard *= air.density * np.exp(1j * waves[:, None] * distances)[:, :, None]
         heard *= _taper(frequencies, bandwidth)[:, None, None]
         pairs = [
@@ -124,8 +130,7 @@ def free_responses(
         if left < LEFT or number == TIMES - 1:
             break
         lasts *= 2.0
-    errors = np.array([fits.at(float(k)).errors for k in waves])
-    return Sent([one for one, _ in pairs], frequencies, errors, left)
+    return Sent([one for one, _ in pairs], frequencies, np.array([fit.errors for fit in made]), left)
 
 
 def _taper(frequencies: Array, bandwidth: float) -> Array:
