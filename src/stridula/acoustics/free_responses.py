@@ -26,7 +26,7 @@ STOP = 1.2
 TRAVELS, PERIODS = 2.0, 6.0
 # Share of the largest value of a response that may be left at its end, before frequencies are taken twice as close, and
 # how often.
-LEFT, TIMES = 2e-3, 3
+LEFT, TIMES = 5e-3, 3
 # By its form.
 RADIATORS: dict[str, Callable[[Any], Radiator]] = {"rings": RingSources, "points": SurfacePressures}
 
@@ -148,7 +148,9 @@ def _taps(
     turned = np.exp(2j * np.pi / lasts * np.outer(times, np.arange(len(heard))))
     turned[:, 1:] *= 2.0
     taps = interval / lasts * (turned @ heard).real
-    # Of the loudest mode: what others leave is not heard beside it.
+    # Of the loudest mode: what others leave is not heard beside it. After this end comes what fits that differ from one
+    # frequency to the next put before the arrival, which does not get less with time.
     size = float(np.abs(taps).max(initial=0.0))
-    end = float(np.abs(taps[times > lasts - 1.25 * early]).max(initial=0.0))
+    is_end = np.abs(times - (lasts - 1.625 * early)) <= 0.125 * early
+    end = float(np.abs(taps[is_end]).max(initial=0.0))
     return Response(first, taps), end / size if size else 0.0
