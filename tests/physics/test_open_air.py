@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import stridula as st
+from stridula.acoustics.fits import fits_of
 from stridula.acoustics.free_responses import free_responses
 from stridula.acoustics.redriven import redriven
 from stridula.acoustics.ring_sources import RingSources
@@ -221,3 +222,51 @@ def test_a_response_is_delayed_by_the_way_to_the_surface():
         assert whole == pytest.approx(st.Air().density * 0.01 / 1.1, rel=2e-3)
         peak = taps.first + int(taps.taps[:, 0].argmax())
         assert peak == pytest.approx(distance / st.Air().speed / interval + 0.5, abs=4.0)
+
+
+def fits_made(monkeypatch, surface):
+    """Return impulse responses of a body in what stands for a new process, and the number of fits made for them."""
+    counted = []
+    fit = RingSources.fit
+    monkeypatch.setattr(RingSources, "fit", lambda self, wavenumber: counted.append(1) or fit(self, wavenumber))
+    fits_of.cache_clear()
+    sent = free_responses(surface, open_air.PLACES[:1], np.array([0.6]), st.Air(), 1e-5, 0.0, 15e3)
+    monkeypatch.setattr(RingSources, "fit", fit)
+    return sent, len(counted)
+
+
+def test_fits_are_kept_for_the_next_process(monkeypatch, tmp_path):
+    monkeypatch.setenv("STRIDULA_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr("stridula.acoustics.fits.WORTH", 0.0)
+    first, many = fits_made(monkeypatch, open_air.ring_sphere(12))
+    again, none = fits_made(monkeypatch, open_air.ring_sphere(12))
+    assert many == len(first.frequencies)
+    assert none == 0
+    np.testing.assert_array_equal(again.responses[0].taps, first.responses[0].taps)
+    np.testing.assert_array_equal(again.errors, first.errors)
+    # A body that moves in another way is another one.
+    other = open_air.ring_sphere(12)
+    other.shapes[3, 1] *= 1.5
+    moved, made = fits_made(monkeypatch, other)
+    assert made == many
+    assert np.abs(moved.responses[0].taps - first.responses[0].taps).max() > 0.0
+
+
+def test_slopes_of_rings_in_single_precision_are_the_plain_integral():
+    """Over the angles in double precision; the sharp part of the nearest pairs is integrated to 5e-5."""
+    sources = RingSources(open_air.disc(0.02))
+    surface, wave = sources.surface, 150.0
+    nodes, weights = np.polynomial.legendre.leggauss(4000)
+    angles, weights = 0.5 * pi * (nodes + 1.0), 0.5 * weights
+    found = sources._slopes(wave)
+    for ring, source in ((0, 5), (11, 5), (40, 20), (len(surface.places) - 1, 0)):
+        (r, z), (across, along), (radius, height) = (
+            surface.places[ring],
+            surface.normals[ring],
+            sources.sources[source],
+        )
+        away = np.sqrt(r**2 + radius**2 - 2.0 * r * radius * np.cos(angles) + (z - height) ** 2)
+        slope = (across * (r - radius * np.cos(angles)) + along * (z - height)) / away
+        change = -(1.0 + 1j * wave * away) * np.exp(-1j * wave * away) / away**2 * slope
+        known = [(weights * change * np.cos(order * angles)).sum() / (4.0 * pi) for order in sources.orders]
+        np.testing.assert_allclose(found[:, ring, source], known, atol=1e-4 * np.abs(found[:, ring]).max())

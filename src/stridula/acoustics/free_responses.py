@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
-from functools import lru_cache
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
 from ..bodies.body_surfaces import BodySurface
 from .air import Air
 from .delays import Response
-from .equivalent_sources import Fit, Radiator
-from .ring_sources import RingSources
-from .surface_pressures import SurfacePressures
+from .fits import fits_of
 
 # Frequency above which nothing is left of a response, over the bandwidth.
 STOP = 1.2
@@ -27,40 +19,6 @@ TRAVELS, PERIODS = 2.0, 6.0
 # Share of the largest value of a response that may be left at its end, before frequencies are taken twice as close, and
 # how often.
 LEFT, TIMES = 5e-3, 3
-# By its form.
-RADIATORS: dict[str, Callable[[Any], Radiator]] = {"rings": RingSources, "points": SurfacePressures}
-
-
-@dataclass(frozen=True, eq=False)
-class Fits:
-    """Fits of a body at wavenumbers, made once.
-
-    Attributes
-    ----------
-    radiator : Radiator
-        Its equivalent sources.
-    known : dict
-        Fits made so far, by their wavenumbers [rad/m].
-    """
-
-    radiator: Radiator
-    known: dict[float, Fit] = field(default_factory=dict)
-
-    def at(self, wavenumbers: Sequence[float]) -> list[Fit]:
-        """Return the fits at wavenumbers [rad/m]; those that are new are made on all processors."""
-        new = [one for one in wavenumbers if one not in self.known]
-        # Matrices are too small for threads of linear algebra to help.
-        with threadpool_limits(1), ThreadPoolExecutor(os.cpu_count()) as pool:
-            # What all fits share is made by the first.
-            self.known.update((one, self.radiator.fit(one)) for one in new[:1])
-            self.known.update(zip(new[1:], pool.map(self.radiator.fit, new[1:]), strict=True))
-        return [self.known[one] for one in wavenumbers]
-
-
-@lru_cache(maxsize=8)
-def fits_of(surface: BodySurface) -> Fits:
-    """Return the fits of a body by its surface; they are kept for the bodies asked for last."""
-    return Fits(RADIATORS[surface.form](surface))
 
 
 @dataclass(frozen=True)
@@ -130,6 +88,7 @@ def free_responses(
         if left < LEFT or number == TIMES - 1:
             break
         lasts *= 2.0
+    fits.keep()
     return Sent([one for one, _ in pairs], frequencies, np.array([fit.errors for fit in made]), left)
 
 

@@ -71,7 +71,8 @@ class RingSources:
         for slope, order in zip(self._slopes(wavenumber), self.orders, strict=True):
             those = surface.orders == order
             strengths, errors[those] = fitted(slope, -surface.shapes[:, those], areas, surface.widths)
-            found.append(strengths)
+            # Close to the surface, too, pressures keep 1e-5.
+            found.append(strengths.astype(np.complex64))
         return Fit(tuple(found), errors)
 
     def heard(self, fit: Fit, wavenumber: float, places: Array) -> Array:
