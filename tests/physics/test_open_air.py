@@ -224,6 +224,20 @@ def test_a_response_is_delayed_by_the_way_to_the_surface():
         assert peak == pytest.approx(distance / st.Air().speed / interval + 0.5, abs=4.0)
 
 
+def test_a_start_in_motion_is_said_to_be_left_out():
+    plate = disc(0.0, cutoff=800.0)
+    apart = st.RigidBody(1.0, points={"tip": (0.0, 0.0, 0.0)})
+    contact = st.PointContact(apart.at("tip"), plate.at(HERE), gap=1.0, normal=(0.0, 0.0, 1.0))
+    left_out = "the vibration that it starts with is not included"
+    for start in (st.InitialVelocity(plate, z=0.1), st.InitialState(apart, velocity=[0.0, 0.0, 1.0])):
+        system = st.System(contact, [start])
+        heard = st.radiate(st.simulate(system, 2e-3, sample_rate=1e4), system, (0.3, 0.3, 0.5))
+        assert f"{left_out}: {start}" in heard.attrs["notes"]
+    system = st.System(contact, [st.InitialVelocity(plate)])
+    heard = st.radiate(st.simulate(system, 2e-3, sample_rate=1e4), system, (0.3, 0.3, 0.5))
+    assert left_out not in heard.attrs["notes"]
+
+
 def fits_made(monkeypatch, surface):
     """Return impulse responses of a body in what stands for a new process, and the number of fits made for them."""
     counted = []
