@@ -18,6 +18,8 @@ from stridula.acoustics.redriven import redriven
 from stridula.acoustics.ring_sources import RingSources
 from stridula.acoustics.surface_pressures import SurfacePressures
 from stridula.assembly import assemble
+from stridula.bodies import ring_surfaces
+from stridula.bodies.body_surfaces import RingSurface
 from stridula.verification import open_air
 
 from .test_turning import HERE, disc, rubbed, struck
@@ -284,3 +286,57 @@ def test_slopes_of_rings_in_single_precision_are_the_plain_integral():
         change = -(1.0 + 1j * wave * away) * np.exp(-1j * wave * away) / away**2 * slope
         known = [(weights * change * np.cos(order * angles)).sum() / (4.0 * pi) for order in sources.orders]
         np.testing.assert_allclose(found[:, ring, source], known, atol=1e-4 * np.abs(found[:, ring]).max())
+
+
+def hat() -> RingSources:
+    """A disc with a hat, two corners of which turn inwards, that moves outwards on its inside and along its axis."""
+    parts = {
+        "disc": ((0.07, 0.13), (-0.01, 0.01)),
+        "wall": ((0.06, 0.07), (-0.01, 0.05)),
+        "top": ((0.03, 0.06), (0.044, 0.05)),
+    }
+    mesh = st.RectangleProfile(parts).mesh(lambda size, name: size)
+    places, normals, widths = ring_surfaces.cut_outline(mesh, 3.5e-3)
+    shapes = np.stack([normals[:, 1], -normals[:, 0] * (places[:, 0] < 0.061)], axis=1)
+    return RingSources(
+        RingSurface(places, normals, widths, shapes, *np.zeros((2, 2), dtype=int), np.eye(3), np.zeros(3))
+    )
+
+
+def test_corners_that_turn_inwards_are_met(monkeypatch):
+    place, wave = np.array([[0.2, 0.3, 0.5], [0.0, 0.0, 1.0]]), 30.0
+
+    def found():
+        sources = hat()
+        fit = sources.fit(wave)
+        return sources.heard(fit, wave, place), fit.errors
+
+    pressure, errors = found()
+    assert errors.max() < 0.06
+    monkeypatch.setattr(ring_surfaces, "PART_OF_WAY", 1e9)
+    # Negative control: parts as long there as elsewhere.
+    coarse, missed = found()
+    assert missed.max() > 0.1
+    monkeypatch.setattr(ring_surfaces, "PART_OF_WAY", 0.3)
+    monkeypatch.setattr(ring_surfaces, "PART_OF_BALL", 0.25)
+    fine, _ = found()
+    size = np.abs(fine).max(axis=0)
+    assert (np.abs(pressure - fine) < 0.01 * size).all()
+    assert (np.abs(coarse - fine) > 0.05 * size).any()
+
+
+def test_a_wall_of_a_hundredth_of_the_radius_carries_the_air_of_a_thin_disc():
+    """The air that a disc carries along, against what thicker ones tell of a thin one; its limit is 8 / 3."""
+
+    def carried(share):
+        thickness, far = share * open_air.RADIUS, 5.0
+        places = np.array([[0.0, 0.0, 0.5 * thickness + far], [0.0, 0.0, 0.5 * thickness - far]])
+        front, back = open_air.heard(RingSources(open_air.disc(thickness)), 1e-6, places)[:, 0].real
+        whole = 2.0 * pi * far**2 * (front - back) / open_air.AIR.density
+        return (whole - pi * open_air.RADIUS**2 * thickness) / open_air.RADIUS**3
+
+    known = np.array([0.2, 0.1, 0.05])
+    terms = np.stack([np.ones(3), known, known * np.log(known)], axis=1)
+    told = np.linalg.solve(terms, [carried(share) for share in known]) @ [1.0, 0.01, 0.01 * np.log(0.01)]
+    assert carried(0.01) == pytest.approx(told, rel=5e-3)
+    assert told == pytest.approx(8.0 / 3.0, rel=0.03)
