@@ -73,7 +73,7 @@ def _chosen(structure: Structure, motion: Vibration, modes: int | None, near: fl
 
 
 def _all(motion: Vibration, shapes: bool = True) -> Exponents:
-    # Threads hardly help here, and beside other work on the same processors they took twenty times as long.
+    # Threads hardly help matrices of this size, and wait for each other where other work has the processors.
     with threadpool_limits(1):
         return all_exponents(motion, shapes) if motion.mass.all() else massless_exponents(motion)
 
