@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 import signal
 import sys
@@ -11,6 +12,9 @@ import pytest
 from hypothesis import settings
 
 from stridula.cli import main
+
+# No test finds what another one has kept, nor leaves anything in the user's folder; processes inherit it.
+os.environ["STRIDULA_CACHE_DIR"] = "off"
 
 # The same examples in every run: a test that fails must fail again.
 settings.register_profile("repeatable", derandomize=True, database=None)

@@ -72,6 +72,12 @@ class Drive:
         return {}
 
     @property
+    def starts_motion(self) -> bool:
+        """Whether on its account bodies are away from their equilibrium at the start."""
+        moved = self.uniform_velocity
+        return any(np.any(values) for values in [*self.vectors.values(), () if moved is None else moved])
+
+    @property
     def velocities(self) -> tuple[float, ...]:
         """Velocities that it prescribes [m/s]."""
         return ()
@@ -368,6 +374,11 @@ class InitialEquilibrium(Drive):
             positive("amplitude", self.amplitude)
         elif self.amplitude:
             raise ArgumentError("amplitude", "be 0 without a mode that has it", self.amplitude)
+
+    @property
+    def starts_motion(self) -> bool:
+        """Whether there is a mode of vibration on top."""
+        return self.mode is not None
 
     @property
     def velocities(self) -> tuple[float, ...]:

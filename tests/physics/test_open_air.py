@@ -12,11 +12,14 @@ import numpy as np
 import pytest
 
 import stridula as st
+from stridula.acoustics.fits import fits_of
 from stridula.acoustics.free_responses import free_responses
 from stridula.acoustics.redriven import redriven
 from stridula.acoustics.ring_sources import RingSources
 from stridula.acoustics.surface_pressures import SurfacePressures
 from stridula.assembly import assemble
+from stridula.bodies import ring_surfaces
+from stridula.bodies.body_surfaces import RingSurface
 from stridula.verification import open_air
 
 from .test_turning import HERE, disc, rubbed, struck
@@ -221,3 +224,119 @@ def test_a_response_is_delayed_by_the_way_to_the_surface():
         assert whole == pytest.approx(st.Air().density * 0.01 / 1.1, rel=2e-3)
         peak = taps.first + int(taps.taps[:, 0].argmax())
         assert peak == pytest.approx(distance / st.Air().speed / interval + 0.5, abs=4.0)
+
+
+def test_a_start_in_motion_is_said_to_be_left_out():
+    plate = disc(0.0, cutoff=800.0)
+    apart = st.RigidBody(1.0, points={"tip": (0.0, 0.0, 0.0)})
+    contact = st.PointContact(apart.at("tip"), plate.at(HERE), gap=1.0, normal=(0.0, 0.0, 1.0))
+    left_out = "the vibration that it starts with is not included"
+    for start in (st.InitialVelocity(plate, z=0.1), st.InitialState(apart, velocity=[0.0, 0.0, 1.0])):
+        system = st.System(contact, [start])
+        heard = st.radiate(st.simulate(system, 2e-3, sample_rate=1e4), system, (0.3, 0.3, 0.5))
+        assert f"{left_out}: {start}" in heard.attrs["notes"]
+    system = st.System(contact, [st.InitialVelocity(plate)])
+    heard = st.radiate(st.simulate(system, 2e-3, sample_rate=1e4), system, (0.3, 0.3, 0.5))
+    assert left_out not in heard.attrs["notes"]
+
+
+def fits_made(monkeypatch, surface):
+    """Return impulse responses of a body in what stands for a new process, and the number of fits made for them."""
+    counted = []
+    fit = RingSources.fit
+    monkeypatch.setattr(RingSources, "fit", lambda self, wavenumber: counted.append(1) or fit(self, wavenumber))
+    fits_of.cache_clear()
+    sent = free_responses(surface, open_air.PLACES[:1], np.array([0.6]), st.Air(), 1e-5, 0.0, 15e3)
+    monkeypatch.setattr(RingSources, "fit", fit)
+    return sent, len(counted)
+
+
+def test_fits_are_kept_for_the_next_process(monkeypatch, tmp_path):
+    monkeypatch.setenv("STRIDULA_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr("stridula.acoustics.fits.WORTH", 0.0)
+    first, many = fits_made(monkeypatch, open_air.ring_sphere(12))
+    again, none = fits_made(monkeypatch, open_air.ring_sphere(12))
+    assert many == len(first.frequencies)
+    assert none == 0
+    np.testing.assert_array_equal(again.responses[0].taps, first.responses[0].taps)
+    np.testing.assert_array_equal(again.errors, first.errors)
+    # A body that moves in another way is another one.
+    other = open_air.ring_sphere(12)
+    other.shapes[3, 1] *= 1.5
+    moved, made = fits_made(monkeypatch, other)
+    assert made == many
+    assert np.abs(moved.responses[0].taps - first.responses[0].taps).max() > 0.0
+
+
+def test_slopes_of_rings_in_single_precision_are_the_plain_integral():
+    """Over the angles in double precision; the sharp part of the nearest pairs is integrated to 5e-5."""
+    sources = RingSources(open_air.disc(0.02))
+    surface, wave = sources.surface, 150.0
+    nodes, weights = np.polynomial.legendre.leggauss(4000)
+    angles, weights = 0.5 * pi * (nodes + 1.0), 0.5 * weights
+    found = sources._slopes(wave)
+    for ring, source in ((0, 5), (11, 5), (40, 20), (len(surface.places) - 1, 0)):
+        (r, z), (across, along), (radius, height) = (
+            surface.places[ring],
+            surface.normals[ring],
+            sources.sources[source],
+        )
+        away = np.sqrt(r**2 + radius**2 - 2.0 * r * radius * np.cos(angles) + (z - height) ** 2)
+        slope = (across * (r - radius * np.cos(angles)) + along * (z - height)) / away
+        change = -(1.0 + 1j * wave * away) * np.exp(-1j * wave * away) / away**2 * slope
+        known = [(weights * change * np.cos(order * angles)).sum() / (4.0 * pi) for order in sources.orders]
+        np.testing.assert_allclose(found[:, ring, source], known, atol=1e-4 * np.abs(found[:, ring]).max())
+
+
+def hat() -> RingSources:
+    """A disc with a hat, two corners of which turn inwards, that moves outwards on its inside and along its axis."""
+    parts = {
+        "disc": ((0.07, 0.13), (-0.01, 0.01)),
+        "wall": ((0.06, 0.07), (-0.01, 0.05)),
+        "top": ((0.03, 0.06), (0.044, 0.05)),
+    }
+    mesh = st.RectangleProfile(parts).mesh(lambda size, name: size)
+    places, normals, widths = ring_surfaces.cut_outline(mesh, 3.5e-3)
+    shapes = np.stack([normals[:, 1], -normals[:, 0] * (places[:, 0] < 0.061)], axis=1)
+    return RingSources(
+        RingSurface(places, normals, widths, shapes, *np.zeros((2, 2), dtype=int), np.eye(3), np.zeros(3))
+    )
+
+
+def test_corners_that_turn_inwards_are_met(monkeypatch):
+    place, wave = np.array([[0.2, 0.3, 0.5], [0.0, 0.0, 1.0]]), 30.0
+
+    def found():
+        sources = hat()
+        fit = sources.fit(wave)
+        return sources.heard(fit, wave, place), fit.errors
+
+    pressure, errors = found()
+    assert errors.max() < 0.06
+    monkeypatch.setattr(ring_surfaces, "PART_OF_WAY", 1e9)
+    # Negative control: parts as long there as elsewhere.
+    coarse, missed = found()
+    assert missed.max() > 0.1
+    monkeypatch.setattr(ring_surfaces, "PART_OF_WAY", 0.3)
+    monkeypatch.setattr(ring_surfaces, "PART_OF_BALL", 0.25)
+    fine, _ = found()
+    size = np.abs(fine).max(axis=0)
+    assert (np.abs(pressure - fine) < 0.01 * size).all()
+    assert (np.abs(coarse - fine) > 0.05 * size).any()
+
+
+def test_a_wall_of_a_hundredth_of_the_radius_carries_the_air_of_a_thin_disc():
+    """The air that a disc carries along, against what thicker ones tell of a thin one; its limit is 8 / 3."""
+
+    def carried(share):
+        thickness, far = share * open_air.RADIUS, 5.0
+        places = np.array([[0.0, 0.0, 0.5 * thickness + far], [0.0, 0.0, 0.5 * thickness - far]])
+        front, back = open_air.heard(RingSources(open_air.disc(thickness)), 1e-6, places)[:, 0].real
+        whole = 2.0 * pi * far**2 * (front - back) / open_air.AIR.density
+        return (whole - pi * open_air.RADIUS**2 * thickness) / open_air.RADIUS**3
+
+    known = np.array([0.2, 0.1, 0.05])
+    terms = np.stack([np.ones(3), known, known * np.log(known)], axis=1)
+    told = np.linalg.solve(terms, [carried(share) for share in known]) @ [1.0, 0.01, 0.01 * np.log(0.01)]
+    assert carried(0.01) == pytest.approx(told, rel=5e-3)
+    assert told == pytest.approx(8.0 / 3.0, rel=0.03)

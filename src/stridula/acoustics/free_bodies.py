@@ -174,4 +174,6 @@ def _lacks(system: System, heard: Sequence[Any], silent: Sequence[str], moved: M
     notes.append(f"modes end at: {', '.join(words)}")
     if moved.start > 0.5 * moved.interval:
         notes.append("the record continues another one; vibration left from that one is not included")
+    elif started := [str(drive) for drive in system.drives if drive.starts_motion]:
+        notes.append(f"the vibration that it starts with is not included: {listed(started)}")
     return notes

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import lru_cache
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
 from ..bodies.body_surfaces import BodySurface
 from .air import Air
 from .delays import Response
-from .equivalent_sources import Fit, Radiator
-from .ring_sources import RingSources
-from .surface_pressures import SurfacePressures
+from .fits import fits_of
 
 # Frequency above which nothing is left of a response, over the bandwidth.
 STOP = 1.2
@@ -24,39 +18,7 @@ STOP = 1.2
 TRAVELS, PERIODS = 2.0, 6.0
 # Share of the largest value of a response that may be left at its end, before frequencies are taken twice as close, and
 # how often.
-LEFT, TIMES = 2e-3, 3
-# By its form.
-RADIATORS: dict[str, Callable[[Any], Radiator]] = {"rings": RingSources, "points": SurfacePressures}
-
-
-@dataclass(frozen=True, eq=False)
-class Fits:
-    """Fits of a body at wavenumbers, made once.
-
-    Attributes
-    ----------
-    radiator : Radiator
-        Its equivalent sources.
-    known : dict
-        Fits made so far, by their wavenumbers [rad/m].
-    """
-
-    radiator: Radiator
-    known: dict[float, Fit] = field(default_factory=dict)
-
-    def at(self, wavenumber: float) -> Fit:
-        """Return the fit at a wavenumber [rad/m]."""
-        if wavenumber not in self.known:
-            # Matrices are too small for threads to help.
-            with threadpool_limits(1):
-                self.known[wavenumber] = self.radiator.fit(wavenumber)
-        return self.known[wavenumber]
-
-
-@lru_cache(maxsize=8)
-def fits_of(surface: BodySurface) -> Fits:
-    """Return the fits of a body by its surface; they are kept for the bodies asked for last."""
-    return Fits(RADIATORS[surface.form](surface))
+LEFT, TIMES = 5e-3, 3
 
 
 @dataclass(frozen=True)
@@ -113,7 +75,9 @@ def free_responses(
     for number in range(TIMES):
         frequencies = np.arange(int(np.ceil(STOP * bandwidth * lasts))) / lasts
         waves = 2.0 * np.pi * frequencies / air.speed
-        heard = np.array([fits.radiator.heard(fits.at(float(k)), float(k), places) for k in waves])
+        made = fits.at(waves.tolist())
+        heard = np.array([fits.radiator.heard(fit, k, places) for fit, k in zip(made, waves.tolist(), strict=True)])
+        heard = heard.astype(complex)
         heard *= air.density * np.exp(1j * waves[:, None] * distances)[:, :, None]
         heard *= _taper(frequencies, bandwidth)[:, None, None]
         pairs = [
@@ -124,8 +88,8 @@ def free_responses(
         if left < LEFT or number == TIMES - 1:
             break
         lasts *= 2.0
-    errors = np.array([fits.at(float(k)).errors for k in waves])
-    return Sent([one for one, _ in pairs], frequencies, errors, left)
+    fits.keep()
+    return Sent([one for one, _ in pairs], frequencies, np.array([fit.errors for fit in made]), left)
 
 
 def _taper(frequencies: Array, bandwidth: float) -> Array:
@@ -143,7 +107,9 @@ def _taps(
     turned = np.exp(2j * np.pi / lasts * np.outer(times, np.arange(len(heard))))
     turned[:, 1:] *= 2.0
     taps = interval / lasts * (turned @ heard).real
-    # Of the loudest mode: what others leave is not heard beside it.
+    # Of the loudest mode: what others leave is not heard beside it. After this end comes what fits that differ from one
+    # frequency to the next put before the arrival, which does not get less with time.
     size = float(np.abs(taps).max(initial=0.0))
-    end = float(np.abs(taps[times > lasts - 1.25 * early]).max(initial=0.0))
+    is_end = np.abs(times - (lasts - 1.625 * early)) <= 0.125 * early
+    end = float(np.abs(taps[is_end]).max(initial=0.0))
     return Response(first, taps), end / size if size else 0.0

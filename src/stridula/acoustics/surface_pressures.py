@@ -16,11 +16,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import scipy.linalg
 
 from ..arrays import Array
 from ..bodies.body_surfaces import PointSurface, inscribed_radius
-from .equivalent_sources import Fit
+from .equivalent_sources import Fit, least_squares
 
 # Points of the surface for one within, and the ball around these, over the side of a patch, that is free of surface.
 POINTS_TO_ONE_WITHIN, FREE = 12, 1.5
@@ -55,52 +54,74 @@ class SurfacePressures:
     @cached_property
     def still(self) -> Array:
         """What each patch adds at its own place: all together see half of all directions, shape (points,)."""
-        return np.asarray(-0.5 - self._layers(0.0, self.surface.points, True)[0].real.sum(axis=1))
+        away, slopes = self._on_surface
+        seen = (self.surface.areas / (4.0 * np.pi) * slopes / away).sum(axis=1, dtype=float)
+        return np.asarray(-0.5 + seen)
 
     def fit(self, wavenumber: float) -> Fit:
         """Return the pressures on the surface at a wavenumber of the sound [rad/m].
 
         Errors are those of the equations together, on the surface and within, over what the motion gives there.
         """
-        areas = self.surface.areas
-        double, single = self._layers(wavenumber, self.surface.points, True)
+        areas, shapes = self.surface.areas, self.surface.shapes.astype(np.float32)
+        double, single = self._layers(wavenumber, *self._on_surface)
         # A patch at its own middle, as a disc.
         own = 0.5 * np.sqrt(areas / np.pi) - 1j * wavenumber * areas / (4.0 * np.pi)
         single[np.diag_indices_from(single)] = own
         matrix = -double
         matrix[np.diag_indices_from(matrix)] = 0.5 - self.still
-        aims = single @ self.surface.shapes
+        aims = single @ shapes
         if len(self.within):
-            inside = self._layers(wavenumber, self.within, False)
-            matrix = np.concatenate([matrix, -inside[0]])
-            aims = np.concatenate([aims, inside[1] @ self.surface.shapes])
-        square = matrix.conj().T @ matrix
-        pressures = scipy.linalg.cho_solve(scipy.linalg.cho_factor(square), matrix.conj().T @ aims)
+            double, single = self._layers(wavenumber, *self._inside)
+            matrix, aims = np.concatenate([matrix, -double]), np.concatenate([aims, single @ shapes])
+        pressures = least_squares(matrix, aims)
         size = np.linalg.norm(aims, axis=0)
         errors = np.linalg.norm(matrix @ pressures - aims, axis=0) / np.where(size > 0.0, size, 1.0)
-        return Fit((pressures,), errors)
+        return Fit((pressures,), errors.astype(float))
 
     def heard(self, fit: Fit, wavenumber: float, places: Array) -> Array:
         """Return the pressures at places (listeners, 3) [m] for unit modal accelerations, shape (listeners, modes)."""
-        double, single = self._layers(wavenumber, places, False)
+        double, single = self._layers(wavenumber, *self._apart(places))
         return np.asarray(double @ fit.strengths[0] + single @ self.surface.shapes)
 
-    def _layers(self, wavenumber: float, places: Array, own: bool) -> tuple[Array, Array]:
+    @cached_property
+    def _on_surface(self) -> tuple[Array, Array]:
+        """What `_apart` tells of the patches themselves, without the share of each at its own place."""
+        away, slopes = self._apart(self.surface.points)
+        slopes[np.diag_indices_from(slopes)] = 0.0
+        # Patches are better conditioned than single precision by far, and right to percents.
+        return away.astype(np.float32), slopes.astype(np.float32)
+
+    @cached_property
+    def _inside(self) -> tuple[Array, Array]:
+        """What `_apart` tells of the points within."""
+        away, slopes = self._apart(self.within)
+        return away.astype(np.float32), slopes.astype(np.float32)
+
+    def _apart(self, places: Array) -> tuple[Array, Array]:
+        """Return distances of the patches from places, and their slopes along the normals over themselves.
+
+        Shape (places, points) each; no distance is zero.
+        """
+        square, toward = np.zeros((2, len(places), len(self.surface.areas)))
+        for axis in range(3):
+            apart = self.surface.points[:, axis] - places[:, axis, None]
+            square += apart**2
+            toward += apart * self.surface.normals[:, axis]
+        square[square == 0.0] = 1.0
+        return np.sqrt(square), toward / square
+
+    def _layers(self, wavenumber: float, away: Array, slopes: Array) -> tuple[Array, Array]:
         """Return what unit pressures and unit accelerations of the patches give at places, shape (places, points) each.
 
-        With `own` the places are those of the patches, and each gives nothing at its own.
+        In the precision of the distances.
         """
-        surface = self.surface
-        square, toward = np.zeros((2, len(places), len(surface.areas)))
-        for axis in range(3):
-            apart = surface.points[:, axis] - places[:, axis, None]
-            square += apart**2
-            toward += apart * surface.normals[:, axis]
-        if own:
-            square[np.diag_indices_from(square)] = 1.0
-        away = np.sqrt(square)
-        phase = wavenumber * away
-        single = (np.cos(phase) - 1j * np.sin(phase)) * (surface.areas / (4.0 * np.pi * away))
-        if own:
-            single[np.diag_indices_from(single)] = 0.0
-        return -(1.0 + 1j * phase) * single * toward / square, single
+        phase = away.dtype.type(wavenumber) * away
+        size = (self.surface.areas / (4.0 * np.pi)).astype(away.dtype) / away
+        cosine, sine = size * np.cos(phase), size * np.sin(phase)
+        single = np.empty(away.shape, dtype=np.result_type(away.dtype, np.complex64))
+        double = np.empty_like(single)
+        single.real, single.imag = cosine, -sine
+        # -(1 + i k R) exp(-i k R)
+        double.real, double.imag = -slopes * (cosine + phase * sine), slopes * (sine - phase * cosine)
+        return double, single

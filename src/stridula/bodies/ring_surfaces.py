@@ -13,6 +13,9 @@ CORNER = 0.9
 # Length of a part over the radius of the ball within the body there, and least one over the least thickness: close to
 # an edge the air flows round it, and parts get shorter as long as that matters.
 PART_OF_BALL, LEAST_PART = 0.6, 1e-3
+# Length of a part over its distance from a corner that turns inwards, and least one there over the least thickness:
+# sources under both of its sides lie apart, so that close to it only those that do not lie deep are of use.
+PART_OF_WAY, LEAST_WITHIN = 0.6, 0.03
 # Samples of a run.
 SAMPLES = 400
 
@@ -20,8 +23,8 @@ SAMPLES = 400
 def cut_outline(mesh: ProfileMesh, largest: float) -> tuple[Array, Array, Array]:
     """Return rings all over the outer surface, two over each part of the outline.
 
-    Parts are as long as the largest circle within the profile at their place is wide, at most `largest`, but no shorter
-    than a third of the least thickness.
+    Parts go with the radius of the largest circle that fits into the profile at their place, and with the distance from
+    corners that turn inwards; they are at most `largest`.
 
     Parameters
     ----------
@@ -38,12 +41,17 @@ def cut_outline(mesh: ProfileMesh, largest: float) -> tuple[Array, Array, Array]
         Lengths of outline that they stand for [m].
     """
     runs, least = _runs(mesh), min(LEAST_PART * mesh.thinnest, largest)
+    inner = _inner_corners(runs)
     fine = [_samples(run) for run in runs]
     every = np.concatenate([places for _, places, _ in fine])
     every = np.concatenate([every, every * np.array([-1.0, 1.0])])
     found = []
     for run, (lengths, places, normals) in zip(runs, fine, strict=True):
-        size = np.clip(PART_OF_BALL * inscribed_radius(places, normals, every), least, largest)
+        size = PART_OF_BALL * inscribed_radius(places, normals, every)
+        for corner in inner[(inner == run[0]).all(axis=1) | (inner == run[-1]).all(axis=1)]:
+            away = np.linalg.norm(places - corner, axis=1)
+            size = np.minimum(size, np.maximum(PART_OF_WAY * away, LEAST_WITHIN * mesh.thinnest))
+        size = np.clip(size, least, largest)
         found.append(_graded(run, lengths, size))
     places, normals, widths = (np.concatenate(one) for one in zip(*found, strict=True))
     return places, normals, widths
@@ -65,6 +73,19 @@ def _runs(mesh: ProfileMesh) -> list[Array]:
             nodes.append(sides[nodes[-1]])
         runs.append(mesh.nodes[nodes])
     return runs
+
+
+def _inner_corners(runs: list[Array]) -> Array:
+    """Return the points at which lines of the outline meet and it turns inwards, shape (corners, 2)."""
+    ends = {tuple(run[-1]): run[-1] - run[-2] for run in runs}
+    found = [np.empty((0, 2))]
+    for run in runs:
+        before, after = ends.get(tuple(run[0]), np.zeros(2)), run[1] - run[0]
+        is_corner = before @ after < CORNER * np.linalg.norm(before) * np.linalg.norm(after)
+        # The body is to the left of its outline.
+        if is_corner and before[0] * after[1] < before[1] * after[0]:
+            found.append(run[:1])
+    return np.concatenate(found)
 
 
 def _length(run: Array) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from ..arrays import Array
 from .massless import massless_exponents
@@ -72,7 +73,9 @@ def _chosen(structure: Structure, motion: Vibration, modes: int | None, near: fl
 
 
 def _all(motion: Vibration, shapes: bool = True) -> Exponents:
-    return all_exponents(motion, shapes) if motion.mass.all() else massless_exponents(motion)
+    # Threads hardly help matrices of this size, and wait for each other where other work has the processors.
+    with threadpool_limits(1):
+        return all_exponents(motion, shapes) if motion.mass.all() else massless_exponents(motion)
 
 
 def _nearest(structure: Structure, motion: Vibration, wanted: int, near: float) -> Exponents:

@@ -181,7 +181,7 @@ def tones() -> Outcome:
         sine, cosine = np.linalg.lstsq(np.stack([np.sin(turn), np.cos(turn)], axis=1), found, rcond=None)[0]
         known = of_sphere(2.0 * pi * float(frequency) / AIR.speed, place)[0].sum()
         error = abs(sine + 1j * cosine - known) / abs(known)
-        reason = "what a response may leave at its end, 2e-3, falls on all frequencies"
+        reason = "what a response may leave at its end, 5e-3, falls on all frequencies"
         rows.append(Row(f"tone of {frequency:.5g} Hz: error of pressure", 0.0, float(error), 1e-3, reason))
     taps = sent.responses[0]
     curve = Curve(1e3 * interval * (taps.first + np.arange(len(taps.taps))), taps.taps[:, 0], "pulsating sphere")

@@ -1,0 +1,92 @@
+"""Fits of a body in open air at many frequencies: made once, on all processors, and kept for other processes."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from ..arrays import Array
+from ..bodies.body_surfaces import BodySurface
+from ..cache import keep, key, recall
+from .equivalent_sources import Fit, Radiator
+from .ring_sources import RingSources
+from .surface_pressures import SurfacePressures
+
+# By the form of the surface.
+RADIATORS: dict[str, Callable[[Any], Radiator]] = {"rings": RingSources, "points": SurfacePressures}
+# What fits depend on beside a surface and a wavenumber.
+SOURCES = ("equivalent_sources.py", "ring_sources.py", "surface_pressures.py", "fits.py")
+# Time that making fits takes from which on they are kept [s].
+WORTH = 1.0
+
+
+class Fits:
+    """Fits of a body at wavenumbers.
+
+    Parameters
+    ----------
+    surface : PointSurface or RingSurface
+        The surface of the body.
+    """
+
+    def __init__(self, surface: BodySurface) -> None:
+        self.radiator = RADIATORS[surface.form](surface)
+        self.name = key([_code(), surface.form.encode(), *surface.content])
+        self.known: dict[float, Fit] | None = None
+        self.took = 0.0
+
+    def at(self, wavenumbers: Sequence[float]) -> list[Fit]:
+        """Return the fits at wavenumbers [rad/m]; those that are new are made on all processors."""
+        if self.known is None:
+            self.known = _fits(recall(self.name))
+        new = [one for one in wavenumbers if one not in self.known]
+        began = time.perf_counter()
+        # Matrices are too small for threads of linear algebra to help.
+        with threadpool_limits(1), ThreadPoolExecutor(os.cpu_count()) as pool:
+            # What all fits share is made by the first.
+            self.known.update((one, self.radiator.fit(one)) for one in new[:1])
+            self.known.update(zip(new[1:], pool.map(self.radiator.fit, new[1:]), strict=True))
+        self.took += time.perf_counter() - began
+        return [self.known[one] for one in wavenumbers]
+
+    def keep(self) -> None:
+        """Keep what has been found for other processes, if it took long enough."""
+        if self.known and self.took > WORTH:
+            keep(self.name, _arrays(self.known))
+            self.took = 0.0
+
+
+@lru_cache(maxsize=8)
+def fits_of(surface: BodySurface) -> Fits:
+    """Return the fits of a body by its surface; they are kept for the bodies asked for last."""
+    return Fits(surface)
+
+
+@lru_cache(maxsize=1)
+def _code() -> bytes:
+    """Return what another version of the package has otherwise."""
+    return b"".join((files(__package__) / name).read_bytes() for name in SOURCES)
+
+
+def _arrays(known: dict[float, Fit]) -> dict[str, Array]:
+    """Return fits as arrays."""
+    strengths = zip(*(fit.strengths for fit in known.values()), strict=True)
+    named = {f"strengths {number}": np.array(several) for number, several in enumerate(strengths)}
+    return {"wavenumbers": np.array(list(known)), "errors": np.array([fit.errors for fit in known.values()]), **named}
+
+
+def _fits(arrays: dict[str, Array] | None) -> dict[float, Fit]:
+    """Return fits from arrays."""
+    if arrays is None:
+        return {}
+    strengths = zip(*(arrays[f"strengths {number}"] for number in range(len(arrays) - 2)), strict=True)
+    made = (Fit(tuple(some), errors) for some, errors in zip(strengths, arrays["errors"], strict=True))
+    return dict(zip(arrays["wavenumbers"].tolist(), made, strict=True))
