@@ -18,59 +18,70 @@ static void displace(int size, const double *restrict w, double *restrict u, int
         u[c] += a[c] * normal - b[c] * tangential;
 }
 
-/* The forces of the states found, ratios of sliding kept; nothing where these admit none. */
+/* The forces of the states found, ratios of sliding kept; nothing where these admit none. Unknown are the normal forces of
+   contacts that are closed, and the tangential ones of those that stick; column by column, as `w` has them. */
 static void solve_states(int count, const double *restrict w, const double *restrict gaps, const double *restrict slips,
                          const double *restrict away, double *restrict u, double *restrict forces, const int *status,
                          double *restrict m, double *restrict x)
 {
     const int size = 2 * count;
+    int places[size], first[count], equations = 0;
     for (int i = 0; i < count; i++) {
-        double *n = m + 2 * i * size, *t = n + size;
-        memset(n, 0, 2 * size * sizeof *n);
-        if (status[i] == 0) {
-            n[2 * i] = t[2 * i + 1] = w[2 * i * size + 2 * i];
-            x[2 * i] = x[2 * i + 1] = 0.0;
+        first[i] = equations;
+        if (status[i])
+            places[equations++] = 2 * i;
+        if (status[i] == 1)
+            places[equations++] = 2 * i + 1;
+    }
+    for (int i = 0; i < count; i++) {
+        if (!status[i])
             continue;
-        }
-        for (int c = 0; c < size; c++)
-            n[c] = w[2 * i * size + c];
-        x[2 * i] = -gaps[i];
+        const double *restrict a = w + 2 * i * size, *restrict b = a + size;
+        double *restrict column = m + first[i] * size;
+        const double ratio = status[i] == 2 && forces[2 * i] > 0.0 ? forces[2 * i + 1] / forces[2 * i] : 0.0;
+        for (int r = 0; r < equations; r++)
+            column[r] = a[places[r]] - ratio * b[places[r]];
+        x[first[i]] = -gaps[i];
         if (status[i] == 1) {
-            for (int c = 0; c < size; c++)
-                t[c] = w[(2 * i + 1) * size + c];
-            x[2 * i + 1] = -slips[i] - away[i];
-        } else {
-            const double own = w[(2 * i + 1) * size + 2 * i + 1];
-            t[2 * i] = forces[2 * i] > 0.0 ? forces[2 * i + 1] / forces[2 * i] * own : 0.0;
-            t[2 * i + 1] = own;
-            x[2 * i + 1] = 0.0;
+            for (int r = 0; r < equations; r++)
+                column[size + r] = b[places[r]];
+            x[first[i] + 1] = -slips[i] - away[i];
         }
     }
-    for (int k = 0; k < size; k++) {
-        if (m[k * size + k] == 0.0)
+    for (int k = 0; k < equations; k++) {
+        double *restrict pivots = m + k * size;
+        if (pivots[k] == 0.0)
             return;
-        const double inverse = 1.0 / m[k * size + k];
-        for (int r = k + 1; r < size; r++) {
-            const double factor = m[r * size + k] * inverse;
-            if (factor == 0.0)
-                continue;
-            for (int c = k; c < size; c++)
-                m[r * size + c] -= factor * m[k * size + c];
-            x[r] -= factor * x[k];
+        const double inverse = 1.0 / pivots[k];
+        for (int r = k + 1; r < equations; r++)
+            pivots[r] *= inverse;
+        for (int c = k + 1; c < equations; c++) {
+            double *restrict column = m + c * size;
+            const double factor = column[k];
+            for (int r = k + 1; r < equations; r++)
+                column[r] -= factor * pivots[r];
         }
+        const double factor = x[k];
+        for (int r = k + 1; r < equations; r++)
+            x[r] -= factor * pivots[r];
     }
-    for (int k = size - 1; k >= 0; k--) {
-        x[k] /= m[k * size + k];
+    for (int k = equations - 1; k >= 0; k--) {
+        const double *restrict column = m + k * size, found = x[k] / column[k];
+        x[k] = found;
         for (int r = 0; r < k; r++)
-            x[r] -= m[r * size + k] * x[k];
+            x[r] -= column[r] * found;
     }
     for (int i = 0; i < count; i++)
-        if (x[2 * i] < 0.0)
+        if (status[i] && x[first[i]] < 0.0)
             return;
     for (int i = 0; i < count; i++) {
-        displace(size, w, u, i, x[2 * i] - forces[2 * i], -x[2 * i + 1] - forces[2 * i + 1]);
-        forces[2 * i] = x[2 * i];
-        forces[2 * i + 1] = -x[2 * i + 1];
+        if (!status[i])
+            continue;
+        const double normal = x[first[i]], was = forces[2 * i], ratio = was > 0.0 ? forces[2 * i + 1] / was : 0.0;
+        const double tangential = status[i] == 1 ? -x[first[i] + 1] : ratio * normal;
+        displace(size, w, u, i, normal - was, tangential - forces[2 * i + 1]);
+        forces[2 * i] = normal;
+        forces[2 * i + 1] = tangential;
     }
 }
 
