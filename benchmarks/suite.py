@@ -14,6 +14,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import against_c
+import brake
 import gpu
 import machine
 import many_contacts
@@ -27,6 +28,7 @@ import short_runs
 import space
 import speed_and_memory
 import startup
+import surveys
 from ratios import arguments, as_markdown, as_text, write_between
 
 # Memory first: see there.
@@ -34,6 +36,7 @@ SECTIONS = (
     speed_and_memory,
     against_c,
     many_contacts,
+    brake,
     peer_speed,
     real_time,
     many_runs,
@@ -41,6 +44,7 @@ SECTIONS = (
     space,
     meshes,
     maps,
+    surveys,
     scaling,
     startup,
     gpu,

@@ -1,0 +1,208 @@
+"""A brake of 2 x 60 points and some 400 modes against hand-written C of the same step (brake.c) and against real time.
+
+Two pads whose modes springs join, on a disc that turns, under friction at which the brake squeals: timed at its start,
+where all points slide, and when it squeals and points lift off. Without gcc there is no ratio to C.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from copy import deepcopy
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+import stridula as st
+from against_c import Result, built, parameters, without_gcc
+from ratios import FORM, Ratio, must_agree, over, seconds, show, sized
+from space import IRON, LINING
+from stridula._kernels import contacts as kernel
+from stridula._kernels import layout as at
+from stridula.assembly import assemble
+from stridula.integration.blocks import blocks_of
+from stridula.integration.equilibrium_start import in_equilibrium
+from stridula.integration.marches import March, imposed_on
+from stridula.integration.packing import aligned, scale_of
+from stridula.integration.start import state_at_start
+from systems import SCHEME, Case
+
+TITLE = "a brake of two pads on a disc that turns"
+SOURCE = Path(__file__).with_name("brake.c")
+DIVISIONS = sized((3, 5, 1), (1, 2, 1))
+# Near the default step: 0.2 of the shortest period over pi.
+STEP, RATIO, STEPS = 5e-6, 10, sized(200, 20)
+# Steps before those that are timed.
+BEFORE = {"sliding": 10, "squealing": sized(1000, 40)}
+TOLERANCE, BAR = 1e-6, 1.6
+MATRICES = [at.KEPT, at.STIFFNESS, at.MOBILITY, at.LOSS]
+
+
+def pad(side: float, disc: st.AxisymmetricBody) -> tuple[st.SurfaceContact, st.Force, list[st.Spring]]:
+    """Return a pad above the disc, or below it, with what presses and what holds it."""
+    mesh = st.SolidMesh.sector((0.085, 0.125), (-0.4, 0.4), 0.012, DIVISIONS, axis="y")
+    mesh = mesh.moved((0.0, 0.01 * side, 0.0), (0.0, 0.0, 0.5 * np.pi * (1.0 - side)))
+    name = "upper pad" if side > 0.0 else "lower pad"
+    body = st.SolidBody(mesh, LINING, cutoff=12e3, damping=0.01, contact_faces=["bottom"], name=name)
+    face = st.SurfaceContact(body, "bottom", disc, friction=st.Coulomb(0.45), stiffness=3e12, name=name)
+    springs = [st.Spring(body.at(end), stiffness=2e7, direction=way) for end in ("start", "end") for way in "xz"]
+    return face, st.Force(body.at("top"), y=-2000.0 * side), springs
+
+
+def brake() -> st.System:
+    """Return two pads pressed on a disc that turns, in equilibrium at the start."""
+    profile = st.RectangleProfile({"disc": ((0.06, 0.13), (-0.01, 0.01))})
+    disc = st.AxisymmetricBody(profile, IRON, 17e3, "inner", damping=0.001, axis=(0.0, 1.0, 0.0), turning=20.0)
+    faces, loads, springs = zip(*(pad(side, disc) for side in (1.0, -1.0)), strict=True)
+    return st.System(faces, [*loads, st.InitialEquilibrium()], [spring for own in springs for spring in own])
+
+
+class Pair:
+    """The brake some steps after its start, ready to be marched by the package and by C."""
+
+    def __init__(self, system: st.System, before: int) -> None:
+        arrays = assemble(system, [])
+        blocks = blocks_of(arrays, SCHEME, STEP)
+        state = state_at_start(in_equilibrium(system, arrays), SCHEME, STEP, blocks, st.GaussSeidel())
+        earlier = March([blocks], [state], STEP, RATIO)
+        earlier.advance([imposed_on(arrays, blocks.used, 0, before, STEP)], before // RATIO)
+        (state,) = earlier.states
+        # What is recorded of energies goes on from nothing, in both.
+        state = replace(state, energies=np.zeros(at.ENERGIES))
+        self.before, self.arrays = before, arrays
+        self.case = Case(blocks, state, imposed_on(arrays, blocks.used, before, STEPS, STEP))
+        self.march = March([blocks], [state], STEP, RATIO)
+
+    def ours(self) -> Result:
+        """March the package and return what it gives."""
+        march = self.march.copy()
+        (chunk,) = march.advance([self.case.imposed], STEPS // RATIO)
+        (state,) = march.states
+        forces = chunk.contacts[:, :, [at.NORMAL_FORCE, at.TANGENTIAL_FORCE]].sum(axis=0).reshape(-1, 4)
+        return {
+            "forces": forces[:, [0, 1, 3]].sum(axis=0),
+            "last forces": state.carried[:, [at.LAST_NORMAL, at.LAST_TANGENTIAL]],
+            "positions": state.modal[at.Q],
+            "ledgers": state.energies[[at.CONTACT_WORK, at.FRICTION_LOSS, at.DAMPING_LOSS]],
+        }
+
+    def sweeps(self) -> float:
+        """Return the mean of the sweeps in a step."""
+        case = self.case
+        (chunk,) = March([case.blocks], [case.state], STEP, 1).advance([case.imposed], STEPS)
+        return float(chunk.energies[:, at.ITERATIONS].mean())
+
+    def order(self) -> np.ndarray:
+        """Return the modes as C has them: those of the pads, pairs of the disc in two rows, its others."""
+        coupled, (disc,) = self.case.blocks.modes.coupled, self.case.blocks.turning
+        pairs = disc.pairs.T.ravel()
+        others = np.setdiff1d(np.arange(coupled, self.arrays.mode_count), pairs)
+        return np.concatenate([np.arange(coupled), pairs, others])
+
+    def turns(self) -> np.ndarray:
+        """Return the turns of the pairs in a step: one less the cosines, and sines, of pairs, material and both."""
+        (disc,), (angle,) = self.case.blocks.turning, self.case.imposed.angles[0]
+        drag, order = disc.turns * angle
+        between = order - drag
+        return np.array([f(x) for x in (drag, order, between) for f in (lambda x: 2.0 * np.sin(0.5 * x) ** 2, np.sin)])
+
+    def in_c(self) -> dict[str, np.ndarray]:
+        """Return the arrays that C reads and writes."""
+        modes, contacts, state = self.case.blocks.modes, self.case.blocks.contacts, deepcopy(self.case.state)
+        scale, order, count = scale_of(modes), self.order(), len(contacts.codes) // 2
+        size, pad = 3 * count, modes.coupled // 2
+        # The second pair of a contact has no normal.
+        three = np.arange(4 * count).reshape(-1, 4)[:, [0, 1, 3]].ravel()
+        matrices = modes.matrices[MATRICES]
+        own = np.array([matrices[:, here, here] for here in (slice(0, pad), slice(pad, None))])
+        loads = self.case.imposed.signals[0, : len(modes.loads)] @ modes.loads
+        q, d = (state.modal / scale)[:, order]
+        motion = self.case.imposed.motion
+        return {
+            "kept": modes.block[at.B, order], "stiffness": modes.block[at.R, order], "load": (loads / scale)[order],
+            "matrices": own, "turns": self.turns(),
+            "rows": (contacts.rows.reshape(4 * count, -1) * scale)[np.ix_(three, order)],
+            "w": contacts.compliance[np.ix_(three, three)].T, "opening": contacts.constants[::2, at.GAP],
+            "yields": contacts.constants[::2, at.YIELD_STIFFNESS], "mu": contacts.laws[::2, 0],
+            "belts": motion[1, :, at.TRACK_MOTION] - motion[0, :, at.TRACK_MOTION],
+            "q": q, "d": d, "carried": state.carried, "ledger": np.zeros(at.ENERGIES), "sums": np.zeros(7),
+            "scratch": aligned(1, 10 * scale.size + 12 * size + size * size)[0],
+        }  # fmt: skip
+
+    def theirs(self, compiled: ctypes.CDLL) -> Result:
+        """March C and return what it gives."""
+        arrays = {name: np.ascontiguousarray(array).copy() for name, array in self.in_c().items()}
+        modes, solve = self.case.blocks.modes, st.GaussSeidel()
+        sizes = {
+            "modes": self.arrays.mode_count, "pads": 2, "pad": modes.coupled // 2, "most_sweeps": solve.sweeps,
+            "pairs": len(self.case.blocks.turning[0].pairs), "count": len(arrays["mu"]),
+        }  # fmt: skip
+        given = {
+            "first_step": ctypes.c_long(self.before),
+            "steps": ctypes.c_long(STEPS),
+            "tolerance": ctypes.c_double(solve.tolerance),
+            **{name: ctypes.c_int(size) for name, size in sizes.items()},
+            **{name: array.ctypes.data_as(ctypes.c_void_p) for name, array in arrays.items()},
+        }
+        compiled.march(*(given[name] for name in parameters(SOURCE)))
+        positions = np.empty(self.arrays.mode_count)
+        positions[self.order()] = arrays["q"]
+        return {
+            "forces": arrays["sums"][1:4] / RATIO,
+            "last forces": arrays["carried"][:, [at.LAST_NORMAL, at.LAST_TANGENTIAL]],
+            "positions": positions * scale_of(modes),
+            "ledgers": arrays["ledger"][[at.CONTACT_WORK, at.FRICTION_LOSS, at.DAMPING_LOSS]],
+        }
+
+
+def agree(found: Result, expected: Result) -> None:
+    """Stop where the two marches are apart."""
+    for quantity, values in found.items():
+        must_agree(f"{quantity} of the march and of brake.c", values, expected[quantity], TOLERANCE)
+
+
+def rows() -> Iterator[Ratio | str]:
+    """Yield memory, then speed, sweeps and the ratio to C, sliding and squealing."""
+    if not hasattr(os, "wait4"):
+        yield "memory: skipped, this system does not say what a process took"
+    else:
+        yield Ratio("peak memory of a fresh process, from meshes to record, over 1 GB", [peak()])
+    system = brake()
+    for regime, before in BEFORE.items():
+        yield from ratios(regime, Pair(system, before))
+
+
+def ratios(regime: str, pair: Pair) -> Iterator[Ratio | str]:
+    """Yield what marches of a pair come to."""
+    words = f"{len(pair.arrays.contacts) // 2} points, {pair.arrays.mode_count} modes, {regime}"
+    if missing := without_gcc():
+        (ours,) = seconds(pair.ours)
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            compiled = built(Path(folder), SOURCE, vars(kernel))
+            theirs, ours = seconds(lambda: pair.theirs(compiled), pair.ours, agree=agree)
+    yield Ratio(f"{words}: simulated time over wall time of the march", over([STEPS * STEP] * len(ours), ours))
+    yield Ratio(f"{words}: sweeps a step", [pair.sweeps()])
+    yield missing or Ratio(f"{words}: time of a step over that of hand-written C", over(ours, theirs), most=BAR)
+
+
+def peak() -> float:
+    """Return the peak memory of a fresh process that marches the brake [GB]."""
+    process = subprocess.Popen([sys.executable, __file__, "child", *FORM])
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise RuntimeError(f"the run whose memory is taken ended with exit code {process.returncode}")
+    return usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024) / 1e9
+
+
+if __name__ == "__main__":
+    if "child" in sys.argv:
+        st.simulate(brake(), STEPS * STEP, probes=[])
+    else:
+        show(TITLE, rows())
