@@ -11,7 +11,7 @@ from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
 from .contact import SLIDING, STICKING
 from .direct import solve_states
-from .faces import displace, displace_freely, own_compliance
+from .faces import displace, displace_freely, displace_in_space, own_compliance
 from .lanes import anywhere, choose, component, everywhere, held, hold, magnitude
 from .modes import ENTRY, OPTIONS, PASTED
 from .solves import carried_by, forces_of_one, strayed
@@ -173,9 +173,11 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
         hold(now, here + at.BROKE, run, choose(status > SLIDING - 0.5, 1.0, broke))
         settled = choose(magnitude(status - was) > 0.5, zero, settled)
         more, pulled = normal - was_normal, tangential - was_tangential
-        displace(faces, sizes.faces, i, run, more, pulled)
-        if in_space:
-            swerved = put_second(contacts, sizes, i, run, goes_on, normal, second, status, zero)
+        if not in_space:
+            displace(faces, sizes.faces, i, run, more, pulled)
+        else:
+            swerved = put_second(contacts, i, run, goes_on, normal, second, status, zero)
+            displace_in_space(faces, sizes.faces, i, run, more, pulled, swerved)
             change = largest_of(change, magnitude(swerved))
             across = component(faces, 2 * i + 3, COMPLIANCE + 2 * i + 3, run, zero)
             misfit = largest_of(misfit, magnitude(across * swerved))

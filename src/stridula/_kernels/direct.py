@@ -14,7 +14,7 @@ import numba
 from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
 from .contact import SLIDING, STICKING
-from .faces import displace
+from .faces import displace, displace_in_space
 from .friction import set_valued
 from .lanes import anywhere, choose, component, fused, held, hold, lane, load, magnitude, set_component, store
 from .modes import OPTIONS
@@ -53,9 +53,12 @@ def solve_states(contacts, carried, sizes, step, run, tried, zero):
         regular = eliminate(scratch, size, blocks, sizes.per_block, run, active, zero)
         for j in range(sizes.contacts):
             if equation(now, j, at.NORMAL_EQUATION, run, zero) >= 0:
-                take(contacts, sizes, j, j, size, regular, run, zero)
+                more, pulled = take(contacts, j, j, size, regular, run, zero)
                 if sizes.space and is_second(codes, j + 1):
-                    take(contacts, sizes, j, j + 1, size, regular, run, zero)
+                    _, swerved = take(contacts, j, j + 1, size, regular, run, zero)
+                    displace_in_space(contacts.faces, sizes.faces, j, run, more, pulled, swerved)
+                else:
+                    displace(contacts.faces, sizes.faces, j, run, more, pulled)
         given_up = choose(active - regular > 0.5, 1.0, given_up)
         at_odds, last, fails = compare(contacts, carried, sizes, slack, regular, run, zero)
         given_up = choose(fails > 0.5, 1.0, given_up)
@@ -255,6 +258,12 @@ def equation(now, i, which, run, zero):
 
 
 @numba.njit(**OPTIONS)
+def has_equation(now, i, which, run, zero):
+    """Return whether contact `i` has an equation, the same in all runs."""
+    return lane(held(now, i * at.IN_STEP + which, run, zero), 0) >= 0.0
+
+
+@numba.njit(**OPTIONS)
 def number_equations(now, codes, count, run, zero):
     """Number the equations of all contacts; return how many there are."""
     size = 0
@@ -305,11 +314,10 @@ def put_columns(contacts, sizes, j, in_space, run, zero):
     for block in range(sizes.faces):
         along = fused(-ratio, load(faces, t, block, run), load(faces, n, block, run))
         store(scratch, last, block, run, fused(-swerve, load(faces, b, block, run), along) if in_space else along)
+    row = 0
     for i in range(sizes.contacts):
         for k in range(2):
-            which = at.NORMAL_EQUATION if k == 0 else at.TANGENTIAL_EQUATION
-            row = equation(now, i, which, run, zero)
-            if row < 0:
+            if not has_equation(now, i, at.NORMAL_EQUATION if k == 0 else at.TANGENTIAL_EQUATION, run, zero):
                 continue
             moves = is_closed(now, i, run, zero) if k == 0 else is_held(now, i, run, zero)
             # Where this run has no such equation, the unknown is zero.
@@ -324,6 +332,8 @@ def put_columns(contacts, sizes, j, in_space, run, zero):
             if second >= 0:
                 across = component(faces, 2 * i + k, b, run, zero)
                 set_component(scratch, second, row, run, choose(moves, across, idle if row == second else zero))
+            # They are numbered in this order.
+            row += 1
 
 
 @numba.njit(**OPTIONS)
@@ -355,16 +365,15 @@ def found_forces(contacts, j, i, size, run, zero):
 
 
 @numba.njit(**OPTIONS)
-def take(contacts, sizes, j, i, size, regular, run, zero):
-    """Take the forces found for pair `i` of contact `j` in runs that are `regular`."""
+def take(contacts, j, i, size, regular, run, zero):
+    """Take the forces found for pair `i` of contact `j` in runs that are `regular`; return by how much they changed."""
     now, here = contacts.now, i * at.IN_STEP
     normal, tangential = held(now, here + at.NORMAL_NOW, run, zero), held(now, here + at.TANGENTIAL_NOW, run, zero)
     pressed, pulled = found_forces(contacts, j, i, size, run, zero)
     pressed, pulled = choose(regular > 0.5, pressed, normal), choose(regular > 0.5, pulled, tangential)
     hold(now, here + at.NORMAL_NOW, run, pressed)
     hold(now, here + at.TANGENTIAL_NOW, run, pulled)
-    # The pair without a normal has the force of its contact, which displaces nothing there.
-    displace(contacts.faces, sizes.faces, i, run, pressed - normal if i == j else zero, pulled - tangential)
+    return pressed - normal, pulled - tangential
 
 
 @numba.njit(**OPTIONS)

@@ -34,6 +34,16 @@ def displace(faces, blocks, i, run, normal, tangential):
 
 
 @numba.njit(**OPTIONS)
+def displace_in_space(faces, blocks, i, run, normal, first, second):
+    """Add the displacements that changes of the forces of contact `i` in space make, which has no second normal."""
+    for k in range(blocks):
+        moved = fused(load(faces, COMPLIANCE + 2 * i, k, run), normal, load(faces, DISPLACEMENT, k, run))
+        moved = fused(-load(faces, COMPLIANCE + 2 * i + 1, k, run), first, moved)
+        moved = fused(-load(faces, COMPLIANCE + 2 * i + 3, k, run), second, moved)
+        store(faces, DISPLACEMENT, k, run, moved)
+
+
+@numba.njit(**OPTIONS)
 def displace_freely(faces, now, count, run, zero):
     """Put the displacements without any force."""
     for i in range(count):

@@ -14,7 +14,6 @@ from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
 from .bristles import next_bristles, slide_on_bristles
 from .contact import SLIDING, STICKING, velocity_at
-from .faces import displace
 from .friction import STRICT
 from .lanes import choose, component, held, hold, lane, magnitude, spread, with_lane
 from .modes import OPTIONS, PASTED
@@ -340,8 +339,8 @@ def free_of_own(contacts, carried, i, run, runs, zero):
 
 
 @numba.njit(**OPTIONS)
-def put_second(contacts, sizes, i, run, goes_on, normal, second, status, zero):
-    """Keep and apply the force along the second tangent of contact `i`; return by how much it changed."""
+def put_second(contacts, i, run, goes_on, normal, second, status, zero):
+    """Keep the force along the second tangent of contact `i`; return by how much it changed."""
     now, here = contacts.now, (i + 1) * at.IN_STEP
     was = held(now, here + at.TANGENTIAL_NOW, run, zero)
     second = choose(goes_on, second, was)
@@ -349,7 +348,6 @@ def put_second(contacts, sizes, i, run, goes_on, normal, second, status, zero):
     # The pair without a normal has the force and the status of its contact, so that it is carried and shared as that.
     hold(now, here + at.NORMAL_NOW, run, normal)
     hold(now, here + at.STATUS_NOW, run, status)
-    displace(contacts.faces, sizes.faces, i + 1, run, zero, second - was)
     return second - was
 
 
