@@ -79,7 +79,7 @@ def test_regime_figures_and_files_know_it(both, tmp_path):
     assert loaded.identical(short)
     assert str(st.regime(short).regime.item())
     plot.surface(analysis.surface(loaded, SOLE), "status")
-    plot.timeline(short)
+    plot.overview(short)
     st.export(short, tmp_path / "short.csv")
     assert float(st.compare(short, short).attrs["within_tolerance"]) == 1
 
