@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import stridula as st
 from stridula import analysis, plot
 from stridula.contact.resultants import RESULTANTS
+from stridula.integration import together
 from stridula.records.by_surface import by_surface
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
@@ -25,6 +29,10 @@ def system(*others):
     """A block on a belt that is pulled up and pushed down, so that it lifts off."""
     push = st.Force(BLOCK.at("top"), y=-20.0, history=st.Harmonic(800.0))
     return st.System([*others, SOLE], [st.Gravity(), push])
+
+
+def interrupt(_):
+    raise KeyboardInterrupt
 
 
 @pytest.fixture(scope="module")
@@ -102,6 +110,27 @@ def test_it_goes_on_and_runs_again(both):
     np.testing.assert_array_equal(again.map_status, run.map_status)
     assert "surface_force" not in again
     assert short.nbytes < whole.nbytes
+
+
+def test_what_an_interrupt_leaves_is_whole(both, monkeypatch):
+    """After some chunks, and before the first."""
+    whole, _ = both
+    given, stopped = system(), {}
+    known = st.simulate(given, 4e-3, surface_rate=MAPS, **WORDS)
+    for name, chunk in (("some", 7), ("none", 0)):
+        monkeypatch.setattr(together, "STEPS_PER_CHUNK", chunk * round(1 / (RATE * whole.attrs["step"])))
+        monkeypatch.setattr(together, "SAMPLES_PER_CHUNK", chunk)
+        if not chunk:
+            monkeypatch.setattr(together, "DeferredInterrupt", lambda: nullcontext(SimpleNamespace(requested=True)))
+        with pytest.raises(st.Interrupted) as caught:
+            st.simulate(given, 4e-3, surface_rate=MAPS, watchers=[interrupt], **WORDS)
+        stopped[name] = caught.value.record
+    count = stopped["some"].sizes["time"]
+    assert 0 < count < known.sizes["time"]
+    np.testing.assert_array_equal(stopped["some"].surface_force, known.surface_force[:count])
+    assert stopped["some"].sizes["map_time"] == count // round(RATE / MAPS)
+    assert stopped["none"].surface_force.shape == (0, 1, 3)
+    assert stopped["none"].map_normal_force.shape == (0, 4)
 
 
 def test_sound_needs_all_points(both):

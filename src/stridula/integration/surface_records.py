@@ -59,6 +59,8 @@ class SurfaceRecord:
         self._resultants: list[list[dict[str, Array]]] = [[] for _ in self._faces]
         self._maps: list[dict[str, Array]] = []
         self._waiting = np.empty((0, len(firsts), at.COLUMNS))
+        # A run may be interrupted before its first chunk.
+        self.take(self._waiting)
 
     def take(self, contacts: Array) -> Array:
         """Take what a chunk has of all pairs, (samples, pairs, columns); return it with a surface as one contact."""
