@@ -64,6 +64,12 @@ class System:
         given = (self.contact,) if isinstance(self.contact, PLACES) else tuple(self.contact)
         return tuple(point for one in given for point in one.contacts)
 
+    @property
+    def faces(self) -> tuple[SurfaceContact, ...]:
+        """The surfaces that were given as such, which know the places and areas of their points."""
+        given = (self.contact,) if isinstance(self.contact, PLACES) else tuple(self.contact)
+        return tuple(one for one in given if hasattr(one, "areas"))  # type: ignore[misc]
+
     @cached_property
     def bodies(self) -> tuple[Any, ...]:
         """The bodies that vibrate: those of the contacts in turn, then those that only connections name."""

@@ -15,6 +15,7 @@ from stridula.verification import (
     jams,
     laws,
     orders,
+    partial_slip,
     plates,
     sliders,
     stability,
@@ -38,6 +39,18 @@ def test_a_plate_of_another_poissons_ratio_falls_short(monkeypatch):
     """Negative control: 1e-4 more moves each mode in the plane by more than its last digit."""
     monkeypatch.setattr(plates, "STEEL", replace(plates.STEEL, poisson=0.3001))
     assert sum(name.startswith("mode") for name in missed(plates.in_plane())) == len(plates.PRINTED_IN_PLANE)
+
+
+def test_a_ball_on_a_plane_of_another_material_or_friction_falls_short(monkeypatch):
+    """Negative control: Poisson's ratio 0.02 off, then friction 5 % off."""
+    monkeypatch.setattr(partial_slip, "GRIDS", (7, 11))
+    right = partial_slip.Material
+    monkeypatch.setattr(partial_slip, "Material", lambda young, density, poisson: right(young, density, poisson - 0.02))
+    assert {"7 squares across: approach", "11 squares across: approach"} <= missed(partial_slip.cattaneo())
+    monkeypatch.setattr(partial_slip, "Material", right)
+    law = partial_slip.Coulomb
+    monkeypatch.setattr(partial_slip, "Coulomb", lambda friction: law(0.95 * friction))
+    assert "11 squares across: shift" in missed(partial_slip.cattaneo())
 
 
 def test_a_slider_with_another_friction_falls_short(monkeypatch):

@@ -7,7 +7,17 @@ from math import atan, pi, radians
 import numpy as np
 import pytest
 
-from stridula.verification import frequencies, impacts, instabilities, jams, laws, sliders, stability, strings
+from stridula.verification import (
+    frequencies,
+    impacts,
+    instabilities,
+    jams,
+    laws,
+    partial_slip,
+    sliders,
+    stability,
+    strings,
+)
 
 
 def test_sdnd100():
@@ -152,3 +162,9 @@ def test_the_string_of_the_bow_has_its_period_and_impedance():
     string = case.string
     assert string.modes().frequency[0] == pytest.approx(196.0 * np.sqrt(1 + case.inharmonicity), rel=1e-12)
     assert np.sqrt(string.tension * string.total_mass / string.length) == pytest.approx(case.impedance, rel=1e-12)
+
+
+def test_cattaneo():
+    """The numbers of CONTACT's case, printed to a radius of 1 mm."""
+    known = partial_slip.closed_form()
+    assert known == pytest.approx((1e-3, 2e-5, 4.390480e6, 8.172412e-6, 5e-4), rel=2e-7)

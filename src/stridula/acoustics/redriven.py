@@ -73,6 +73,9 @@ def redriven(run: xr.Dataset, system: System) -> Moved:
     """
     start, interval, steps, (normal, tangential) = sampled(run, "normal_force", "tangential_force")
     flat, samples = assemble(system), normal.shape[1]
+    if "map_time" in run.dims:
+        words = "have the forces at all points of surfaces at every sample"
+        raise ArgumentError("run", words, run, got="a record with a surface_rate: record it without")
     if len(normal) != len(system.contacts):
         words = f"be a record of this system, of {len(system.contacts)} contacts"
         raise ArgumentError("run", words, run, got=f"one of {len(normal)}")

@@ -15,9 +15,11 @@ from ..checks import ArgumentError, choice, count, instance, listed
 from ..histories import Constant, History
 from .body_surfaces import PointSurface, RingSurface, check_surface
 from .circular_path import CircularPath
+from .half_space import half_space_shapes, surface_frame
 from .matrix_input import check_finite, numbers, rows_of
 from .modes import Body, Modes
 from .named_points import NamedPoints
+from .sections import Material
 from .turning import Turning
 
 # Error of unit vectors at right angles that rounding may make.
@@ -31,7 +33,7 @@ class ModalBody(NamedPoints):
     Parameters
     ----------
     angular_frequency : array_like, shape (modes,)
-        Undamped angular frequencies [rad/s], zero for rigid modes.
+        Undamped angular frequencies [rad/s], zero for rigid modes; may be empty where there are residual shapes.
     points : mapping
         Displacement of each point along world (x, y), or in space (x, y, z), in each mode, by its name [kg^(-1/2)]: the
         shape is (2, modes) or (3, modes), that of residual shapes, if any, in further columns.
@@ -77,10 +79,10 @@ class ModalBody(NamedPoints):
     def __post_init__(self) -> None:
         instance("name", self.name, str)
         self._set("residual", count("residual", self.residual, low=0))
-        angular = _of_modes("angular_frequency", self.angular_frequency)
+        angular = _of_modes("angular_frequency", self.angular_frequency, 0 if self.residual else 1)
         self._set("angular_frequency", angular)
         rates = numbers("damping_rate", self.damping_rate)
-        rates = np.full(angular.size, float(rates)) if rates.ndim == 0 else _of_modes("damping_rate", rates)
+        rates = np.full(angular.size, float(rates)) if rates.ndim == 0 else _of_modes("damping_rate", rates, 0)
         if rates.size != angular.size:
             raise ArgumentError("damping_rate", f"have one number for each mode, {angular.size}", rates, got=rates.size)
         self._set("damping_rate", rates)
@@ -148,6 +150,56 @@ class ModalBody(NamedPoints):
             int(modes.massless.sum()),
             name or body.name,
         )
+
+    @classmethod
+    def half_space(
+        cls,
+        material: Material,
+        places: Any,
+        side: float,
+        normal: Sequence[float] = (0.0, 1.0, 0.0),
+        along: Sequence[float] = (1.0, 0.0, 0.0),
+        coupled: bool = True,
+        name: str = "",
+    ) -> ModalBody:
+        """Return an elastic half-space that yields, without mass, where squares of its surface are pushed.
+
+        Each square is a point, called by its number from 1, that a uniform traction over it moves in the middle. Far
+        from there it is at rest. It needs memory for ``9 squares²`` numbers, and twice that of contacts at all squares.
+
+        Parameters
+        ----------
+        material : Material
+            What it is made of; its density has no effect.
+        places : array_like, shape (squares, 3)
+            Middles of the squares in the world's axes [m]; squares must not overlap. Distances along the normal are
+            left out: gaps belong to contacts.
+        side : float
+            Side of each square [m].
+        normal : sequence of float, optional
+            World components of what lies out of the surface, of any length.
+        along : sequence of float, optional
+            World components of one direction of the sides, square to the normal.
+        coupled : bool, optional
+            Whether pressure also moves the surface along itself, and shear out of it, by ``1 - 2 nu``. False for a
+            half-space of half Young's modulus that stands for two like ones in contact, where the two cancel.
+        name : str, optional
+            What it is called in records.
+
+        Raises
+        ------
+        ValueError
+            If an argument is out of its range, or squares overlap.
+        """
+        instance("material", material, Material)
+        instance("coupled", coupled, bool)
+        middles = numbers("places", places)
+        if middles.ndim != 2 or middles.shape[1] != 3 or not middles.size:
+            raise ArgumentError("places", "be a list of places, three numbers each", places, got=middles.shape)
+        check_finite("places", middles)
+        shapes = half_space_shapes(material, middles, side, surface_frame(normal, along), coupled)
+        points = {str(number + 1): shapes[3 * number : 3 * number + 3] for number in range(len(middles))}
+        return cls(np.empty(0), points, residual=len(shapes), name=name)
 
     def _check_turning(self, size: int) -> None:
         if self.turning is not None:
@@ -296,12 +348,12 @@ class ModalBody(NamedPoints):
         object.__setattr__(self, name, value)
 
 
-def _of_modes(name: str, value: Any) -> Array:
+def _of_modes(name: str, value: Any, fewest: int) -> Array:
     """Return numbers of modes as an array, none below zero."""
     array = numbers(name, value)
-    if array.ndim != 1 or not array.size:
+    if array.ndim != 1 or array.size < fewest:
         raise ArgumentError(name, "be a list of numbers, one for each mode", value, got=array.shape)
     check_finite(name, array)
-    if array.min() < 0.0:
+    if array.min(initial=0.0) < 0.0:
         raise ArgumentError(name, "be 0 or above", value, got=array.min())
     return array

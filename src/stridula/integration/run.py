@@ -30,6 +30,7 @@ from .restart import imposed_at, motion_about, moved_on, state_of
 from .schemes import Scheme
 from .start import state_at_start
 from .stops import ENDED, contact_words, divergence_words, rank_words
+from .surface_records import SurfaceRecord
 from .timing import Timing
 
 CONTACT_COLUMN = {
@@ -71,6 +72,7 @@ class Run:
         solve: GaussSeidel,
         start: xr.Dataset | None,
         title: str,
+        surfaces: SurfaceRecord | None = None,
     ) -> None:
         self.system, self.arrays, self.scheme = system, arrays, scheme
         self.timing, self.probes, self.solve, self.title = timing, probes, solve, title
@@ -91,7 +93,10 @@ class Run:
         self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy, met)
         self.impositions = Impositions(self.arrays, self.blocks, timing.step)
         self.energy_record = np.empty((at.ENERGIES, timing.samples))
-        self.contact_record = np.empty((at.COLUMNS, len(arrays.contacts), timing.samples))
+        # What is recorded of the surfaces in short, and which rows of contacts there are then.
+        self.surfaces = surfaces
+        self.firsts = arrays.firsts if surfaces is None else surfaces.firsts
+        self.contact_record = np.empty((at.COLUMNS, len(self.firsts), timing.samples))
         self.probe_record = np.empty((timing.samples, len(probes)))
         self.wanted: Collection[str] = RECORDED
         self.columns: tuple[int, ...] = ALL_COLUMNS
@@ -128,8 +133,11 @@ class Run:
             return
         completed, self.ended = self.belief.of(chunk, self.energy_record, self.done)
         kept = slice(self.done, self.done + completed)
+        contacts = chunk.contacts[:completed]
+        if self.surfaces is not None:
+            contacts = self.surfaces.take(contacts)
         for column in self.columns:
-            self.contact_record[column, :, kept] = chunk.contacts[:completed, :, column].T
+            self.contact_record[column, :, kept] = contacts[:, :, column].T
         self.done += completed
         if self.probes:
             self._keep_probes(chunk.raw[: completed * self.timing.ratio])
@@ -168,8 +176,8 @@ class Run:
     def record(self, interrupted: bool = False, provenance: bool = True) -> xr.Dataset:
         """Return the record, with the scenario that it is of in its attributes unless `provenance` is false."""
         timing, done = self.timing, self.done
-        last_step = self._last_step
-        return to_dataset(
+        last_step, surfaces = self._last_step, self.surfaces
+        record = to_dataset(
             self.system,
             self._time(),
             *self._over_time(),
@@ -179,7 +187,9 @@ class Run:
             np.concatenate([motion_about(self.described, last_step, timing.step), self.offset[None]]),
             np.empty((0, len(self.probes))) if self.tail is None else self.tail,
             self._attributes(interrupted, {"scenario": self._scenario()} if provenance else {}),
+            None if surfaces is None else dict(zip(surfaces.shown, surfaces.names, strict=True)),
         )
+        return record if surfaces is None else surfaces.add_to(record, self.first_step * timing.step, timing.interval)
 
     def plain_record(self) -> PlainRecord:
         """Return the record as plain arrays, in a fraction of the time."""
@@ -201,7 +211,7 @@ class Run:
         """Return the columns of the contacts, their shares of time and the energies, up to the end."""
         done = self.done
         pairs, energies = self.contact_record[:, :, :done], self.energy_record[:, :done]
-        firsts = self.arrays.firsts
+        firsts = self.firsts
         record = pairs if firsts.all() else pairs[:, firsts]
         columns = {name: record[column] for name, column in CONTACT_COLUMN.items()}
         if not firsts.all():
@@ -252,6 +262,8 @@ class Run:
             "step": timing.step,
             "sample_rate": float(f"{1.0 / timing.interval:.12g}"),
         }
+        if self.surfaces is not None:
+            simulation["surface_rate"] = float(f"{1.0 / (timing.interval * self.surfaces.every):.12g}")
         if self.solve != GaussSeidel():
             simulation["contact_solve"] = asdict(self.solve)
         return scenario_toml(self.system, self.probes, simulation)

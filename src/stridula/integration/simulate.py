@@ -21,6 +21,7 @@ from .run import Run
 from .schemes import CentralDifference, ExactModal, Scheme
 from .stepping import Stepping
 from .stops import Diverged, Interrupted
+from .surface_records import SurfaceRecord
 from .timing import Timing
 from .together import march_together
 from .watchers import Watcher
@@ -42,6 +43,7 @@ def simulate(
     start: xr.Dataset | None = None,
     watchers: Sequence[Watcher] = (),
     title: str = "",
+    surface_rate: float | None = None,
 ) -> xr.Dataset:
     """March a system in time and return its record.
 
@@ -72,6 +74,9 @@ def simulate(
         Called with a `Progress` between chunks of the march.
     title : str, optional
         Title of the record.
+    surface_rate : float, optional
+        Maps a second to record of surfaces [Hz], in the place of all their points at every sample; the nearest rate at
+        which an interval is a whole number of samples. All points at every sample if left out.
 
     Returns
     -------
@@ -79,7 +84,10 @@ def simulate(
         Forces (means over each sample interval), contact, energies and probes over ``time`` [s], with units and
         meanings in the attributes. ``attrs["ended"]`` is ``finished`` or ``off the track``; ``attrs["scenario"]`` is
         TOML that runs it again. The forces follow the convention: normal compressive, tangential on the track
-        along its tangent. Variables of the contact have the dimension ``contact`` where there are several.
+        along its tangent. Variables of the contact have the dimension ``contact`` where there are several. With a
+        `surface_rate` each surface is one of them: forces and counts are sums over its points, all else are means;
+        ``surface_force`` and the other resultants of `analysis.surface` are over ``face``, and variables that begin
+        with ``map_``, means over the interval, over ``map_time`` [s] and ``point``.
 
     Raises
     ------
@@ -94,7 +102,7 @@ def simulate(
     """
     if not isinstance(watchers, Sequence):
         raise ArgumentError("watchers", "be a list of callables", watchers)
-    asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve)
+    asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve, surface_rate)
     run = asked.run(asked.arrays(system), start, title)
     timing = run.timing
     march = March([run.blocks], [run.state], timing.step, timing.ratio, asked.solve)
@@ -137,9 +145,11 @@ class Asked:
         sample_rate: float,
         probes: Sequence[Probe] | None,
         contact_solve: GaussSeidel | None,
+        surface_rate: float | None = None,
     ) -> None:
         self.duration, self.step, self.sample_rate = positive("duration", duration), step, sample_rate
         self.common_step: float | None = None
+        self.surface_rate = None if surface_rate is None else positive("surface_rate", surface_rate)
         self.scheme: Scheme = ExactModal() if scheme is None else scheme
         instance("scheme", self.scheme, (CentralDifference, ExactModal))
         if probes is not None and not isinstance(probes, Sequence):
@@ -167,7 +177,11 @@ class Asked:
     def run(self, arrays: Arrays, start: xr.Dataset | None = None, title: str = "") -> Run:
         """Return the run of a system, ready to march."""
         timing = self.timing(arrays)
-        columns = len(arrays.probes) + ENERGIES + COLUMNS * len(arrays.system.contacts)
+        surfaces = self._surfaces(arrays, timing)
+        rows = len(arrays.system.contacts)
+        if surfaces is not None:
+            rows = len(surfaces.shown) + -(-rows // surfaces.every)
+        columns = len(arrays.probes) + ENERGIES + COLUMNS * rows
         if columns > LARGEST_RECORD / 8 / max(timing.samples, 1):
             raise ArgumentError(
                 "duration",
@@ -175,7 +189,18 @@ class Asked:
                 self.duration,
                 got=f"{self.duration!r} s at {1 / timing.interval:.6g} Hz: lower sample_rate",
             )
-        return Run(arrays.system, arrays.flat, self.scheme, timing, arrays.probes, self.solve, start, title)
+        return Run(arrays.system, arrays.flat, self.scheme, timing, arrays.probes, self.solve, start, title, surfaces)
+
+    def _surfaces(self, arrays: Arrays, timing: Timing) -> SurfaceRecord | None:
+        """Return what records surfaces in short, if that is asked for."""
+        if self.surface_rate is None:
+            return None
+        system, rate = arrays.system, 1.0 / timing.interval
+        if not (system.surface_names and system.has_two_tangents):
+            raise ArgumentError("surface_rate", "be left out without surfaces in contact", self.surface_rate)
+        if self.surface_rate > rate * (1.0 + 1e-9):
+            raise ArgumentError("surface_rate", f"be at most the sample rate, {at_most(rate)} Hz", self.surface_rate)
+        return SurfaceRecord(system, arrays.flat.firsts, max(1, round(rate / self.surface_rate)))
 
 
 def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float | None, sample_rate: float) -> Timing:

@@ -82,6 +82,7 @@ def surface(
     ValueError
         If it is no face, or nothing of it was recorded then.
     """
+    found = _over_time(found)
     face = _face(found)
     choice("quantity", quantity, QUANTITIES)
     shown, when = _chosen(found, time, span)
@@ -135,6 +136,7 @@ def animate_surface(
     OSError
         If the file cannot be written.
     """
+    found = _over_time(found)
     face = _face(found)
     choice("quantity", quantity, QUANTITIES)
     positive("slowdown", slowdown)
@@ -222,8 +224,15 @@ class _FilmOfMaps:
         self.figure.suptitle(f"{self._words}\nt = {1e3 * time:.3f} ms", fontsize=10)
 
 
-def _face(found: xr.Dataset) -> _Face:
+def _over_time(found: xr.Dataset) -> xr.Dataset:
+    """Return the fields of a face over ``time``, whatever rate they have."""
     instance("found", found, xr.Dataset)
+    if "map_time" not in found.dims:
+        return found
+    return found.drop_dims("time", errors="ignore").rename(map_time="time")
+
+
+def _face(found: xr.Dataset) -> _Face:
     if any(name not in found for name in NEEDED) or not found.sizes.get("time"):
         raise ArgumentError("found", "be what analysis.surface returned, with at least one sample", found)
     places, areas = found["place"].values, found["area"].values

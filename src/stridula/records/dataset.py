@@ -45,25 +45,27 @@ def to_dataset(
     motion: Array,
     raw: Array,
     attributes: dict[str, Any],
+    shown: Mapping[int, str] | None = None,
 ) -> xr.Dataset:
     """Label the arrays of a march with names, units and meanings.
 
     Arrays of the contacts have the shapes (contacts, samples), and (samples, contacts, 3) for the status. `motion`
     is what is imposed on each contact a step before the end and at the end, and by how much it has been moved beyond
     that, shape (3, contacts, 3). `raw` are the last values of the probes at every step, which the low-pass still needs,
-    shape (steps, probes).
+    shape (steps, probes). `shown` says what rows of contacts are called that stand for others, by the number of one of
+    these.
     """
     words = described("s", "time at the end of the sample interval")
     coordinates: dict[str, Any] = {
         "time": ("time", time, words),
         "contact_status": ("contact_status", list(STATUS_WORDS)),
-        "contact": ("contact", list(system.contact_names)),
+        "contact": ("contact", list(system.contact_names if shown is None else shown.values())),
     }
-    over = over_time(system, contact_columns, status_share, energies)
+    over = over_time(system, contact_columns, status_share, energies, shown=shown)
     data: dict[str, Any] = {name: (*given, _attributes(name, system)) for name, given in over.items()}
-    if len(system.contacts) == 1:
+    if len(coordinates["contact"][1]) == 1:
         del coordinates["contact"]
-    elif system.surface_names:
+    elif system.surface_names and shown is None:
         coordinates["surface"] = ("contact", list(system.surface_names))
     if system.has_two_tangents:
         coordinates["tangent"] = ("tangent", list(TANGENTS))
@@ -96,6 +98,7 @@ def over_time(
     status_share: Array,
     energies: Mapping[str, Array],
     wanted: Collection[str] = RECORDED,
+    shown: Collection[int] | None = None,
 ) -> dict[str, tuple[tuple[str, ...], Array]]:
     """Return what is recorded of contacts and energies, with its dimensions; arguments as those of `to_dataset`."""
     along = ("time", "contact")
@@ -113,18 +116,21 @@ def over_time(
     for name in ("jammed_steps", "landings"):
         if name in wanted:
             found[name] = (along, contact_columns[name].T.astype(np.int64))
-    units = _units_of_states(system)
+    contacts = system.contacts if shown is None else [system.contacts[number] for number in shown]
+    units = [contact.friction.state_units for contact in contacts]
     if FRICTION_STATE.name in wanted and any(units):
         # NaN for contacts whose law has no state.
         kept = np.swapaxes(contact_columns[FRICTION_STATE.name], 0, 1).copy()
         kept[:, np.array(units) == ""] = np.nan
         if kept.ndim > 2:
             # Another law than one of bristles has one state in space, too.
-            kept[:, [not contact.has_state_vector for contact in system.contacts], 1] = np.nan
+            kept[:, [not contact.has_state_vector for contact in contacts], 1] = np.nan
         found[FRICTION_STATE.name] = ((*along, "tangent")[: kept.ndim], kept)
     if len(system.contacts) > 1:
         solved = [one.name for one in SOLVE if one.name in wanted]
-        return found | {name: (("time",), energies[name].astype(np.int64)) for name in solved}
+        found |= {name: (("time",), energies[name].astype(np.int64)) for name in solved}
+    if len(contacts) > 1:
+        return found
     return {name: _of_the_one_contact(*given) for name, given in found.items()}
 
 

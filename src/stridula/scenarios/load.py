@@ -47,6 +47,8 @@ class Scenario:
         What else to record; the acceleration of the track's centre if None.
     contact_solve : GaussSeidel or None
         How several contacts are solved together; the default if None.
+    surface_rate : float or None
+        Maps of surfaces recorded per second [Hz]; all points at every sample if None.
     """
 
     title: str
@@ -58,6 +60,7 @@ class Scenario:
     sample_rate: float
     probes: tuple[Probe, ...] | None
     contact_solve: GaussSeidel | None = None
+    surface_rate: float | None = None
 
     def simulate(self, **kwargs: Any) -> xr.Dataset:
         """March the system in time and return its record.
@@ -72,7 +75,7 @@ class Scenario:
         ScenarioError
             If the scenario's step, duration or sample rate is out of its range, or its coupled modes overflow.
         """
-        names = ("duration", "scheme", "step", "sample_rate", "probes", "contact_solve", "title")
+        names = ("duration", "scheme", "step", "sample_rate", "probes", "contact_solve", "title", "surface_rate")
         own = {name: getattr(self, name) for name in names}
         try:
             return simulate(self.system, **(own | kwargs))
@@ -137,6 +140,7 @@ def scenario_of_tables(written: dict[str, Any], problems: Sequence[str] = ()) ->
         sample_rate=simulation.sample_rate,
         probes=builder.probes(system),
         contact_solve=builder.contact_solve(),
+        surface_rate=simulation.surface_rate,
     )
 
 

@@ -152,7 +152,7 @@ class Modal(Table):
     kind: Literal["modal body"]
     """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"""
     angular_frequency: is_.Vector
-    """angular frequencies of the modes [rad/s]"""
+    """angular frequencies of the modes [rad/s], none where there are residual shapes alone"""
     points: is_.PointTable
     """points by name: rows, what each mode moves them by along x, y and z"""
     damping_rate: is_.Inertia = 0.0

@@ -1,0 +1,117 @@
+"""Surfaces recorded in short: sums over their points at every sample, maps of the points at a lower rate."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .._kernels import layout as at
+from ..arrays import Array
+from ..contact.resultants import AXES, RESULTANTS, resultants
+from ..records.by_surface import groups
+from ..records.dataset import OVER_TIME
+from ..records.variables import STATUS, STATUS_SHARE, attributes_of, described, dominant_status, status_attributes
+from ..system import System
+
+# Of the points of a surface, and of the samples of an interval of maps, these add up; of all else there is a mean.
+SUMMED = (at.NORMAL_FORCE, at.TANGENTIAL_FORCE, at.JAMMED, at.LANDINGS)
+SHARES = slice(at.SEPARATED, at.SLIDING + 1)
+# What maps are of, means over an interval.
+MAPPED = ("normal_force", "tangential_force", "slip_velocity", STATUS_SHARE.name, STATUS.name)
+MAP = "map_"
+
+
+class SurfaceRecord:
+    """What is recorded of the surfaces of a run, chunk by chunk.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    firsts : ndarray, shape (pairs,)
+        Which pairs of rows are the first of a contact.
+    every : int
+        Samples in an interval of maps.
+    """
+
+    def __init__(self, system: System, firsts: Array, every: int) -> None:
+        self.every = every
+        members = groups(system.contact_names, system.surface_names)
+        self.shown = tuple(one[0] for one in members)
+        self.names = tuple(system.surface_names[one[0]] or system.contact_names[one[0]] for one in members)
+        contact_of, is_second = np.cumsum(firsts) - 1, ~firsts
+        rows = [
+            np.flatnonzero(np.isin(contact_of, one) & (is_second == second))
+            for one in members
+            for second in (False, True)
+        ]
+        self.firsts = np.array([number % 2 == 0 for number, one in enumerate(rows) if len(one)])
+        self._rows = [one for one in rows if len(one)]
+        self._points = np.flatnonzero(np.array([bool(name) for name in system.surface_names]))
+        self._point_names = [system.contact_names[number] for number in self._points]
+        self._first_rows = np.flatnonzero(firsts)
+        self._has_second = np.append(is_second[1:], False)[self._first_rows]
+        self._faces = system.faces
+        numbers = {name: number for number, name in enumerate(system.contact_names)}
+        self._of_face = [[numbers[point.name] for point in face.contacts] for face in self._faces]
+        self._resultants: list[list[dict[str, Array]]] = [[] for _ in self._faces]
+        self._maps: list[dict[str, Array]] = []
+        self._waiting = np.empty((0, len(firsts), at.COLUMNS))
+        # A run may be interrupted before its first chunk.
+        self.take(self._waiting)
+
+    def take(self, contacts: Array) -> Array:
+        """Take what a chunk has of all pairs, (samples, pairs, columns); return it with a surface as one contact."""
+        for face, numbers, kept in zip(self._faces, self._of_face, self._resultants, strict=True):
+            normal, tangential, slip, share = self._of_points(contacts, np.array(numbers))
+            kept.append(resultants(face, normal, tangential, share, slip))
+        self._keep_maps(contacts)
+        found = np.stack([contacts[:, one].mean(axis=1) for one in self._rows], axis=1)
+        for column in SUMMED:
+            found[..., column] = np.stack([contacts[:, one, column].sum(axis=1) for one in self._rows], axis=1)
+        found[..., at.DOMINANT] = dominant_status(found[..., SHARES])
+        return found
+
+    def _of_points(self, contacts: Array, numbers: Array) -> tuple[Array, Array, Array, Array]:
+        """Return normal and tangential forces, slip velocities and shares of some contacts."""
+        first = self._first_rows[numbers]
+        second = np.where(self._has_second[numbers], first + 1, first)
+        along = np.stack([contacts[:, first], contacts[:, second] * self._has_second[numbers, None]], axis=2)
+        tangential, slip = along[..., at.TANGENTIAL_FORCE], along[..., at.SLIP_VELOCITY]
+        return contacts[:, first, at.NORMAL_FORCE], tangential, slip, contacts[:, first, SHARES]
+
+    def _keep_maps(self, contacts: Array) -> None:
+        waiting = np.concatenate([self._waiting, contacts])
+        whole = len(waiting) // self.every
+        for interval in waiting[: whole * self.every].reshape(whole, self.every, *waiting.shape[1:]):
+            normal, tangential, slip, share = (one.mean(axis=0) for one in self._of_points(interval, self._points))
+            found = (normal, tangential, slip, share, dominant_status(share))
+            self._maps.append(dict(zip(MAPPED, found, strict=True)))
+        self._waiting = waiting[whole * self.every :].copy()
+
+    def add_to(self, record: xr.Dataset, start: float, interval: float) -> xr.Dataset:
+        """Return a record with the maps, over ``map_time``, and the resultants of surfaces, over ``face``.
+
+        `start` is when the run begins and `interval` its sample interval [s].
+        """
+        times = start + interval * self.every * np.arange(1, len(self._maps) + 1)
+        beyond = {"tangential_force": "tangent", "slip_velocity": "tangent", STATUS_SHARE.name: "contact_status"}
+        data: dict[str, Any] = {}
+        for name in MAPPED:
+            after = (beyond[name],) if name in beyond else ()
+            empty = np.empty((0, len(self._points), *(record.sizes[one] for one in after)))
+            values = np.stack([one[name] for one in self._maps]) if self._maps else empty
+            words = status_attributes() if name == STATUS.name else attributes_of(OVER_TIME[name])
+            data[MAP + name] = (("map_time", "point", *after), values, words)
+        coordinates: dict[str, Any] = {
+            "map_time": ("map_time", times, described("s", "time at the end of the interval of a map")),
+            "point": ("point", self._point_names),
+        }
+        if self._faces:
+            coordinates |= {"face": ("face", [face.name for face in self._faces]), "axis": ("axis", list(AXES))}
+            for name, meaning in RESULTANTS.items():
+                values = np.stack([np.concatenate([part[name] for part in kept]) for kept in self._resultants], axis=1)
+                data[f"surface_{name}"] = (("time", "face", "axis")[: values.ndim], values, described(*meaning))
+        return record.assign(data).assign_coords(coordinates)
