@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, singledispatch
 from typing import Any
 
 import numpy as np
@@ -713,16 +713,14 @@ def _start(system: System, layout: _Layout) -> tuple[Array, Array]:
 
 
 def _probe(probe: Probe, layout: _Layout, loads: list[_Load]) -> ProbeRows:
-    system = layout.system
-    direct, contact = np.zeros(len(loads) + 3), np.zeros((layout.pairs, 2))
-    if isinstance(probe, Reaction):
-        return _reaction_rows(probe, layout, loads, direct, contact)
-    if probe.body not in system.bodies:
+    if not isinstance(probe, Reaction) and probe.body not in layout.system.bodies:
         raise ArgumentError("probe", "be on a body of this system", probe, got=f"one on {brief(probe.body)}")
-    matrix = np.zeros((3, layout.size))
-    if isinstance(probe, SupportForce):
-        matrix[0] = layout.blended(layout.full(probe.body, probe.body.support_force(probe.end)))
-        return ProbeRows(matrix, direct, contact)
+    return _rows_of(probe, layout, loads, np.zeros(len(loads) + 3), np.zeros((layout.pairs, 2)))
+
+
+@singledispatch
+def _rows_of(probe: Any, layout: _Layout, loads: list[_Load], direct: Array, contact: Array) -> ProbeRows:
+    system, matrix = layout.system, np.zeros((3, layout.size))
     if hasattr(probe, "mode"):
         modes = layout.modes(probe.body).count
         if probe.mode >= modes:
@@ -738,6 +736,14 @@ def _probe(probe: Probe, layout: _Layout, loads: list[_Load]) -> ProbeRows:
     return ProbeRows(matrix, direct, contact)
 
 
+@_rows_of.register
+def _support_rows(probe: SupportForce, layout: _Layout, loads: list[_Load], direct: Array, contact: Array) -> ProbeRows:
+    matrix = np.zeros((3, layout.size))
+    matrix[0] = layout.blended(layout.full(probe.body, probe.body.support_force(probe.end)))
+    return ProbeRows(matrix, direct, contact)
+
+
+@_rows_of.register
 def _reaction_rows(probe: Reaction, layout: _Layout, loads: list[_Load], direct: Array, contact: Array) -> ProbeRows:
     system, beam = layout.system, probe.body
     component = ("x", "y", "moment").index(probe.component)

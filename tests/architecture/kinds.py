@@ -9,8 +9,6 @@ from pathlib import Path
 import stridula
 
 ROOT = Path(stridula.__file__).parent
-# What a thing can do may be asked.
-PROTOCOLS = {"Body", "DampingLaw", "HasRoot"}
 
 
 def own_names(tree: ast.Module) -> set[str]:
@@ -25,7 +23,7 @@ def own_names(tree: ast.Module) -> set[str]:
 def asked_kinds(source: str) -> list[tuple[int, str]]:
     """Return the lines that ask for a class of the package, by ``isinstance`` or ``match``, and the classes."""
     tree = ast.parse(source)
-    own = own_names(tree) - PROTOCOLS
+    own = own_names(tree)
     found = []
     for node in ast.walk(tree):
         asked: ast.AST | None = None

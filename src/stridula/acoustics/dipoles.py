@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from functools import singledispatch
 from math import cos, pi
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
 from ..arrays import Array
-from ..bodies import Circle, Rectangle, Section
+from ..bodies import Circle, Rectangle
 from ..checks import ArgumentError
 from .air import Air
 from .delays import Interpolation, Response, add, response, span
@@ -16,7 +18,8 @@ from .panels import Panel
 from .surfaces import line_of_points
 
 
-def moved_area(section: Rectangle | Circle | Section) -> float:
+@singledispatch
+def moved_area(section: Any) -> float:
     """Return the area [m²] of air that a slim beam carries with it in bending, its own section included.
 
     The far flow about a section that oscillates is a dipole of the strength of the force on the air plus that of the
@@ -31,10 +34,16 @@ def moved_area(section: Rectangle | Circle | Section) -> float:
     ValueError
         If the section is no rectangle and no circle.
     """
-    if isinstance(section, Circle):
-        return 2.0 * section.area
-    if not isinstance(section, Rectangle):
-        raise ArgumentError("track", "have a Rectangle or a Circle as section without a baffle", section)
+    raise ArgumentError("track", "have a Rectangle or a Circle as section without a baffle", section)
+
+
+@moved_area.register
+def _of_a_circle(section: Circle) -> float:
+    return 2.0 * section.area
+
+
+@moved_area.register
+def _of_a_rectangle(section: Rectangle) -> float:
     half = section.height / section.width
     corner = brentq(lambda a: _side(0.0, a) - half * _side(pi / 2.0, a), 1e-9, pi / 2.0 - 1e-9, xtol=1e-14)
     radius = section.width / (2.0 * _side(pi / 2.0, corner))

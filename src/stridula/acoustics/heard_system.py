@@ -21,10 +21,11 @@ def track_of(system: Any) -> ModalBeam | ModalPlate:
     ValueError
         If there is no beam and no plate among its tracks.
     """
-    tracks = [contact.track for contact in system.contacts]
+    tracks: list[Any] = [contact.track for contact in system.contacts]
     for track in tracks:
-        if isinstance(track, (ModalBeam, ModalPlate)):
-            return track
+        if hasattr(track, "path"):
+            found: ModalBeam | ModalPlate = track
+            return found
     raise ArgumentError("track", "be a modal beam or a modal plate to be heard", got=f"a {type(tracks[0]).__name__}")
 
 

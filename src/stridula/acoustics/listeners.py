@@ -36,7 +36,7 @@ def ears(
         x, y, z of both [m].
     """
     middle = positive("height", height)
-    across = track.width / 2.0 if isinstance(track, ModalPlate) else 0.0
+    across = getattr(track, "width", 0.0) / 2.0
     half = positive("spacing", spacing) / 2.0
     return [(track.length / 2.0 + side * half, across, middle) for side in (-1.0, 1.0)]
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import singledispatch
 from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
-from ..bodies import ModalBeam, ModalPlate, Rectangle
+from ..bodies import ModalBeam, ModalPlate
 from ..checks import ArgumentError
 
 
@@ -63,7 +64,8 @@ class Panel:
         )
 
 
-def panel_of(track: ModalBeam | ModalPlate) -> Panel:
+@singledispatch
+def panel_of(track: Any) -> Panel:
     """Return the surface of a track: a plate, or a beam as a strip that moves uniformly across its width.
 
     Axial modes, and those in the plane of a plate, move in the plane of the surface and are left out.
@@ -78,13 +80,14 @@ def panel_of(track: ModalBeam | ModalPlate) -> Panel:
     ValueError
         If it is no such track, or a beam whose section is no rectangle.
     """
-    if isinstance(track, ModalPlate):
-        return _plate(track)
-    if isinstance(track, ModalBeam) and isinstance(track.section, Rectangle):
-        return _bent(track, track.section.width)
-    if isinstance(track, ModalBeam):
-        raise ArgumentError("track", "have a Rectangle as section to have a flat surface in a baffle", track.section)
     raise ArgumentError("track", "be a ModalBeam or a ModalPlate", track)
+
+
+@panel_of.register
+def _of_a_beam(track: ModalBeam) -> Panel:
+    if not hasattr(track.section, "width"):
+        raise ArgumentError("track", "have a Rectangle as section to have a flat surface in a baffle", track.section)
+    return _bent(track, track.section.width)
 
 
 def line_of(track: ModalBeam) -> Panel:
@@ -118,7 +121,8 @@ def _bent(beam: ModalBeam, width: float) -> Panel:
     )
 
 
-def _plate(plate: ModalPlate) -> Panel:
+@panel_of.register
+def _of_a_plate(plate: ModalPlate) -> Panel:
     modes, count = plate.modes(), plate.harmonics[0]
     return Panel(
         length=plate.length,

@@ -152,7 +152,8 @@ def regime_of(
 
 def signals_of(run: xr.Dataset | PlainRecord) -> Signals:
     """Return the plain arrays of a record that decide its regime."""
-    held = run if isinstance(run, PlainRecord) and _is_usable(run) else _checked(run)
+    given: Any = run
+    held: PlainRecord = given if hasattr(given, "by_contact") and _is_usable(given) else _checked(given)
     time, members = held["time"], groups(held.contacts, held.surfaces)
     normal, tangential = held.by_contact("normal_force"), held.by_contact("tangential_force")
     # In space one row for each tangent.
@@ -177,7 +178,7 @@ def _is_usable(run: PlainRecord) -> bool:
 
 def _checked(run: Any) -> PlainRecord:
     """Return the plain arrays of a record that has what is needed; ValueError if it is none."""
-    given = run.labelled(*run.variables) if isinstance(run, PlainRecord) else run
+    given = run.labelled(*run.variables) if hasattr(run, "labelled") else run
     held = checked.record("run", given, *NEEDED, least=2)
     if "landings" in held.variables:
         checked.record("run", given, "landings")

@@ -95,26 +95,22 @@ class Session:
         await _sent(self.socket.send_json({"type": what, **words}))
 
     async def _answer(self, message: Message) -> None:
-        if isinstance(message, Scene):
-            await self._scene(message)
-        elif isinstance(message, Listen):
-            self.source = message.source
-            if self.instrument is not None:
-                self.instrument.listen_to(message.source)
-        elif isinstance(message, Repeat):
-            self.repeats = message.on
-            if self.instrument is not None:
-                self.instrument.repeat(message.on)
+        if type(message) in ANSWERS:
+            await ANSWERS[type(message)](self, message)
         elif self.instrument is None:
             raise ArgumentError("scene", "be given first")
-        elif isinstance(message, Pull):
-            await self._pull(self.instrument, message)
-        elif isinstance(message, Restart):
-            self.instrument.restart()
-        elif isinstance(message, Save):
-            await self._save(self.instrument, message)
         else:
-            self._map(self.instrument.played, message)
+            await ANSWERS_OF_WHAT_PLAYS[type(message)](self, self.instrument, message)
+
+    async def _listen(self, message: Listen) -> None:
+        self.source = message.source
+        if self.instrument is not None:
+            self.instrument.listen_to(message.source)
+
+    async def _repeat(self, message: Repeat) -> None:
+        self.repeats = message.on
+        if self.instrument is not None:
+            self.instrument.repeat(message.on)
 
     async def _scene(self, scene: Scene) -> None:
         """Play something else, as much of it as can be played."""
@@ -176,10 +172,14 @@ class Session:
         await self._tell("file", format=save.format, size=len(content))
         await _sent(self.socket.send_bytes(content))
 
-    def _map(self, played: Playable, message: Map | NoMap) -> None:
-        if isinstance(message, NoMap):
-            self._stop("map")
-            return
+    async def _restart(self, instrument: Instrument, message: Restart) -> None:
+        instrument.restart()
+
+    async def _no_map(self, instrument: Instrument, message: NoMap) -> None:
+        self._stop("map")
+
+    async def _map(self, instrument: Instrument, message: Map) -> None:
+        played = instrument.played
         known = {control.key for control in controls.CONTROLS} & set(controls.values(played.tables))
         for side in ("x", "y"):
             axis = getattr(message, side)
@@ -211,6 +211,17 @@ class Session:
         before = self._tasks.pop(name, None)
         if before is not None:
             before.cancel()
+
+
+# How a message is answered, and how one is that needs something to play.
+ANSWERS: dict[type, Any] = {Scene: Session._scene, Listen: Session._listen, Repeat: Session._repeat}
+ANSWERS_OF_WHAT_PLAYS: dict[type, Any] = {
+    Pull: Session._pull,
+    Restart: Session._restart,
+    Save: Session._save,
+    NoMap: Session._no_map,
+    Map: Session._map,
+}
 
 
 async def _sent(sending: Coroutine[Any, Any, None]) -> None:

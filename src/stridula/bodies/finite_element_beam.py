@@ -111,6 +111,11 @@ class FiniteElementBeam:
         return f"{self.length:.4g} m"
 
     @property
+    def ends(self) -> tuple[float, float]:
+        """Distances of its two ends from the first [m]."""
+        return 0.0, self.length
+
+    @property
     def posture(self) -> str:
         """How it stands, in words."""
         return f"leaning {np.degrees(self.angle):.4g} deg"

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Any
 
-from ..bodies import FiniteElementBeam, Material, ModalBeam
+from ..bodies import Material, ModalBeam
 from ..scenarios.errors import ScenarioError
 from ..scenarios.load import load_scenario
 from ..system import System
@@ -45,7 +45,7 @@ def _of(name: str, body: Any) -> Iterator[str]:
         if not DENSITY[0] <= one.density <= DENSITY[1]:
             unit = "t/mm3, as finite-element programs have it" if one.density < TONNES else "g/cm3"
             yield f"{whose}: density of {one.density:.4g} kg/m3; did you mean {unit}?"
-    if isinstance(body, (FiniteElementBeam, ModalBeam)):
+    if hasattr(body, "section"):
         across = getattr(body.section, "height", getattr(body.section, "diameter", 0.0))
         if across > 0.5 * body.length:
             yield f"{name}: {across:.4g} m thick and {body.length:.4g} m long; beams are slender here"

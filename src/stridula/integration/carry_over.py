@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import singledispatch
 from typing import Any
 
 import numpy as np
@@ -72,11 +73,24 @@ def _root_velocity(system: System, time: float) -> float:
 
 def carries_over(before: Any, now: Any) -> bool:
     """Return whether the motion of one body means something for another."""
-    if type(before) is not type(now):
-        return False
-    if isinstance(before, FiniteElementBeam):
-        return all(getattr(before, name) == getattr(now, name) for name in SAME_MESH)
-    return isinstance(before, (ModalBeam, ModalPlate)) or before == now
+    return type(before) is type(now) and _is_like(before, now)
+
+
+@singledispatch
+def _is_like(before: Any, now: Any) -> bool:
+    """Return whether the motion of a body means something for another of its kind."""
+    return bool(before == now)
+
+
+@_is_like.register(ModalBeam)
+@_is_like.register(ModalPlate)
+def _always(before: Any, now: Any) -> bool:
+    return True
+
+
+@_is_like.register
+def _has_its_mesh(before: FiniteElementBeam, now: FiniteElementBeam) -> bool:
+    return all(getattr(before, name) == getattr(now, name) for name in SAME_MESH)
 
 
 def carried_over(before: Any, now: Any, held: bool, values: Array) -> Array:
@@ -98,10 +112,12 @@ def carried_over(before: Any, now: Any, held: bool, values: Array) -> Array:
     -------
     ndarray, shape (modes now,)
     """
-    if before == now:
-        return values
-    if isinstance(before, FiniteElementBeam):
-        return _of_finite_elements(before, now, held, values)
+    return values if before == now else _carried(before, now, held, values)
+
+
+@singledispatch
+def _carried(before: Any, now: Any, held: bool, values: Array) -> Array:
+    """Return the motion of a body that is not the same any more, of exact modes by their sines."""
     found = np.zeros(now.modes().count)
     ratio = before.amplitude / now.amplitude
     places = {key: place for place, key in enumerate(_sines(now))}
@@ -111,6 +127,7 @@ def carried_over(before: Any, now: Any, held: bool, values: Array) -> Array:
     return found
 
 
+@_carried.register
 def _of_finite_elements(before: FiniteElementBeam, now: FiniteElementBeam, held: bool, values: Array) -> Array:
     traces, rigid = before.node_traces(held), before.modes(held).angular_frequency == 0.0
     travel = traces[:, rigid] @ values[rigid]
@@ -120,13 +137,17 @@ def _of_finite_elements(before: FiniteElementBeam, now: FiniteElementBeam, held:
     return now.modal_coordinates(travel + deflected.ravel(), held)
 
 
-def _sines(track: ModalBeam | ModalPlate) -> list[Any]:
+@singledispatch
+def _sines(track: Any) -> list[Any]:
     """Return what tells the modes of a track apart, in their order."""
-    if isinstance(track, ModalPlate):
-        # Of a pair of half-waves in the plane there is a longitudinal mode and one of shear.
-        shears = (track.polarisations[:, 1] < 0.0).tolist()
-        in_plane = zip(track.in_plane_numbers.tolist(), shears, strict=True)
-        bends = [("bending", tuple(pair), False) for pair in track.numbers.tolist()]
-        return bends + [("in plane", tuple(pair), shear) for pair, shear in in_plane]
     bending, axial = track.harmonics
     return [("bending", k) for k in range(bending)] + [("axial", k) for k in range(axial)]
+
+
+@_sines.register
+def _of_a_plate(plate: ModalPlate) -> list[Any]:
+    # Of a pair of half-waves in the plane there is a longitudinal mode and one of shear.
+    shears = (plate.polarisations[:, 1] < 0.0).tolist()
+    in_plane = zip(plate.in_plane_numbers.tolist(), shears, strict=True)
+    bends = [("bending", tuple(pair), False) for pair in plate.numbers.tolist()]
+    return bends + [("in plane", tuple(pair), shear) for pair, shear in in_plane]

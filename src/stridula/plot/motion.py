@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import singledispatch
 from typing import Any
 
 import numpy as np
@@ -169,19 +170,26 @@ def _a(body: object) -> str:
 
 def body_places(body: FiniteElementBeam | ModalBeam | ModalPlate) -> Array:
     """Return the places along a body at which it is drawn [m]."""
-    low, high = (0.0, body.length) if isinstance(body, FiniteElementBeam) else body.ends
+    low, high = body.ends
     return np.linspace(low, high, min(max(_fewest(body), 20) + 1, MOST_POINTS))
 
 
-def _fewest(body: FiniteElementBeam | ModalBeam | ModalPlate) -> int:
+@singledispatch
+def _fewest(body: Any) -> int:
     """Return how many pieces show every half-wave of a body."""
-    if isinstance(body, FiniteElementBeam):
-        return 2 * body.elements
-    if isinstance(body, ModalBeam):
-        return 4 * body.harmonics[0]
     # Along the line a product of two sines has the sum of their wavenumbers.
     low, high = body.ends
     return math.ceil(4.0 * float((body.wavenumbers @ np.abs(body.track_line.tangent)).max()) * (high - low) / math.pi)
+
+
+@_fewest.register
+def _of_finite_elements(body: FiniteElementBeam) -> int:
+    return 2 * body.elements
+
+
+@_fewest.register
+def _of_a_beam(body: ModalBeam) -> int:
+    return 4 * body.harmonics[0]
 
 
 def _motion(system: System, run: xr.Dataset, along: list[Array]) -> Motion:
@@ -205,5 +213,5 @@ def _motion(system: System, run: xr.Dataset, along: list[Array]) -> Motion:
     # Motion along the track is left out: the tip is where it is along it, whatever the track below does.
     track_places = rest + moved[:, first:] * [0.0, 1.0]
     below = np.interp(abscissa, along[1], track_places[:, :, 1].mean(axis=0))
-    is_cut = isinstance(contact.track, ModalPlate)
+    is_cut = hasattr(contact.track, "track_line")
     return Motion(run, slider_places, track_places, np.stack([abscissa, below], axis=1), is_cut)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Mapping
-from functools import reduce
+from functools import reduce, singledispatch
 from operator import or_
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -78,14 +78,25 @@ def one_of(tag: str, tables: Iterable[type[Table]]) -> Any:
 
 def _read(field: Declared) -> Any:
     """Return the kind of a declared field, as tables read it."""
-    kind: Any
-    match field.kind:
-        case Choice(words):
-            kind = Literal[words]
-        case Each(one):
-            kind = list[Annotated[float, read_as(one)]]
-        case Text():
-            kind = str
-        case one:
-            kind = Annotated[Any, read_as(one)]
+    kind = _typed(field.kind)
     return kind | None if field.is_optional else kind
+
+
+@singledispatch
+def _typed(kind: Any) -> Any:
+    return Annotated[Any, read_as(kind)]
+
+
+@_typed.register
+def _choice(kind: Choice) -> Any:
+    return Literal[kind.words]
+
+
+@_typed.register
+def _each(kind: Each) -> Any:
+    return list[Annotated[float, read_as(kind.one)]]
+
+
+@_typed.register
+def _text(kind: Text) -> Any:
+    return str

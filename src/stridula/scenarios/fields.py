@@ -6,8 +6,8 @@ import ast
 import inspect
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, replace
+from functools import cache, singledispatch
 from itertools import pairwise
 from numbers import Integral
 from typing import Annotated, Any, ClassVar
@@ -23,7 +23,7 @@ from ..bodies import Rayleigh
 from ..bodies.axisymmetric_body import DIRECTIONS
 from ..bodies.damping import DAMPING_LAWS
 from ..checks import ArgumentError
-from ..declared import Kind, Number, declared, texts
+from ..declared import Number, declared, texts
 from ..records.packed import is_packed, unpacked
 from .quantities import UNITS, is_quantity, quantity
 
@@ -80,6 +80,10 @@ class _Kind:
     def json_schema(self) -> dict[str, Any]:
         raise NotImplementedError
 
+    def or_each(self) -> _Kind:
+        """Return what reads one of these, or a list of them."""
+        raise NotImplementedError
+
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return no_info_plain_validator_function(_in_words(self.read))
 
@@ -106,6 +110,9 @@ class Quantity(Number, _Kind):
     unit, above, least, below, meaning : str, float or None
         As of `Number`.
     """
+
+    def or_each(self) -> _Kind:
+        return OneOrEach(self)
 
     def read(self, value: Any) -> float:
         return self.check("value", quantity(value, self.unit))
@@ -198,26 +205,48 @@ class DampingTable(_Kind):
         return {"anyOf": laws}
 
 
-def read_as(kind: Kind) -> _Kind:
+@singledispatch
+def read_as(kind: Any) -> _Kind:
     """Return how a scenario gives what a field may be."""
-    match kind:
-        case declarations.Number():
-            return Quantity(**vars(kind))
-        case declarations.Choice(words):
-            return Words(words)
-        case declarations.NumberOrWord(words):
-            return NumberOrWord(Words(words))
-        case declarations.Way():
-            return Way()
-        case declarations.Whole(least):
-            return Whole(least)
-        case declarations.Own("damping"):
-            return RatioOrLaw(each=True)
-        case declarations.OneOrEach(declarations.Choice(words)):
-            return Words(words, each=True)
-        case declarations.OneOrEach(one) | declarations.Each(one):
-            return OneOrEach(Quantity(**vars(one)))
     raise TypeError(f"no scenario can give {kind}")
+
+
+@read_as.register
+def _number(kind: declarations.Number) -> _Kind:
+    return Quantity(**vars(kind))
+
+
+@read_as.register
+def _choice(kind: declarations.Choice) -> _Kind:
+    return Words(kind.words)
+
+
+@read_as.register
+def _number_or_word(kind: declarations.NumberOrWord) -> _Kind:
+    return NumberOrWord(Words(kind.words))
+
+
+@read_as.register
+def _way(kind: declarations.Way) -> _Kind:
+    return Way()
+
+
+@read_as.register
+def _whole(kind: declarations.Whole) -> _Kind:
+    return Whole(kind.least)
+
+
+@read_as.register
+def _own(kind: declarations.Own) -> _Kind:
+    if kind.what != "damping":
+        raise TypeError(f"no scenario can give {kind}")
+    return RatioOrLaw(each=True)
+
+
+@read_as.register(declarations.OneOrEach)
+@read_as.register(declarations.Each)
+def _each(kind: declarations.OneOrEach | declarations.Each) -> _Kind:
+    return read_as(kind.one).or_each()
 
 
 LAW_OF_DAMPING = DampingTable()
@@ -261,6 +290,9 @@ class Words(_Kind):
 
     allowed: tuple[str, ...]
     each: bool = False
+
+    def or_each(self) -> _Kind:
+        return replace(self, each=True)
 
     def read(self, value: Any) -> Any:
         words = value if self.each and isinstance(value, list) else [value]

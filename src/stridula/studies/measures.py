@@ -80,7 +80,9 @@ class Measure:
 
 def _labelled(run: Run, *names: str) -> xr.Dataset:
     """Return a record with labels on some of its variables at least."""
-    return run.labelled(*names) if isinstance(run, PlainRecord) else run
+    given: Any = run
+    found: xr.Dataset = given.labelled(*names) if hasattr(given, "labelled") else given
+    return found
 
 
 def _shares(run: Run) -> Values:

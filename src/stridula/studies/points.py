@@ -119,6 +119,11 @@ class Grid:
         """Number of points."""
         return math.prod(len(given) for given in self.values.values())
 
+    def layout(self) -> Layout:
+        """Return its points one after another."""
+        sizes = {key: len(given) for key, given in self.values.items()}
+        return Layout(tuple(sizes), tuple(product(*self.values.values())), sizes, True, {"grid": dict(self.values)})
+
 
 @dataclass(frozen=True)
 class LatinHypercube:
@@ -156,6 +161,13 @@ class LatinHypercube:
             shares = (random.permutation(self.count) + random.random(self.count)) / self.count
             found[key] = [one.value(share) for share in shares.tolist()]
         return found
+
+    def layout(self) -> Layout:
+        """Return its points one after another."""
+        columns = self.values()
+        ranges = {key: asdict(one) for key, one in self.ranges.items()}
+        asked = {"latin hypercube": {"ranges": ranges, "count": self.count, "seed": self.seed}}
+        return Layout(tuple(columns), tuple(zip(*columns.values(), strict=True)), {POINT: self.count}, False, asked)
 
 
 def ranges_of(name: str, given: Any) -> dict[str, Range]:
@@ -243,14 +255,9 @@ def laid_out(points: Grid | LatinHypercube | Mapping[str, Sequence[Any]] | Seque
     """
     if isinstance(points, Mapping):
         points = Grid(points)
-    if isinstance(points, Grid):
-        sizes = {key: len(given) for key, given in points.values.items()}
-        return Layout(tuple(sizes), tuple(product(*points.values.values())), sizes, True, {"grid": dict(points.values)})
-    if isinstance(points, LatinHypercube):
-        columns = points.values()
-        ranges = {key: asdict(one) for key, one in points.ranges.items()}
-        asked = {"latin hypercube": {"ranges": ranges, "count": points.count, "seed": points.seed}}
-        return Layout(tuple(columns), tuple(zip(*columns.values(), strict=True)), {POINT: points.count}, False, asked)
+    if hasattr(points, "layout"):
+        found: Layout = points.layout()
+        return found
     if isinstance(points, str) or not isinstance(points, Sequence):
         raise ArgumentError("points", "be a Grid, a LatinHypercube or a list of values by key", points)
     return _listed(points)

@@ -15,7 +15,7 @@ from ..analysis.regimes import REGIMES
 from ..arrays import Array
 from ..checks import ArgumentError, count, within
 from ..records.variables import described
-from .points import Range, range_of
+from .points import range_of
 from .sources import SystemOf
 from .sweeps import sweep
 from .swept import failures, usual_failure
@@ -126,7 +126,7 @@ def _is_one_number(distribution: Any) -> bool:
 
 
 def _value(distribution: Any, share: float) -> Any:
-    return distribution.value(share) if isinstance(distribution, Range) else float(distribution.ppf(share))
+    return distribution.value(share) if hasattr(distribution, "value") else float(distribution.ppf(share))
 
 
 def _shares(parameters: int, samples: int, seed: int) -> Array:

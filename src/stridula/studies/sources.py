@@ -157,7 +157,7 @@ def _made(function: SystemOf, values: Mapping[str, Any], given: Mapping[str, Any
     if isinstance(made, Scenario):
         return replace(made, **({"sample_rate": min(made.sample_rate, highest_rate)} | dict(given)))
     words = {"sample_rate": min(DEFAULT_RATE, highest_rate), **_arguments(name, made), **given}
-    system = made if isinstance(made, System) else made[0]
+    system = made[0] if isinstance(made, tuple) else made
     if words.get("duration") is None:
         raise ArgumentError("duration", f"be given, as an argument or by {name}", got="none")
     positive("duration", words["duration"])
