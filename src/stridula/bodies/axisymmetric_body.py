@@ -18,6 +18,7 @@ from .body_surfaces import HIGHEST, RingSurface, largest_part
 from .circular_path import CircularPath
 from .damping import DampingLaw, checked_damping, damping_rates
 from .drawn_surfaces import DrawnSurface, surface_of_revolution
+from .long_searches import search_told
 from .modes import BodyPoint, Modes, hashed_once
 from .ordinary import NotOrdinary, of_ordinary_size
 from .profile_mesh import ProfileMesh
@@ -423,28 +424,34 @@ def _mesh(body: AxisymmetricBody) -> ProfileMesh:
 
 
 @lru_cache(maxsize=16)
-def _families(body: AxisymmetricBody) -> tuple[FourierElements, list[Family]]:
+def _elements(body: AxisymmetricBody) -> FourierElements:
     # Here, not above: scikit-fem takes a third of a second to import.
     from .fourier_elements import fourier_elements
+
+    return fourier_elements(body.mesh, [body.materials[name] for name in body.mesh.regions])
+
+
+@lru_cache(maxsize=16)
+def _families(body: AxisymmetricBody) -> list[Family]:
     from .profile_modes import Constraint, families
 
-    mesh = body.mesh
-    elements = fourier_elements(mesh, [body.materials[name] for name in mesh.regions])
+    mesh, elements = body.mesh, _elements(body)
     held = [Constraint(one.components, elements.points_on(one.sides(mesh))) for one in body.held]
     found = families(elements, held, body.cutoff, range(body._highest_order + 1), body.residual_at)
     lowest = min(one.lowest for one in found)
     if lowest > body.cutoff:
         words = f"leave at least one mode (first at {at_least(lowest)} Hz)"
         raise ArgumentError("cutoff", words, body.cutoff, got=f"{body.cutoff!r} Hz")
-    return elements, found
+    return found
 
 
 @lru_cache(maxsize=16)
 def _solution(body: AxisymmetricBody) -> _Solution:
     # How it is damped and stands has no share in its shapes.
-    elements, found = _families(
-        replace(body, damping=0.0, axis=Z, origin=(0.0, 0.0, 0.0), turning=0.0, turning_history=Constant(), name="")
-    )
+    plain = replace(body, damping=0.0, axis=Z, origin=(0.0, 0.0, 0.0), turning=0.0, turning_history=Constant(), name="")
+    elements = _elements(plain)
+    with search_told(body, 3 * elements.count * (body._highest_order + 1)):
+        found = _families(plain)
     rows = [
         (squared, one.kind.order, one.kind.sides[0], index, number)
         for number, one in enumerate(found)

@@ -22,6 +22,7 @@ from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, checked_damping
 from .drawn_surfaces import DrawnSurface, surface_of_mesh
 from .factorisation import dissection
+from .long_searches import search_told
 from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
 from .matrix_input import check_finite, numbers
 from .modes import BodyPoint, Modes
@@ -357,6 +358,11 @@ def _assembled(body: SolidBody) -> tuple[Any, Any]:
 @of_ordinary_size("mesh and materials")
 def _reduced(body: SolidBody) -> SolidReduction:
     """Return the modes of a body; equal bodies share them."""
+    with search_told(body, 3 * len(body.mesh.nodes)):
+        return _searched(body)
+
+
+def _searched(body: SolidBody) -> SolidReduction:
     node_mass, stiffness = _assembled(body)
     mesh, free = body.mesh, body._free
     mass = scipy.sparse.kron(node_mass, scipy.sparse.eye_array(3), format="csr")
