@@ -17,7 +17,7 @@ from ..histories import HISTORIES, Constant, History
 from .body_surfaces import HIGHEST, RingSurface, largest_part
 from .circular_path import CircularPath
 from .damping import DampingLaw, checked_damping, damping_rates
-from .drawn_surfaces import DrawnSurface, surface_of_revolution
+from .drawn_surfaces import DrawnRings, DrawnSurface
 from .long_searches import search_told
 from .modes import BodyPoint, Modes, hashed_once
 from .ordinary import NotOrdinary, of_ordinary_size
@@ -46,8 +46,6 @@ LEAST_POISSON, MOST_POISSON = -0.99, 0.499
 LARGEST = 1e100
 # Share of a turn that rounding leaves to a body that moves straight on.
 STRAIGHT = 1e-6
-# Places round the axis at which the surface is drawn.
-FEWEST_ANGLES, ANGLES_OF_WAVE = 60, 5
 # A free ring of order n bends like a beam of a length of n - 1 waves and more.
 ORDERS_MORE = 2
 
@@ -291,14 +289,27 @@ class AxisymmetricBody:
 
     def drawn_surface(self) -> DrawnSurface:
         """Return its surface: the outline of its profile round the axis, four places or more for each wave."""
-        count = max(FEWEST_ANGLES, ANGLES_OF_WAVE * int(self.numbers[:, 0].max()))
+        return self.drawn.swept
 
-        def at(r: float, angles: Array, z: float) -> tuple[Array, Array]:
-            directions = np.stack([self._directions(float(theta)) for theta in angles])
-            place = self.origin + r * directions[:, 0] + z * directions[:, 2]
-            return place, np.einsum("acd,cam->adm", directions, _solution(self).cylindrical(r, angles, z))
-
-        return surface_of_revolution(self.mesh, 2.0 * math.pi * np.arange(count) / count, at)
+    @property
+    def drawn(self) -> DrawnRings:
+        """Its surface as the outline of its profile and how modes move it."""
+        solution, mesh = _solution(self), self.mesh
+        used, sides = np.unique(mesh.outline, return_inverse=True)
+        shapes = []
+        for r, z in mesh.nodes[used].tolist():
+            points, values = solution.elements.shape_functions(r, z)
+            shapes.append(np.einsum("cpk,p->ck", solution.shapes[:, points], values)[:, solution.columns])
+        orders, _, phases = solution.numbers.T
+        return DrawnRings(
+            mesh.nodes[used],
+            sides.reshape(-1, 2),
+            np.array(shapes),
+            orders,
+            phases,
+            np.asarray(self.frame),
+            np.array(self.origin),
+        )
 
     def turning_velocity(self, position: Any) -> Array:
         """Return the velocity of the material at a point (r, theta, z) by turning alone [m/s], shape (3,)."""

@@ -286,6 +286,11 @@ class SolidBody(NamedPoints):
 
     def drawn_surface(self) -> DrawnSurface:
         """Return its surface: the faces of elements that no other one shares."""
+        return self.drawn
+
+    @property
+    def drawn(self) -> DrawnSurface:
+        """Its surface, and how modes move it."""
         return surface_of_mesh(self.mesh, self.shapes)
 
     def modal_coordinates(self, vector: Any) -> Array:

@@ -10,6 +10,7 @@ from ..checks import ArgumentError
 from ..disk import check_writable
 from ..integration import Diverged, Interrupted
 from ..plot.films import animate
+from ..plot.space_motion import has_surfaces
 from ..records.files import is_record, load
 from ..scenarios.load import load_scenario
 from ..scenarios.quantities import quantity
@@ -49,8 +50,8 @@ def film_scenario(
     if is_a_record:
         _check_beginning(name)
     scenario = load_scenario(name)
-    if is_a_record and scenario.system.is_spatial:
-        words = "be the scenario that was run: a record has the modes of bodies in space, not their meshes"
+    if is_a_record and scenario.system.is_spatial and not has_surfaces(scenario.system):
+        words = "be the scenario that was run: this record has no surfaces of bodies"
         raise ArgumentError("name", words, name)
     with _stopped(), bar(scenario.title or name) as show:
         film = animate(

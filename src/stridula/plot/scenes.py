@@ -21,7 +21,7 @@ from ..checks import STATUS_WORDS, ArgumentError, finite
 from ..contact import PointContact
 from ..system import System
 from .colours import STATUS_COLOURS
-from .space_motion import ModalMotion
+from .space_motion import ModalMotion, is_drawn
 
 # Elevation above the plane across y and azimuth from z towards x: 30 and 35 degrees [rad].
 VIEW = (np.pi / 6.0, 7.0 * np.pi / 36.0)
@@ -214,7 +214,7 @@ def surfaces_of(system: System, eye: Array) -> list[_Body]:
     """Return the bodies of a system that have a surface, and which of their polygons face the eye."""
     found = []
     for body in system.bodies:
-        if hasattr(body, "drawn_surface"):
+        if is_drawn(body):
             surface = body.drawn_surface()
             found.append(_Body(system.body_name(body), surface, surface.normals @ eye > AWAY))
     return found
@@ -250,7 +250,13 @@ def _axes_in_space(figure: Figure, room: tuple[float, float, float, float]) -> A
 def _known_end(contact: PointContact) -> BodyPoint | None:
     """Return the end of a contact whose place in the world is known, None if neither is."""
     ends = (contact.tip, contact.touched_point)
-    return next((one for one in ends if one is not None and hasattr(one.body, "place")), None)
+    return next((one for one in ends if one is not None and _place_of(one) is not None), None)
+
+
+def _place_of(point: BodyPoint) -> Array | None:
+    """Return where in the world a point is at rest [m], None if that is not known."""
+    body: Any = point.body
+    return body.place(point.position) if hasattr(body, "place") else None
 
 
 def _eye(view: tuple[float, float]) -> Array:
