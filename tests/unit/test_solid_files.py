@@ -9,7 +9,7 @@ import pytest
 import stridula as st
 from stridula.bodies.cut_elements import CUT_KINDS
 from stridula.bodies.solid_elements import assembled
-from stridula.bodies.solid_kinds import outer_faces
+from stridula.bodies.solid_kinds import KINDS, outer_faces
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
 BLOCK = st.SolidMesh.block((0.1, 0.04, 0.03), (3, 2, 1))
@@ -263,6 +263,7 @@ def test_a_file_that_is_not_there_is_said(tmp_path):
         st.SolidMesh.read(tmp_path / "none.msh")
 
 
+CUBE = KINDS["hexahedron"].corners
 EDGES = {name: kind.edges for name, kind in CUT_KINDS.items()}
 MIXED = {"hexahedron": "C3D8", "wedge": "C3D6", "hexahedron20": "C3D20", "wedge15": "C3D15", "pyramid": "C3D5"}
 
@@ -370,6 +371,19 @@ def test_pyramids_join_hexahedra(tmp_path):
         mesh.nodes, mesh.elements, "tetra", faces={"all": outer_faces(mesh.element_kind, mesh.elements)}
     )
     assert outer.face("all").area.sum() == pytest.approx(10.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("fits", [True, False])
+def test_triangles_on_a_quadrilateral_fit_its_cut_or_are_refused(tmp_path, fits):
+    """Two tetrahedra over the upper face of a cube, 4 to 7, which is cut from its lowest corner, 4, to 6."""
+    nodes = np.vstack([np.array(CUBE, dtype=float), [[0.5, 0.5, 2.0]]])
+    tetra = [[4, 5, 6, 8], [4, 6, 7, 8]] if fits else [[4, 5, 7, 8], [5, 6, 7, 8]]
+    meshio.Mesh(nodes, [("hexahedron", [list(range(8))]), ("tetra", tetra)]).write(tmp_path / "cube.vtu")
+    if fits:
+        assert len(st.SolidMesh.read(tmp_path / "cube.vtu").elements) == 8
+        return
+    with pytest.raises(ValueError, match=r"^path must have pyramids where .*, got 2 triangles on quadrilaterals$"):
+        st.SolidMesh.read(tmp_path / "cube.vtu")
 
 
 def test_middles_of_curved_edges_stay(tmp_path):

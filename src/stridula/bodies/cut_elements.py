@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from .solid_kinds import KINDS, Numbers
+from ..checks import ArgumentError
+from .solid_kinds import KINDS, Numbers, outer_faces
 
 _WEDGE_EDGES = ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5))
 _WEDGE_FACES = ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5))
@@ -102,6 +103,11 @@ def cut_into_tetrahedra(nodes: Array, blocks: list[tuple[str, Array]]) -> CutMes
         Coordinates.
     blocks : list
         Elements by their kind, nodes in the order of meshio.
+
+    Raises
+    ------
+    ValueError
+        If a triangle of one element lies on a quadrilateral of another, which is cut the other way.
     """
     corners, owner, first = [], [], 0
     for name, elements in blocks:
@@ -110,6 +116,7 @@ def cut_into_tetrahedra(nodes: Array, blocks: list[tuple[str, Array]]) -> CutMes
             owner.append(first + those)
         first += len(elements)
     found, owners = np.concatenate(corners), np.concatenate(owner)
+    _check_fit(blocks, found)
     order = np.argsort(owners, kind="stable")
     found, owners = found[order], owners[order]
     if not CUT_KINDS[blocks[0][0]].has_middles:
@@ -137,6 +144,27 @@ def _cut(kind: CutKind, elements: Array) -> Iterator[tuple[Array, Array]]:
             for number in range(triangles.shape[1]):
                 # Seen from the top of a tetrahedron its base goes round the other way.
                 yield np.column_stack([triangles[:, number, ::-1], elements[those, corner]]), those
+
+
+def _check_fit(blocks: list[tuple[str, Array]], corners: Array) -> None:
+    """Raise ValueError where an outer triangle lies across a face that is cut the other way."""
+    quadrilaterals = [
+        elements[:, list(face)] for name, elements in blocks for face in CUT_KINDS[name].faces if len(face) == 4
+    ]
+    faces = np.concatenate([np.zeros((0, 4), dtype=np.int64), *quadrilaterals])
+    across = np.roll(triangles_of(faces).reshape(-1, 6)[:, [0, 1, 2, 5]], -1, axis=1)
+    element, side = outer_faces(_TETRA, corners).T
+    outer = np.sort(corners[element[:, None], np.array(_TETRA.faces)[side]], axis=1)
+    # Round a face from its lowest corner a: abc and acd are its triangles, bcd and bda those across.
+    others = np.sort(np.concatenate([across[:, [0, 1, 2]], across[:, [0, 2, 3]]]), axis=1)
+    both = np.concatenate([np.unique(outer, axis=0), np.unique(others, axis=0)])
+    _, times = np.unique(both, axis=0, return_counts=True)
+    if (times > 1).any():
+        raise ArgumentError(
+            "path",
+            "have pyramids where triangles of some elements meet quadrilaterals of others",
+            got=f"{(times > 1).sum()} triangles on quadrilaterals",
+        )
 
 
 def _with_middles(nodes: Array, blocks: list[tuple[str, Array]], corners: Array, owner: Array) -> CutMesh:
