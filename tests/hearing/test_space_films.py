@@ -15,7 +15,7 @@ from stridula import plot
 from stridula.bodies.drawn_surfaces import drawn_of, drawn_table
 from stridula.plot import mode_films
 from stridula.plot.colours import STATUS_COLOURS
-from stridula.plot.scenes import VIEW, Scene
+from stridula.plot.scenes import VIEW, Scene, surfaces_of
 from stridula.plot.space_films import SpacePicture
 from stridula.plot.space_motion import ModalMotion, space_motion_of
 from stridula.records import provenance
@@ -195,6 +195,43 @@ def test_a_gif_has_every_frame(rig, tmp_path):
     assert all((one != other).any() for one, other in zip(frames[1:], frames, strict=False))
     assert told == [(n, 10) for n in range(1, 11)]
     assert film.exaggeration in {factor * 10.0**power for factor in (1.0, 2.0, 5.0) for power in range(8)}
+
+
+BOX = {f"corner {k}": place for k, place in enumerate(np.ndindex(2, 2, 2))}
+
+
+@pytest.mark.parametrize("points", [{}, {name: 0.02 * np.array(place) - 0.01 for name, place in BOX.items()}])
+def test_rigid_bodies_are_hulls_of_their_points_or_balls(points):
+    given = {name: tuple(place.tolist()) for name, place in points.items()}
+    rigid = st.RigidBody(0.2, 1e-4, points=given, name="weight")
+    point = "corner 0" if points else "centre"
+    body = block()
+    spring = st.Spring(rigid.at(point), body.at((0.04, 0.01, 0.02)), stiffness=1e4, direction=(0.0, 1.0, 0.0))
+    alone = on_plane(body)
+    found = surfaces_of(st.System(alone.contacts[0], connections=[spring]), np.zeros(3))
+    shown = {one.name: one.surface for one in found}
+    assert set(shown) == {"block", "weight"}
+    surface = shown["weight"]
+    centre = np.array([0.04, 0.01, 0.02]) - rigid.offset(point)
+    apart = surface.place - centre
+    middles = apart[surface.polygons].mean(axis=1)
+    assert (np.einsum("pi,pi->p", middles, surface.normals) > 0.0).all()
+    if points:
+        assert {tuple(np.round(place, 12)) for place in apart} == {tuple(np.round(p, 12)) for p in given.values()}
+    else:
+        np.testing.assert_allclose(np.linalg.norm(apart, axis=1), 0.03 * 0.04, rtol=1e-12)
+    np.testing.assert_allclose(rigid.shapes_at(np.array([rigid.offset(point)]))[0], rigid.trace(point), atol=1e-15)
+    turned = rigid.modal_coordinates([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+    np.testing.assert_allclose(surface.shapes @ turned, np.cross([0.0, 0.0, 1.0], apart), atol=1e-12)
+
+
+def test_rigid_bodies_in_no_known_place_are_not_drawn():
+    body = block()
+    touching = st.PointContact(
+        st.RigidBody(0.2, name="weight").centre, st.RigidTrack(velocity=0.1), normal=(0.0, 1.0, 0.0)
+    )
+    system = st.System([*on_plane(body).contacts, touching])
+    assert [one.name for one in surfaces_of(system, np.zeros(3))] == ["block"]
 
 
 def frames_of(path):
