@@ -234,6 +234,17 @@ def test_rigid_bodies_in_no_known_place_are_not_drawn():
     assert [one.name for one in surfaces_of(system, np.zeros(3))] == ["block"]
 
 
+def test_a_ball_touches_what_it_carries():
+    system = st.load_scenario("wheel").system
+    shown = {one.name: one.surface for one in surfaces_of(system, np.zeros(3))}
+    lowest = shown["wheel"].place[:, 1].min()
+    rail = shown["rail"].place[:, 1]
+    tread = system.contacts[0].tip.body.place(system.contacts[0].tip.position)[1]
+    assert rail.max() == pytest.approx(tread, abs=0.1 * np.ptp(rail))
+    assert rail.max() < tread
+    assert rail.min() < lowest
+
+
 def frames_of(path):
     with Image.open(path) as image:
         found = []

@@ -37,33 +37,38 @@ def rigid_surfaces(system: System, radius: float) -> dict[Any, DrawnSurface]:
         Radius of the balls [m].
     """
     found: dict[Any, DrawnSurface] = {}
-    for ours, other in _joined(system):
+    for ours, other, away in _joined(system):
         body: Any = ours.body
         place = place_of(other)
         if place is not None and body not in found and hasattr(body, "shapes_at"):
-            polygons, offsets = _hull(np.array(list(body.points.values())).reshape(-1, 3), radius)
+            points = np.array(list(body.points.values())).reshape(-1, 3)
+            # A ball touches the other body instead of sticking in it.
+            polygons, offsets = _hull(points, radius * (_ball() + away))
             centre = place - body.offset(ours.position)
             found[body] = DrawnSurface(centre + offsets, polygons, body.shapes_at(offsets))
     return found
 
 
-def _joined(system: System) -> Iterator[tuple[BodyPoint, BodyPoint]]:
-    """Yield the two points of each contact and connection that has two, and the other way round."""
-    pairs: list[tuple[BodyPoint, ...]] = [
-        (one.tip, one.touched_point) for one in system.contacts if one.touched_point is not None
-    ]
-    for first, *second in [*pairs, *(tuple(ends(one)) for one in system.connections)]:
+def _joined(system: System) -> Iterator[tuple[BodyPoint, BodyPoint, Array]]:
+    """Yield both points of each contact and connection, and the normal away from the second; then the other way."""
+    for contact in system.contacts:
+        if contact.touched_point is not None:
+            normal = np.array(contact.normal or (0.0, 0.0, 0.0))
+            normal = normal / (np.linalg.norm(normal) or 1.0)
+            yield contact.tip, contact.touched_point, normal
+            yield contact.touched_point, contact.tip, -normal
+    for first, *second in map(ends, system.connections):
         for other in second:
-            yield first, other
-            yield other, first
+            yield first, other, np.zeros(3)
+            yield other, first, np.zeros(3)
 
 
-def _hull(points: Array, radius: float) -> tuple[Array, Array]:
+def _hull(points: Array, ball: Array) -> tuple[Array, Array]:
     """Return triangles of a convex hull, round its outward normals, and its corners; a ball where there is none."""
     try:
         hull = ConvexHull(np.vstack([points, np.zeros(3)]))
     except (QhullError, ValueError):
-        hull = ConvexHull(radius * _ball())
+        hull = ConvexHull(ball)
     used, triangles = np.unique(hull.simplices, return_inverse=True)
     corners, triangles = hull.points[used], triangles.reshape(-1, 3)
     first, second, third = corners[triangles].transpose(1, 0, 2)
