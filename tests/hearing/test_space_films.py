@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import pickle
 
 import numpy as np
 import pytest
@@ -11,11 +12,13 @@ from PIL import Image
 
 import stridula as st
 from stridula import plot
+from stridula.bodies.drawn_surfaces import drawn_of, drawn_table
 from stridula.plot import mode_films
 from stridula.plot.colours import STATUS_COLOURS
-from stridula.plot.scenes import VIEW, Scene
+from stridula.plot.scenes import VIEW, Scene, surfaces_of
 from stridula.plot.space_films import SpacePicture
 from stridula.plot.space_motion import ModalMotion, space_motion_of
+from stridula.records import provenance
 from stridula.records.variables import STATUS_WORDS
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
@@ -194,18 +197,123 @@ def test_a_gif_has_every_frame(rig, tmp_path):
     assert film.exaggeration in {factor * 10.0**power for factor in (1.0, 2.0, 5.0) for power in range(8)}
 
 
-def test_the_verb_films_a_scenario_and_refuses_its_record(stridula, tmp_path):
+BOX = {f"corner {k}": place for k, place in enumerate(np.ndindex(2, 2, 2))}
+
+
+@pytest.mark.parametrize("points", [{}, {name: 0.02 * np.array(place) - 0.01 for name, place in BOX.items()}])
+def test_rigid_bodies_are_hulls_of_their_points_or_balls(points):
+    given = {name: tuple(place.tolist()) for name, place in points.items()}
+    rigid = st.RigidBody(0.2, 1e-4, points=given, name="weight")
+    point = "corner 0" if points else "centre"
+    body = block()
+    spring = st.Spring(rigid.at(point), body.at((0.04, 0.01, 0.02)), stiffness=1e4, direction=(0.0, 1.0, 0.0))
+    alone = on_plane(body)
+    found = surfaces_of(st.System(alone.contacts[0], connections=[spring]), np.zeros(3))
+    shown = {one.name: one.surface for one in found}
+    assert set(shown) == {"block", "weight"}
+    surface = shown["weight"]
+    centre = np.array([0.04, 0.01, 0.02]) - rigid.offset(point)
+    apart = surface.place - centre
+    middles = apart[surface.polygons].mean(axis=1)
+    assert (np.einsum("pi,pi->p", middles, surface.normals) > 0.0).all()
+    if points:
+        assert {tuple(np.round(place, 12)) for place in apart} == {tuple(np.round(p, 12)) for p in given.values()}
+    else:
+        np.testing.assert_allclose(np.linalg.norm(apart, axis=1), 0.03 * 0.04, rtol=1e-12)
+    np.testing.assert_allclose(rigid.shapes_at(np.array([rigid.offset(point)]))[0], rigid.trace(point), atol=1e-15)
+    turned = rigid.modal_coordinates([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+    np.testing.assert_allclose(surface.shapes @ turned, np.cross([0.0, 0.0, 1.0], apart), atol=1e-12)
+
+
+def test_rigid_bodies_in_no_known_place_are_not_drawn():
+    body = block()
+    touching = st.PointContact(
+        st.RigidBody(0.2, name="weight").centre, st.RigidTrack(velocity=0.1), normal=(0.0, 1.0, 0.0)
+    )
+    system = st.System([*on_plane(body).contacts, touching])
+    assert [one.name for one in surfaces_of(system, np.zeros(3))] == ["block"]
+
+
+def test_a_ball_touches_what_it_carries():
+    system = st.load_scenario("wheel").system
+    shown = {one.name: one.surface for one in surfaces_of(system, np.zeros(3))}
+    lowest = shown["wheel"].place[:, 1].min()
+    rail = shown["rail"].place[:, 1]
+    tread = system.contacts[0].tip.body.place(system.contacts[0].tip.position)[1]
+    assert rail.max() == pytest.approx(tread, abs=0.1 * np.ptp(rail))
+    assert rail.max() < tread
+    assert rail.min() < lowest
+
+
+def frames_of(path):
+    with Image.open(path) as image:
+        found = []
+        for number in range(image.n_frames):
+            image.seek(number)
+            found.append(np.asarray(image.convert("RGB")).astype(int))
+    return np.array(found)
+
+
+def test_the_verb_films_a_scenario_and_its_record_alike(stridula, tmp_path):
     window = ("--from", "1 ms", "--duration", "0.12 ms", "--elevation", "60 deg")
     code, out, err = stridula("animate", "pin-on-disc", "--out", "a.gif", *window, "--exaggeration", "100")
     assert (code, err) == (0, "")
     assert out == "a.gif: 3 frames, 0.12 ms from 0.001 s, slowed down 1000 times, vibration drawn 100 times\n"
     assert stridula("run", "pin-on-disc", "--duration", "1 ms", "--out", "run.nc")[0] == 0
+    assert stridula("run", "run.nc", "--out", "again.nc")[0] == 0
+    for record in ("run.nc", "again.nc"):
+        assert stridula("animate", record, "--out", "b.gif", *window, "--exaggeration", "100")[0] == 0
+        unlike = np.abs(frames_of("a.gif") - frames_of("b.gif")).max(axis=3) > 16
+        # What single precision may move is an edge by a pixel.
+        assert unlike.mean() < 1e-3
+    assert stridula("animate", "pin-on-disc", "--out", "c.gif", "--azimuth", "3 m")[0] == 2
+    assert not (tmp_path / "c.gif").exists()
+
+
+def test_a_record_keeps_no_surface_that_is_too_large(stridula, tmp_path, monkeypatch):
+    monkeypatch.setattr(provenance, "LARGEST_DRAWN", 1000)
+    assert stridula("run", "pin-on-disc", "--duration", "1 ms", "--out", "run.nc")[0] == 0
     code, out, err = stridula("animate", "run.nc", "--out", "b.gif")
     assert (code, out) == (2, "")
-    words = "name must be the scenario that was run: a record has the modes of bodies in space, not their meshes"
+    words = "name must be the scenario that was run: this record has no surfaces of bodies"
     assert err == f"stridula: {words}, got 'run.nc'\n"
-    assert stridula("animate", "pin-on-disc", "--out", "c.gif", "--azimuth", "3 m")[0] == 2
     assert not (tmp_path / "b.gif").exists()
+
+
+@pytest.mark.parametrize("body", [wheel(), block()])
+def test_a_body_by_its_modes_is_drawn_as_the_one_they_are_of(body):
+    modes = body.modes()
+    rows = np.zeros((3, modes.count))
+    held = ~modes.massless
+    given = {"angular_frequency": modes.angular_frequency[held], "residual": int(modes.massless.sum())}
+    kept = drawn_of(drawn_table(body.drawn), modes.count)
+    copy = st.ModalBody(points={"tip": rows}, drawn=kept, places={"tip": (1.0, 2.0, 3.0)}, **given)
+    found, expected = copy.drawn_surface(), body.drawn_surface()
+    np.testing.assert_array_equal(found.polygons, expected.polygons)
+    np.testing.assert_allclose(found.place, expected.place, atol=1e-15)
+    np.testing.assert_allclose(found.shapes, expected.shapes, atol=1e-6 * np.abs(expected.shapes).max())
+    assert copy.place("tip").tolist() == [1.0, 2.0, 3.0]
+    assert pickle.loads(pickle.dumps(copy)) == copy
+    bare = st.ModalBody(points={"tip": rows}, **given)
+    assert bare != copy
+    assert bare.place("tip") is None
+    with pytest.raises(ValueError, match=r"^drawn must be given to be seen"):
+        bare.drawn_surface()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"shapes": np.zeros((3, 2))}, r"^drawn.shapes must be finite numbers of the shape \(12, 2\), got \(3, 2\)"),
+        ({"polygons": [[0, 1, 4]]}, "^drawn must name corners from 0 to 3"),
+        ({"frame": np.eye(3)}, "^drawn must have place, polygons and shapes|^drawn must have place, polygons, shapes"),
+    ],
+)
+def test_surfaces_that_do_not_fit_are_refused(change, message):
+    given = {"place": np.eye(4, 3), "polygons": [[0, 1, 2]], "shapes": np.zeros((12, 2))}
+    assert drawn_of(given, 2).shapes.shape == (4, 3, 2)
+    with pytest.raises(ValueError, match=message):
+        drawn_of(given | change, 2)
 
 
 @pytest.mark.parametrize(

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+import dataclasses
+import sys
+
 import numba
+import numpy as np
 import pytest
 from rich.progress import Progress
 
+import stridula as st
 from stridula.cli import bars
+from stridula.cli.doings import doings_shown
+
+STEEL = st.Material(2.1e11, 7800.0, 0.3)
 
 
 @pytest.fixture
@@ -66,3 +74,62 @@ def test_the_time_left_is_shown_once_it_is_known():
     assert column.render(progress.tasks[0]).plain.endswith(" left")
     progress.update(task, completed=10.0)
     assert column.render(progress.tasks[0]).plain == ""
+
+
+@pytest.fixture
+def block():
+    """Return a body of 1245 degrees of freedom."""
+    return st.SolidBody.block((0.1, 0.02, 0.03), (12, 2, 3), STEEL, cutoff=2000.0, fixed=["left"])
+
+
+@pytest.mark.parametrize("name", ["pad", ""])
+def test_the_search_for_the_modes_of_a_large_body_is_told(block, caplog, name):
+    body = dataclasses.replace(block, name=name, cutoff=2000.0 + len(name))
+    with caplog.at_level("INFO", "stridula"):
+        body.modes()
+        body.modes()
+    begin, end = caplog.records
+    words = f"modes of {name or 'the solid body'} ({3 * len(body.mesh.nodes):,} degrees of freedom)".replace(",", " ")
+    assert begin.getMessage() == f"{words} ..."
+    assert begin.doing == words
+    assert end.getMessage().startswith(f"{words}: ")
+    assert end.doing is None
+
+
+def test_other_large_bodies_tell_of_it(caplog):
+    count = 1100
+    mass, stiffness = np.ones(count), 1e4 * np.arange(1.0, count + 1.0)
+    with caplog.at_level("INFO", "stridula"):
+        reduced = st.ReducedBody(
+            np.diag(mass), np.diag(stiffness), points={"tip": np.eye(2, count)}, cutoff=50.0, name="chain"
+        )
+        profile = st.RectangleProfile({"disc": ((0.05, 0.15), (0.0, 0.01))})
+        disc = st.AxisymmetricBody(profile, STEEL, cutoff=3000.0, name="disc")
+        small = st.SolidBody.block((0.1, 0.02, 0.03), (2, 1, 1), STEEL, cutoff=9000.0)
+        for body in (reduced, disc, small):
+            body.modes()
+    begun = [record.doing for record in caplog.records if record.doing]
+    assert [words.split("(")[0] for words in begun] == ["modes of chain ", "modes of disc "]
+
+
+def test_a_bar_says_that_modes_are_found(said, block):
+    with bars.bar("squeal"):
+        dataclasses.replace(block, cutoff=2010.0).modes()
+    assert [words.split("(")[0] for words in said] == ["modes of the solid body ", bars.PREPARING]
+    dataclasses.replace(block, cutoff=2020.0).modes()
+    assert len(said) == 2, "nothing is said when the bar has gone"
+
+
+@pytest.mark.parametrize("is_terminal", [True, False])
+def test_commands_without_a_bar_say_that_modes_are_found_and_leave_nothing(is_terminal, block, monkeypatch, capsys):
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("TTY_COMPATIBLE", "1" if is_terminal else "0")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: is_terminal, raising=False)
+    with doings_shown():
+        dataclasses.replace(block, cutoff=2030.0 + is_terminal).modes()
+    shown = capsys.readouterr().err
+    if is_terminal:
+        assert "modes of the solid body" in shown
+        assert shown.endswith("\x1b[2K"), "the line is erased"
+    else:
+        assert shown == ""

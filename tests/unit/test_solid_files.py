@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import meshio
 import numpy as np
 import pytest
 
 import stridula as st
+from stridula.bodies.cut_elements import CUT_KINDS
+from stridula.bodies.solid_elements import assembled
+from stridula.bodies.solid_kinds import KINDS, outer_faces
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
 BLOCK = st.SolidMesh.block((0.1, 0.04, 0.03), (3, 2, 1))
@@ -259,12 +263,167 @@ def test_a_file_that_is_not_there_is_said(tmp_path):
         st.SolidMesh.read(tmp_path / "none.msh")
 
 
-def test_other_kinds_and_mixtures_are_refused(tmp_path):
+CUBE = KINDS["hexahedron"].corners
+EDGES = {name: kind.edges for name, kind in CUT_KINDS.items()}
+MIXED = {"hexahedron": "C3D8", "wedge": "C3D6", "hexahedron20": "C3D20", "wedge15": "C3D15", "pyramid": "C3D5"}
+
+
+def swept(divisions, quadratic, sizes=(0.1, 0.04, 0.03), parts="half"):
+    """Return nodes and blocks of hexahedra and of wedges, two for each hexahedron far along x."""
+    mesh = st.SolidMesh.block(sizes, divisions)
+    elements = mesh.elements[:, :8]
+    nodes = mesh.nodes[: elements.max() + 1]
+    far = nodes[elements, 0].mean(axis=1) > (0.5 * sizes[0] if parts == "half" else 0.0)
+    wedges = elements[far][:, [[0, 1, 3, 4, 5, 7], [1, 2, 3, 5, 6, 7]]].reshape(-1, 6)
+    blocks = {"hexahedron": elements[~far], "wedge": wedges}
+    if not quadratic:
+        return nodes, blocks
+    found, bent = {}, {}
+    places = nodes.tolist()
+    for name, rows in blocks.items():
+        full = []
+        for row in rows.tolist():
+            middles = []
+            for pair in (frozenset(row[k] for k in edge) for edge in EDGES[name]):
+                if pair not in found:
+                    found[pair] = len(places)
+                    places.append(nodes[list(pair)].mean(axis=0).tolist())
+                middles.append(found[pair])
+            full.append(row + middles)
+        bent[{"hexahedron": "hexahedron20", "wedge": "wedge15"}[name]] = np.array(full).reshape(
+            -1, len(full[0]) if full else 20
+        )
+    return np.array(places), bent
+
+
+def mixed_deck(nodes, blocks, sets):
+    lines = ["*NODE", *(f"{k}, {x!r}, {y!r}, {z!r}" for k, (x, y, z) in enumerate(nodes.tolist(), 1))]
+    number = 1
+    for name, rows in blocks.items():
+        lines += [f"*ELEMENT, TYPE={MIXED[name]}, ELSET={name}"] if len(rows) else []
+        for row in (rows + 1).tolist():
+            words = [str(number), *map(str, row)]
+            lines += [", ".join(words[:11]) + ("," if len(words) > 11 else "")]
+            lines += [", ".join(words[11:])] if len(words) > 11 else []
+            number += 1
+    for name, those in sets.items():
+        lines += [f"*NSET, NSET={name}", *(str(k + 1) for k in those)]
+    return "\n".join([*lines, ""])
+
+
+def read_mixed(tmp_path, *arguments, **options):
+    nodes, blocks = swept(*arguments, **options)
+    sets = {"clamp": np.flatnonzero(nodes[:, 0] == 0.0), "end": np.flatnonzero(nodes[:, 0] == nodes[:, 0].max())}
+    path = tmp_path / "swept.inp"
+    path.write_text(mixed_deck(nodes, blocks, sets))
+    return st.SolidMesh.read(path), blocks
+
+
+@pytest.mark.parametrize("quadratic", [False, True])
+def test_hexahedra_and_wedges_become_tetrahedra_that_fit(tmp_path, quadratic):
+    mesh, blocks = read_mixed(tmp_path, (4, 2, 3), quadratic)
+    six, three = (len(rows) for rows in blocks.values())
+    assert mesh.kind == ("tetra10" if quadratic else "tetra")
+    assert {name: one.size for name, one in mesh.volumes.items()} == dict(
+        zip(blocks, (6 * six, 3 * three), strict=True)
+    )
+    for name in ("clamp", "end"):
+        assert mesh.face(name).area.sum() == pytest.approx(0.04 * 0.03, rel=1e-12)
+    # Faces that do not fit would lie on the surface, too.
+    outer = st.SolidMesh(
+        mesh.nodes, mesh.elements, mesh.kind, faces={"all": outer_faces(mesh.element_kind, mesh.elements)}
+    )
+    expected = 2.0 * (0.1 * 0.04 + 0.1 * 0.03 + 0.04 * 0.03)
+    assert outer.face("all").area.sum() == pytest.approx(expected, rel=1e-12)
+    material = st.Material(1.0, 1.0, 0.3)
+    _, stiffness = assembled(mesh.element_kind, mesh.nodes, mesh.elements, [(material, np.arange(len(mesh.elements)))])
+    gradient = np.array([[0.3, -0.2, 0.1], [0.5, 0.1, -0.4], [0.2, 0.6, -0.1]])
+    forces = (stiffness @ (mesh.nodes @ gradient.T).ravel()).reshape(-1, 3)
+    inside = ((mesh.nodes > 1e-9) & (mesh.nodes < mesh.nodes.max(axis=0) - 1e-9)).all(axis=1)
+    assert inside.any()
+    assert np.abs(forces[inside]).max() < 1e-12 * np.abs(forces).max()
+
+
+@pytest.mark.parametrize("parts", ["half", "all"])
+def test_blocks_of_wedges_come_to_the_frequencies_of_one_of_hexahedra(tmp_path, parts):
+    block = st.SolidBody.block((0.1, 0.04, 0.03), (14, 6, 4), STEEL, fixed=["left"], cutoff=20e3)
+    expected = block.modes().frequency[:6]
+    errors = []
+    for divisions in ((5, 2, 2), (10, 4, 3)):
+        mesh, _ = read_mixed(tmp_path, divisions, True, parts=parts)
+        found = st.SolidBody(mesh, STEEL, fixed=["clamp"], cutoff=20e3).modes().frequency[:6]
+        errors.append(np.abs(found / expected - 1.0).max())
+    assert errors[1] < 0.01
+    assert errors[1] < errors[0] / 3.0
+
+
+def test_pyramids_join_hexahedra(tmp_path):
+    """A cube of six pyramids beside a hexahedron."""
+    corners = np.array([*np.ndindex(2, 2, 2)], dtype=float)[[0, 4, 6, 2, 1, 5, 7, 3]]
+    nodes = np.vstack([corners, [[0.5, 0.5, 0.5]], corners[[1, 2, 6, 5]] + [1.0, 0.0, 0.0]])
+    sides = [[*face[::-1], 8] for face in CUT_KINDS["hexahedron"].faces]
+    blocks = {"pyramid": np.array(sides), "hexahedron": np.array([[1, 9, 10, 2, 5, 12, 11, 6]])}
+    held = meshio.Mesh(nodes, list(blocks.items()), cell_sets={})
+    held.write(tmp_path / "joined.vtu")
+    mesh = st.SolidMesh.read(tmp_path / "joined.vtu")
+    assert len(mesh.elements) == 6 * 2 + 6
+    outer = st.SolidMesh(
+        mesh.nodes, mesh.elements, "tetra", faces={"all": outer_faces(mesh.element_kind, mesh.elements)}
+    )
+    assert outer.face("all").area.sum() == pytest.approx(10.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("fits", [True, False])
+def test_triangles_on_a_quadrilateral_fit_its_cut_or_are_refused(tmp_path, fits):
+    """Two tetrahedra over the upper face of a cube, 4 to 7, which is cut from its lowest corner, 4, to 6."""
+    nodes = np.vstack([np.array(CUBE, dtype=float), [[0.5, 0.5, 2.0]]])
+    tetra = [[4, 5, 6, 8], [4, 6, 7, 8]] if fits else [[4, 5, 7, 8], [5, 6, 7, 8]]
+    meshio.Mesh(nodes, [("hexahedron", [list(range(8))]), ("tetra", tetra)]).write(tmp_path / "cube.vtu")
+    if fits:
+        assert len(st.SolidMesh.read(tmp_path / "cube.vtu").elements) == 8
+        return
+    with pytest.raises(ValueError, match=r"^path must have pyramids where .*, got 2 triangles on quadrilaterals$"):
+        st.SolidMesh.read(tmp_path / "cube.vtu")
+
+
+def test_middles_of_curved_edges_stay(tmp_path):
+    nodes, blocks = swept((4, 2, 2), True)
+    bent = nodes.copy()
+    bent[:, 1] += 2.0 * nodes[:, 0] ** 2
+    path = tmp_path / "bent.inp"
+    path.write_text(mixed_deck(bent, blocks, {}))
+    mesh = st.SolidMesh.read(path)
+    # Of second degree, as the shapes of faces and elements are: the middles of cuts lie where they should.
+    low = mesh.nodes[:, 1] - 2.0 * mesh.nodes[:, 0] ** 2
+    assert low.min() > -1e-12
+    assert low.max() < 0.04 + 1e-12
+    np.testing.assert_allclose(low / 0.005, np.round(low / 0.005), atol=1e-9)
+
+
+def test_faces_of_four_corners_are_cut_as_their_elements(tmp_path):
+    nodes, blocks = swept((2, 1, 1), False)
+    on_left = blocks["hexahedron"][:, [0, 4, 7, 3]]
+    cells = [*((name, rows) for name, rows in blocks.items()), ("quad", on_left)]
+    tags = [np.full(len(rows), number) for number, (_, rows) in enumerate(cells, 1)]
+    held = meshio.Mesh(
+        nodes,
+        cells,
+        cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
+        field_data={"clamp": np.array([3, 2])},
+    )
+    meshio.write(tmp_path / "swept.msh", held, file_format="gmsh22", binary=False)
+    mesh = st.SolidMesh.read(tmp_path / "swept.msh")
+    assert len(mesh.faces["clamp"]) == 2
+    assert mesh.face("clamp").area.sum() == pytest.approx(0.04 * 0.03, rel=1e-12)
+    assert (mesh.volumes["1"].size, mesh.volumes["2"].size) == (6, 6)
+
+
+def test_mixtures_of_orders_are_refused(tmp_path):
     nodes = "".join(f"{k}, {x}, {y}, {z}\n" for k, (x, y, z) in enumerate(np.ndindex(2, 2, 2), 1))
     wedge = "*ELEMENT, TYPE=C3D6\n1, 1, 2, 3, 5, 6, 7\n"
-    tetra = "*ELEMENT, TYPE=C3D4\n2, 1, 2, 3, 5\n"
+    tetra = "*ELEMENT, TYPE=C3D10\n2, 1, 2, 3, 5, 6, 7, 8, 1, 2, 3\n"
     path = tmp_path / "block.inp"
-    for text, got in ((wedge, "wedge"), (tetra + wedge, "tetra, wedge"), ("", "none")):
+    for text, got in ((tetra + wedge, "one order.*, got tetra10, wedge$"), ("", "none")):
         path.write_text("*NODE\n" + nodes + text)
         with pytest.raises(ValueError, match=got):
             st.SolidMesh.read(path)

@@ -17,7 +17,8 @@ from ..histories import HISTORIES, Constant, History
 from .body_surfaces import HIGHEST, RingSurface, largest_part
 from .circular_path import CircularPath
 from .damping import DampingLaw, checked_damping, damping_rates
-from .drawn_surfaces import DrawnSurface, surface_of_revolution
+from .drawn_surfaces import DrawnRings, DrawnSurface
+from .long_searches import search_told
 from .modes import BodyPoint, Modes, hashed_once
 from .ordinary import NotOrdinary, of_ordinary_size
 from .profile_mesh import ProfileMesh
@@ -45,8 +46,6 @@ LEAST_POISSON, MOST_POISSON = -0.99, 0.499
 LARGEST = 1e100
 # Share of a turn that rounding leaves to a body that moves straight on.
 STRAIGHT = 1e-6
-# Places round the axis at which the surface is drawn.
-FEWEST_ANGLES, ANGLES_OF_WAVE = 60, 5
 # A free ring of order n bends like a beam of a length of n - 1 waves and more.
 ORDERS_MORE = 2
 
@@ -290,14 +289,27 @@ class AxisymmetricBody:
 
     def drawn_surface(self) -> DrawnSurface:
         """Return its surface: the outline of its profile round the axis, four places or more for each wave."""
-        count = max(FEWEST_ANGLES, ANGLES_OF_WAVE * int(self.numbers[:, 0].max()))
+        return self.drawn.swept
 
-        def at(r: float, angles: Array, z: float) -> tuple[Array, Array]:
-            directions = np.stack([self._directions(float(theta)) for theta in angles])
-            place = self.origin + r * directions[:, 0] + z * directions[:, 2]
-            return place, np.einsum("acd,cam->adm", directions, _solution(self).cylindrical(r, angles, z))
-
-        return surface_of_revolution(self.mesh, 2.0 * math.pi * np.arange(count) / count, at)
+    @property
+    def drawn(self) -> DrawnRings:
+        """Its surface as the outline of its profile and how modes move it."""
+        solution, mesh = _solution(self), self.mesh
+        used, sides = np.unique(mesh.outline, return_inverse=True)
+        shapes = []
+        for r, z in mesh.nodes[used].tolist():
+            points, values = solution.elements.shape_functions(r, z)
+            shapes.append(np.einsum("cpk,p->ck", solution.shapes[:, points], values)[:, solution.columns])
+        orders, _, phases = solution.numbers.T
+        return DrawnRings(
+            mesh.nodes[used],
+            sides.reshape(-1, 2),
+            np.array(shapes),
+            orders,
+            phases,
+            np.asarray(self.frame),
+            np.array(self.origin),
+        )
 
     def turning_velocity(self, position: Any) -> Array:
         """Return the velocity of the material at a point (r, theta, z) by turning alone [m/s], shape (3,)."""
@@ -423,28 +435,34 @@ def _mesh(body: AxisymmetricBody) -> ProfileMesh:
 
 
 @lru_cache(maxsize=16)
-def _families(body: AxisymmetricBody) -> tuple[FourierElements, list[Family]]:
+def _elements(body: AxisymmetricBody) -> FourierElements:
     # Here, not above: scikit-fem takes a third of a second to import.
     from .fourier_elements import fourier_elements
+
+    return fourier_elements(body.mesh, [body.materials[name] for name in body.mesh.regions])
+
+
+@lru_cache(maxsize=16)
+def _families(body: AxisymmetricBody) -> list[Family]:
     from .profile_modes import Constraint, families
 
-    mesh = body.mesh
-    elements = fourier_elements(mesh, [body.materials[name] for name in mesh.regions])
+    mesh, elements = body.mesh, _elements(body)
     held = [Constraint(one.components, elements.points_on(one.sides(mesh))) for one in body.held]
     found = families(elements, held, body.cutoff, range(body._highest_order + 1), body.residual_at)
     lowest = min(one.lowest for one in found)
     if lowest > body.cutoff:
         words = f"leave at least one mode (first at {at_least(lowest)} Hz)"
         raise ArgumentError("cutoff", words, body.cutoff, got=f"{body.cutoff!r} Hz")
-    return elements, found
+    return found
 
 
 @lru_cache(maxsize=16)
 def _solution(body: AxisymmetricBody) -> _Solution:
     # How it is damped and stands has no share in its shapes.
-    elements, found = _families(
-        replace(body, damping=0.0, axis=Z, origin=(0.0, 0.0, 0.0), turning=0.0, turning_history=Constant(), name="")
-    )
+    plain = replace(body, damping=0.0, axis=Z, origin=(0.0, 0.0, 0.0), turning=0.0, turning_history=Constant(), name="")
+    elements = _elements(plain)
+    with search_told(body, 3 * elements.count * (body._highest_order + 1)):
+        found = _families(plain)
     rows = [
         (squared, one.kind.order, one.kind.sides[0], index, number)
         for number, one in enumerate(found)

@@ -1,16 +1,20 @@
-"""Outer surfaces of bodies in space: polygons, and how modes move their corners."""
+"""Outer surfaces of bodies in space as they are drawn: polygons, and how modes move their corners."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
-from .profile_mesh import ProfileMesh
+from ..checks import ArgumentError, listed
 from .solid_kinds import outer_faces
 from .solid_mesh import SolidMesh
+
+# Places round an axis at which a surface is drawn.
+FEWEST_ANGLES, ANGLES_OF_WAVE = 60, 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +34,11 @@ class DrawnSurface:
     place: Array
     polygons: Array
     shapes: Array
+
+    @property
+    def swept(self) -> DrawnSurface:
+        """Itself: it is all polygons."""
+        return self
 
     @property
     def normals(self) -> Array:
@@ -64,33 +73,95 @@ def surface_of_mesh(mesh: SolidMesh, shapes: Array) -> DrawnSurface:
     return DrawnSurface(mesh.nodes[used], polygons.reshape(outer.shape), moved)
 
 
-def surface_of_revolution(
-    mesh: ProfileMesh,
-    angles: Array,
-    at: Callable[[float, Array, float], tuple[Array, Array]],
-) -> DrawnSurface:
-    """Return the outline of a profile swept round the axis.
+@dataclass(frozen=True, eq=False)
+class DrawnRings:
+    """The surface of a body of revolution as its outline, which is swept round the axis.
 
-    Parameters
+    Attributes
     ----------
-    mesh : ProfileMesh
-        Its cells.
-    angles : ndarray, shape (angles,)
-        Rising angles of a whole turn, its end left out [rad].
-    at : callable
-        World places, shape (angles, 3), and shapes of the modes, shape (angles, 3, modes), at r, angles and z.
+    place : ndarray, shape (points, 2)
+        r and z of the corners of the outline [m].
+    sides : ndarray of int, shape (sides, 2)
+        Corners of its sides, the profile to their left.
+    shapes : ndarray, shape (points, 3, modes)
+        Amplitudes along r, theta and z of each corner for unit modes [kg^(-1/2)].
+    orders, phases : ndarray of int, shape (modes,)
+        Number of waves round the axis, and whether a mode goes as their cosine, 0, or their sine, 1.
+    frame : ndarray, shape (3, 3)
+        World components of the directions theta = 0 and theta = 90 degrees and of the axis.
+    origin : ndarray, shape (3,)
+        The point of the world on the axis where z is 0 [m].
     """
-    used, sides = np.unique(mesh.outline, return_inverse=True)
-    first, second = sides.reshape(-1, 2).T
-    found = [at(float(r), angles, float(z)) for r, z in mesh.nodes[used]]
-    count = len(angles)
-    here, there = np.arange(count), np.roll(np.arange(count), -1)
-    start, end = count * first[:, None], count * second[:, None]
-    # The profile is to the left of its outline.
-    polygons = np.stack([start + here, start + there, end + there, end + here], axis=2).reshape(-1, 4)
-    on_axis = mesh.nodes[mesh.outline][..., 0].max(axis=1) <= 0.0
-    return DrawnSurface(
-        np.concatenate([place for place, _ in found]),
-        polygons[~np.repeat(on_axis, count)],
-        np.concatenate([shapes for _, shapes in found]),
-    )
+
+    place: Array
+    sides: Array
+    shapes: Array
+    orders: Array
+    phases: Array
+    frame: Array
+    origin: Array
+
+    @property
+    def swept(self) -> DrawnSurface:
+        """Its polygons, four places or more round the axis for each wave."""
+        count = max(FEWEST_ANGLES, ANGLES_OF_WAVE * int(self.orders.max()))
+        angles = 2.0 * np.pi * np.arange(count) / count
+        first, second, axial = self.frame
+        cosine, sine = np.cos(angles)[:, None], np.sin(angles)[:, None]
+        radial, across = cosine * first + sine * second, cosine * second - sine * first
+        (r, z), (u, v, w) = self.place.T[:, :, None, None], self.shapes.transpose(1, 0, 2)[:, :, None]
+        turned = np.multiply.outer(angles, self.orders)
+        along = np.where(self.phases == 0, np.cos(turned), np.sin(turned))
+        askew = np.where(self.phases == 0, np.sin(turned), -np.cos(turned))
+        shapes = np.einsum("pam,ad->padm", u * along, radial) + np.einsum("pam,ad->padm", v * askew, across)
+        shapes += np.einsum("pam,d->padm", w * along, axial)
+        here, there = np.arange(count), np.roll(np.arange(count), -1)
+        start, end = (count * corner[:, None] for corner in self.sides.T)
+        polygons = np.stack([start + here, start + there, end + there, end + here], axis=2).reshape(-1, 4)
+        on_axis = self.place[self.sides][..., 0].max(axis=1) <= 0.0
+        return DrawnSurface(
+            (self.origin + r * radial + z * axial).reshape(-1, 3),
+            polygons[~np.repeat(on_axis, count)],
+            shapes.reshape(len(self.place) * count, 3, -1),
+        )
+
+
+Drawn = DrawnSurface | DrawnRings
+
+
+def drawn_table(drawn: Drawn) -> dict[str, Array]:
+    """Return a surface as arrays by name, shapes in single precision, with a row for each direction of a corner."""
+    found = {one.name: np.asarray(getattr(drawn, one.name)) for one in fields(drawn)}
+    return {**found, "shapes": found["shapes"].reshape(3 * len(drawn.place), -1).astype(np.float32)}
+
+
+def drawn_of(values: Mapping[str, Any], modes: int) -> Drawn:
+    """Return the surface that `drawn_table` made arrays of, or lists.
+
+    Raises
+    ------
+    ValueError
+        If arrays are missing, or do not fit each other and a number of modes.
+    """
+    given = {name: np.asarray(value, dtype=float) for name, value in values.items() if value is not None}
+    kind: Any = DrawnSurface if "polygons" in given else DrawnRings
+    names = [one.name for one in fields(kind)]
+    if set(names) != set(given):
+        raise ArgumentError("drawn", f"have {listed(names)}", got=listed(given))
+    rows = len(given["place"])
+    corners = given["polygons" if kind is DrawnSurface else "sides"]
+    wanted: dict[str, tuple[int, ...]] = {
+        "place": (rows, 3 if kind is DrawnSurface else 2),
+        "shapes": (3 * rows, modes),
+    }
+    wanted |= {"orders": (modes,), "phases": (modes,), "frame": (3, 3), "origin": (3,)}
+    for name, shape in wanted.items():
+        if name in given and (given[name].shape != shape or not np.isfinite(given[name]).all()):
+            raise ArgumentError(f"drawn.{name}", f"be finite numbers of the shape {shape}", got=given[name].shape)
+    if corners.ndim != 2 or not corners.size or not np.isin(corners, np.arange(rows)).all():
+        raise ArgumentError("drawn", f"name corners from 0 to {rows - 1}", got=f"{corners.shape}")
+    for name in {"polygons", "sides", "orders", "phases"} & set(given):
+        given[name] = given[name].astype(int)
+    given["shapes"] = given["shapes"].reshape(rows, 3, modes)
+    found: Drawn = kind(**given)
+    return found

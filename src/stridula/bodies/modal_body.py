@@ -15,6 +15,7 @@ from ..checks import ArgumentError, choice, count, instance, listed
 from ..histories import Constant, History
 from .body_surfaces import PointSurface, RingSurface, check_surface
 from .circular_path import CircularPath
+from .drawn_surfaces import Drawn, DrawnSurface, drawn_of, drawn_table
 from .half_space import half_space_shapes, surface_frame
 from .matrix_input import check_finite, numbers, rows_of
 from .modes import Body, Modes
@@ -57,6 +58,10 @@ class ModalBody(NamedPoints):
         Of points round whose circle about the axis others may move, by name: its radius [m], the abscissa of the point
         along it [m], and the world components (x, y, z) of its direction there; for bodies with `turning`, whose
         velocity may be 0.
+    drawn : DrawnSurface or DrawnRings, optional
+        Its surface as it is drawn in pictures and films, the `drawn` of another body.
+    places : mapping, optional
+        Where in the world points are at rest, (x, y, z) [m], by name, for pictures and films.
 
     Raises
     ------
@@ -75,6 +80,8 @@ class ModalBody(NamedPoints):
     velocities: Mapping[str, Any] | None = None
     outer_surface: PointSurface | RingSurface | None = None
     circles: Mapping[str, Any] | None = None
+    drawn: Drawn | None = None
+    places: Mapping[str, Any] | None = None
 
     def __post_init__(self) -> None:
         instance("name", self.name, str)
@@ -102,6 +109,9 @@ class ModalBody(NamedPoints):
         self._check_turning(size)
         if self.outer_surface is not None:
             check_surface("outer_surface", self.outer_surface, angular.size)
+        if self.drawn is not None:
+            drawn_of(drawn_table(self.drawn), size)
+        self._set("places", _places(self.places, self.point_names))
 
     @classmethod
     def placed(
@@ -265,6 +275,28 @@ class ModalBody(NamedPoints):
         return self.outer_surface
 
     @property
+    def is_drawn(self) -> bool:
+        """Whether its surface is known as it is drawn."""
+        return self.drawn is not None
+
+    def drawn_surface(self) -> DrawnSurface:
+        """Return its surface as it is drawn.
+
+        Raises
+        ------
+        ValueError
+            If it is not known.
+        """
+        if self.drawn is None:
+            raise ArgumentError("drawn", "be given to be seen", got="none")
+        return self.drawn.swept
+
+    def place(self, position: str) -> Array | None:
+        """Return where in the world a point is at rest [m], shape (3,), None if it is not known."""
+        self.check_position(position)
+        return (self.places or {}).get(position)
+
+    @property
     def point_names(self) -> tuple[str, ...]:
         """Names of its points."""
         return tuple(self.points)
@@ -330,7 +362,7 @@ class ModalBody(NamedPoints):
     def __reduce__(self) -> tuple[Any, ...]:
         given = self.angular_frequency, dict(self.points), self.damping_rate, self.translation, self.residual
         turned = self.turning, dict(self.velocities or {}), self.outer_surface, dict(self.circles or {})
-        return ModalBody, (*given, self.name, *turned)
+        return ModalBody, (*given, self.name, *turned, self.drawn, dict(self.places or {}))
 
     @cached_property
     def _content(self) -> tuple[Any, ...]:
@@ -340,12 +372,31 @@ class ModalBody(NamedPoints):
         modes = self.angular_frequency.tobytes(), self.damping_rate.tobytes()
         surface = None if self.outer_surface is None else self.outer_surface.content
         round_about = tuple((name, circle.tobytes()) for name, circle in sorted((self.circles or {}).items()))
-        return *modes, surface, points, moved, self.residual, self.turning, passed, round_about, self.name
+        drawn = {} if self.drawn is None else drawn_table(self.drawn)
+        seen = tuple(array.tobytes() for array in drawn.values())
+        placed = tuple((name, place.tobytes()) for name, place in sorted((self.places or {}).items()))
+        kept = *modes, surface, points, moved, self.residual, self.turning, passed, round_about
+        return *kept, seen, placed, self.name
 
     def _set(self, name: str, value: Any) -> None:
         if isinstance(value, np.ndarray):
             value.flags.writeable = False
         object.__setattr__(self, name, value)
+
+
+def _places(given: Any, points: Sequence[str]) -> Mapping[str, Array] | None:
+    """Return places in space of points by name, None without any."""
+    instance("places", {} if given is None else given, Mapping)
+    found = {}
+    for name, value in (given or {}).items():
+        choice("places", name, tuple(points))
+        place = numbers(f"places[{name!r}]", value)
+        if place.shape != (3,):
+            raise ArgumentError(f"places[{name!r}]", "be three numbers", value)
+        check_finite(f"places[{name!r}]", place)
+        place.flags.writeable = False
+        found[name] = place
+    return MappingProxyType(found) if found else None
 
 
 def _of_modes(name: str, value: Any, fewest: int) -> Array:

@@ -16,6 +16,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, instance, positive
 from .damping import DampingLaw, Rayleigh, checked_damping
+from .long_searches import search_told
 from .matrix_arguments import from_container, from_matrices
 from .matrix_files import LARGEST_SIZE, POINT, files_of, read_container, read_matrices, read_nodes, write_npz
 from .matrix_input import (
@@ -369,7 +370,8 @@ class ReducedBody(NamedPoints):
 
     @cached_property
     def _reduction(self) -> Reduction:
-        return reduce_sparse_body(self) if stays_sparse(self.mass) else reduce_body(self)
+        with search_told(self, self.mass.shape[0]):
+            return reduce_sparse_body(self) if stays_sparse(self.mass) else reduce_body(self)
 
     def _check_large(self) -> None:
         """Raise ValueError where sparse matrices lack a cutoff or their mass is none."""

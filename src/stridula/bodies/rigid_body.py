@@ -92,11 +92,20 @@ class RigidBody(NamedPoints):
 
     def trace(self, position: str, held_x: bool = False) -> Array:
         """Return the rows that give the displacement of a point from the modes, shape (3, modes)."""
+        self.modes(held_x)
+        return np.asarray(self.shapes_at(self.offset(position)[None])[0])
+
+    def offset(self, position: str) -> Array:
+        """Return where a point is from the centre of mass at rest [m], shape (3,)."""
         self.check_position(position)
-        count = self.modes(held_x).count
-        rows = np.eye(3, count) / np.sqrt(self.mass)
-        if count == 6 and position != CENTRE:
-            rows[:, 3:] = np.cross(self._turns, self.points[position]).T
+        return np.zeros(3) if position == CENTRE else np.array(self.points[position])
+
+    def shapes_at(self, offsets: Array) -> Array:
+        """Return the displacements for unit modes at places from the centre of mass [m], shape (places, 3, modes)."""
+        count = self.modes().count
+        rows = np.tile(np.eye(3, count) / np.sqrt(self.mass), (len(offsets), 1, 1))
+        if count == 6:
+            rows[:, :, 3:] = np.cross(self._turns, offsets[:, None]).transpose(0, 2, 1)
         return rows
 
     def modal_coordinates(self, vector: Any) -> Array:

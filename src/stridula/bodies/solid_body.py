@@ -22,6 +22,7 @@ from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, checked_damping
 from .drawn_surfaces import DrawnSurface, surface_of_mesh
 from .factorisation import dissection
+from .long_searches import search_told
 from .matrix_files import LARGEST_SIZE, LARGEST_SPARSE, check_size
 from .matrix_input import check_finite, numbers
 from .modes import BodyPoint, Modes
@@ -285,6 +286,11 @@ class SolidBody(NamedPoints):
 
     def drawn_surface(self) -> DrawnSurface:
         """Return its surface: the faces of elements that no other one shares."""
+        return self.drawn
+
+    @property
+    def drawn(self) -> DrawnSurface:
+        """Its surface, and how modes move it."""
         return surface_of_mesh(self.mesh, self.shapes)
 
     def modal_coordinates(self, vector: Any) -> Array:
@@ -357,6 +363,11 @@ def _assembled(body: SolidBody) -> tuple[Any, Any]:
 @of_ordinary_size("mesh and materials")
 def _reduced(body: SolidBody) -> SolidReduction:
     """Return the modes of a body; equal bodies share them."""
+    with search_told(body, 3 * len(body.mesh.nodes)):
+        return _searched(body)
+
+
+def _searched(body: SolidBody) -> SolidReduction:
     node_mass, stiffness = _assembled(body)
     mesh, free = body.mesh, body._free
     mass = scipy.sparse.kron(node_mass, scipy.sparse.eye_array(3), format="csr")

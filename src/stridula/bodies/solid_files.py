@@ -14,6 +14,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, in_one_line, listed
 from ..disk import one_line
+from .cut_elements import can_be_cut, cut_into_tetrahedra, triangles_of
 from .solid_kinds import KINDS, ElementKind, outer_faces
 
 LARGEST_FILE = 2 * 1024**3
@@ -66,7 +67,11 @@ def read_mesh(path: str | os.PathLike[str]) -> dict[str, Any]:
 def _read(path: str | os.PathLike[str], form: str, prefix: str) -> Any:
     """Return the mesh of meshio, which tells of what it cannot read by printing and by leaving the program."""
     import meshio
+    from meshio._mesh import topological_dimension
 
+    # meshio reads these and has forgotten that they are solid.
+    for kind in ("wedge15", "pyramid13"):
+        topological_dimension.setdefault(kind, 3)
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), np.errstate(all="ignore"):
@@ -86,14 +91,23 @@ def _parts(held: Any, groups: dict[str, dict[int, Array]]) -> dict[str, Any]:
     """Return nodes, elements and named groups, nodes without an element left out."""
     blocks = [block for block in held.cells if block.type.startswith(_SOLID)]
     kinds = sorted({block.type for block in blocks})
-    if len(kinds) != 1 or kinds[0] not in KINDS:
+    is_whole = len(kinds) == 1 and kinds[0] in KINDS
+    if not kinds or not (is_whole or can_be_cut(kinds)):
         known = listed(kind.words for kind in KINDS.values())
-        raise ArgumentError("path", f"hold solid elements of one kind ({known})", got=listed(kinds))
-    kind = KINDS[kinds[0]]
+        cut = "tetrahedra, wedges, pyramids and hexahedra of one order, without nodes in the middle of faces"
+        raise ArgumentError("path", f"hold solid elements of one kind ({known}) or {cut}", got=listed(kinds))
     places = np.asarray(held.points, dtype=float)
-    given = np.concatenate([np.asarray(block.data, dtype=np.int64) for block in blocks])
-    if given.size and (given.min() < 0 or given.max() >= len(places)):
-        raise ArgumentError("path", f"name nodes that it holds, {len(places)} in all", got=int(given.max()))
+    of_blocks = [(block.type, np.asarray(block.data, dtype=np.int64)) for block in blocks]
+    named = np.concatenate([block.ravel() for _, block in of_blocks])
+    if named.size and (named.min() < 0 or named.max() >= len(places)):
+        raise ArgumentError("path", f"name nodes that it holds, {len(places)} in all", got=int(named.max()))
+    if is_whole:
+        given = np.concatenate([block for _, block in of_blocks])
+        kind, owner, ends = KINDS[kinds[0]], np.arange(len(given)), np.zeros((0, 2), dtype=np.int64)
+    else:
+        cut_mesh = cut_into_tetrahedra(places, of_blocks)
+        places, given, owner, ends = cut_mesh.nodes, cut_mesh.elements, cut_mesh.owner, cut_mesh.ends
+        kind = KINDS["tetra10" if given.shape[1] == 10 else "tetra"]
     # What lies in two groups may stand in a file twice.
     _, first, number = np.unique(np.sort(given, axis=1), axis=0, return_index=True, return_inverse=True)
     rank = np.argsort(np.argsort(first))
@@ -104,10 +118,13 @@ def _parts(held: Any, groups: dict[str, dict[int, Array]]) -> dict[str, Any]:
     elements = renumbered[elements]
     surface = _surface(kind, elements)
     found: dict[str, Any] = {"nodes": places[used], "elements": elements, "kind": kind.name}
-    found["volumes"] = _volumes(held, groups, number)
-    faces, sets = _faces_and_sets(held, groups, renumbered, surface)
+    found["volumes"] = _volumes(held, groups, number, owner)
+    faces, sets = _faces_and_sets(held, groups, renumbered, surface, len(kind.faces[0]))
     for name, nodes in getattr(held, "point_sets", {}).items():
         _add(sets, name, renumbered[np.asarray(nodes, dtype=np.int64)])
+    further = renumbered[len(places) - len(ends) :]
+    for name, nodes in sets.items():
+        _add(sets, name, further[np.isin(renumbered[ends], nodes).all(axis=1)])
     for name, nodes in sets.items():
         if name not in faces:
             _add(faces, name, _faces_in(kind, elements, surface, nodes))
@@ -116,21 +133,28 @@ def _parts(held: Any, groups: dict[str, dict[int, Array]]) -> dict[str, Any]:
     return found
 
 
-def _volumes(held: Any, groups: dict[str, dict[int, Array]], number: Array) -> dict[str, Array]:
-    """Return the elements of each group of solid elements, after those that stand twice are joined."""
+def _volumes(held: Any, groups: dict[str, dict[int, Array]], number: Array, owner: Array) -> dict[str, Array]:
+    """Return the elements of each group of solid elements, after those that stand twice are joined.
+
+    They are parts of the elements of the file, whose numbers are in `owner`.
+    """
     start, found = 0, dict[str, Array]()
     for at, block in enumerate(held.cells):
         if block.type.startswith(_SOLID):
             for name, of_block in groups.items():
                 if at in of_block and of_block[at].size:
-                    those = number[start + of_block[at]]
+                    those = number[np.isin(owner, start + of_block[at])]
                     found[name] = np.append(found.get(name, those[:0]), those)
             start += len(block.data)
     return found
 
 
 def _faces_and_sets(
-    held: Any, groups: dict[str, dict[int, Array]], renumbered: Array, surface: dict[tuple[int, ...], tuple[int, int]]
+    held: Any,
+    groups: dict[str, dict[int, Array]],
+    renumbered: Array,
+    surface: dict[tuple[int, ...], tuple[int, int]],
+    sides: int,
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """Return faces on the surface, and nodes of other faces, of lines and of points, by the name of their group."""
     faces: dict[str, Array] = {}
@@ -140,8 +164,10 @@ def _faces_and_sets(
             block = held.cells[at]
             nodes = renumbered[np.asarray(block.data, dtype=np.int64)[those]]
             if block.type.startswith(_SURFACE):
-                corners = 3 if block.type.startswith("triangle") else 4
-                keys = [tuple(sorted(face)) for face in nodes[:, :corners].tolist()]
+                corners = nodes[:, : 3 if block.type.startswith("triangle") else 4]
+                if corners.shape[1] > sides:
+                    corners = triangles_of(corners).reshape(-1, 3)
+                keys = [tuple(sorted(face)) for face in corners.tolist()]
                 if all(key in surface for key in keys):
                     pairs = np.array([surface[key] for key in keys], dtype=np.int64).reshape(-1, 2)
                     faces[name] = np.vstack([faces.get(name, pairs[:0]), pairs])

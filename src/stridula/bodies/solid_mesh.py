@@ -125,15 +125,15 @@ class SolidMesh:
         Returns
         -------
         SolidMesh
-            The mesh, its elements as they are in the file.
+            The mesh, its elements as they are in the file; wedges, pyramids and mixtures of kinds cut into tetrahedra.
 
         Raises
         ------
         OSError
             If the file cannot be read.
         ValueError
-            If the file is damaged, too large, of another kind or has solid elements of several kinds or of one that is
-            not known, or as in `SolidMesh`.
+            If the file is damaged, too large, of another kind or has solid elements of a kind that is not known
+            or of several orders, or as in `SolidMesh`.
         """
         instance("path", path, (str, os.PathLike))
         length = positive("scale", scale)

@@ -8,6 +8,7 @@ import sys
 
 from .commands import app
 from .consoles import print_anything
+from .doings import doings_shown
 from .exits import GOOD, INTERRUPTED, failed, say, terminated_as_interrupted
 
 
@@ -28,7 +29,8 @@ def main() -> None:
 
 def _run() -> int:
     try:
-        result = app(standalone_mode=False)
+        with doings_shown():
+            result = app(standalone_mode=False)
     except SystemExit as stop:
         # Rich leaves this way when its output is closed.
         return GOOD if stop.code == 1 else int(stop.code or GOOD)

@@ -10,6 +10,7 @@ from rich.progress import BarColumn, Progress, Task, TextColumn, TimeRemainingCo
 from rich.text import Text
 
 from ..integration.compiled_code import tell_of_compiling
+from .doings import told_of_doings
 
 # Done, in all, and both in words.
 Show = Callable[[float, float, str], None]
@@ -27,7 +28,7 @@ class TimeLeft(TimeRemainingColumn):
 
 @contextmanager
 def bar(title: str) -> Iterator[Show]:
-    """Show a bar where standard error is a terminal, and say so while code is being compiled."""
+    """Show a bar where standard error is a terminal, and say so while code is compiled or modes are found."""
     console = Console(stderr=True)
     progress = Progress(
         TextColumn("{task.description}", markup=False),
@@ -40,5 +41,9 @@ def bar(title: str) -> Iterator[Show]:
     )
     with progress:
         task = progress.add_task(title, total=None, words=PREPARING)
-        with tell_of_compiling(lambda: progress.update(task, words=COMPILING)):
+
+        def tell(doing: str | None) -> None:
+            progress.update(task, words=PREPARING if doing is None else f"{doing} ...")
+
+        with told_of_doings(tell), tell_of_compiling(lambda: progress.update(task, words=COMPILING)):
             yield lambda done, total, words: progress.update(task, completed=done, total=total, words=words)

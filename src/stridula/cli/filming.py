@@ -6,16 +6,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from rich.console import Console
-from rich.progress import Progress
-
 from ..checks import ArgumentError
 from ..disk import check_writable
 from ..integration import Diverged, Interrupted
 from ..plot.films import animate
+from ..plot.space_motion import has_surfaces
 from ..records.files import is_record, load
 from ..scenarios.load import load_scenario
 from ..scenarios.quantities import quantity
+from .bars import bar
 from .exits import FAILED, INTERRUPTED, Stopped
 
 
@@ -51,12 +50,10 @@ def film_scenario(
     if is_a_record:
         _check_beginning(name)
     scenario = load_scenario(name)
-    if is_a_record and scenario.system.is_spatial:
-        words = "be the scenario that was run: a record has the modes of bodies in space, not their meshes"
+    if is_a_record and scenario.system.is_spatial and not has_surfaces(scenario.system):
+        words = "be the scenario that was run: this record has no surfaces of bodies"
         raise ArgumentError("name", words, name)
-    console = Console(stderr=True)
-    with _stopped(), Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task(scenario.title or name, total=None)
+    with _stopped(), bar(scenario.title or name) as show:
         film = animate(
             scenario.system,
             out,
@@ -69,7 +66,7 @@ def film_scenario(
             step=scenario.step,
             sample_rate=scenario.sample_rate,
             title=scenario.title or name,
-            progress=lambda frame, frames: bar.update(task, completed=frame, total=frames),
+            progress=lambda frame, frames: show(frame, frames, f"{frame} of {frames} frames"),
         )
     return str(film)
 

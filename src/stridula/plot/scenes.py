@@ -21,7 +21,8 @@ from ..checks import STATUS_WORDS, ArgumentError, finite
 from ..contact import PointContact
 from ..system import System
 from .colours import STATUS_COLOURS
-from .space_motion import ModalMotion
+from .rigid_surfaces import place_of, rigid_surfaces
+from .space_motion import ModalMotion, is_drawn
 
 # Elevation above the plane across y and azimuth from z towards x: 30 and 35 degrees [rad].
 VIEW = (np.pi / 6.0, 7.0 * np.pi / 36.0)
@@ -33,6 +34,8 @@ AWAY = -0.3
 # Share of the room that bodies at rest fill.
 FILLED = 0.92
 MARKER = 3.5
+# Radius of the ball of a rigid body without points round it, as a share of the extent of the others.
+BALL = 0.03
 
 
 @dataclass(frozen=True)
@@ -211,13 +214,14 @@ class _Place:
 
 
 def surfaces_of(system: System, eye: Array) -> list[_Body]:
-    """Return the bodies of a system that have a surface, and which of their polygons face the eye."""
-    found = []
-    for body in system.bodies:
-        if hasattr(body, "drawn_surface"):
-            surface = body.drawn_surface()
-            found.append(_Body(system.body_name(body), surface, surface.normals @ eye > AWAY))
-    return found
+    """Return the bodies of a system that are drawn, and which of their polygons face the eye.
+
+    Those that have a surface, and rigid bodies that are joined to one of them.
+    """
+    surfaces = {body: body.drawn_surface() for body in system.bodies if is_drawn(body)}
+    places = np.concatenate([surface.place for surface in surfaces.values()])
+    surfaces |= rigid_surfaces(system, BALL * float(np.ptp(places, axis=0).max()))
+    return [_Body(system.body_name(body), surface, surface.normals @ eye > AWAY) for body, surface in surfaces.items()]
 
 
 def largest_departure(bodies: list[_Body], motion: ModalMotion) -> float:
@@ -250,7 +254,7 @@ def _axes_in_space(figure: Figure, room: tuple[float, float, float, float]) -> A
 def _known_end(contact: PointContact) -> BodyPoint | None:
     """Return the end of a contact whose place in the world is known, None if neither is."""
     ends = (contact.tip, contact.touched_point)
-    return next((one for one in ends if one is not None and hasattr(one.body, "place")), None)
+    return next((one for one in ends if one is not None and place_of(one) is not None), None)
 
 
 def _eye(view: tuple[float, float]) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -54,7 +55,12 @@ class SpaceMotion:
 def has_surfaces(system: System) -> bool:
     """Return whether a system has bodies whose surface is known."""
     instance("system", system, System)
-    return any(hasattr(body, "drawn_surface") for body in system.bodies)
+    return any(is_drawn(body) for body in system.bodies)
+
+
+def is_drawn(body: Any) -> bool:
+    """Return whether the surface of a body is known."""
+    return hasattr(body, "drawn_surface") and getattr(body, "is_drawn", True)
 
 
 def check_surfaces(system: System) -> None:

@@ -12,21 +12,22 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError
 
-PREFIX = "float64 "
+KINDS = {"float64": "<f8", "float32": "<f4"}
 LARGEST = 4000 * 4000
 # Up to this many numbers a list is easier to read.
 LONGEST_LIST = 64
 
 
 def packed(array: Array) -> str:
-    """Return an array as text: ``float64``, its shape, and its compressed bytes in base 64."""
-    content = zlib.compress(np.ascontiguousarray(array, dtype="<f8").tobytes())
-    return f"{PREFIX}{'x'.join(map(str, array.shape))} {base64.b64encode(content).decode('ascii')}"
+    """Return an array as text: ``float32`` if it is of that kind, else ``float64``; shape, bytes in base 64."""
+    kind = "float32" if array.dtype == np.float32 else "float64"
+    content = zlib.compress(np.ascontiguousarray(array, dtype=KINDS[kind]).tobytes())
+    return f"{kind} {'x'.join(map(str, array.shape))} {base64.b64encode(content).decode('ascii')}"
 
 
 def is_packed(text: str) -> bool:
     """Return whether a text is meant as a packed array."""
-    return text.startswith(PREFIX)
+    return text.partition(" ")[0] in KINDS
 
 
 def unpacked(text: str) -> Array:
@@ -38,13 +39,14 @@ def unpacked(text: str) -> Array:
         If the text is damaged.
     """
     try:
-        _, sizes, content = text.split(" ")
+        kind, sizes, content = text.split(" ")
         shape = tuple(int(size) for size in sizes.split("x"))
-        whole = math.prod(shape) * 8
+        numbers = np.dtype(KINDS[kind])
+        whole = math.prod(shape) * numbers.itemsize
         if min(shape) < 0 or whole > LARGEST * 8:
             raise ValueError(f"the shape {sizes}")
         unfold = zlib.decompressobj()
         plain = unfold.decompress(base64.b64decode(content, validate=True), whole + 1)
-        return np.frombuffer(plain, dtype="<f8").astype(float).reshape(shape)
-    except (ValueError, zlib.error, binascii.Error) as error:
+        return np.frombuffer(plain, dtype=numbers).astype(float).reshape(shape)
+    except (KeyError, ValueError, zlib.error, binascii.Error) as error:
         raise ArgumentError("array", "be a whole packed array, as records have them") from error

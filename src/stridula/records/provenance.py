@@ -14,6 +14,7 @@ import tomli_w
 from ..arrays import Array
 from ..bodies import AxisymmetricBody, BodyPoint, FiniteElementBeam, ModalBeam, ModalBody
 from ..bodies.damping import is_damping_law
+from ..bodies.drawn_surfaces import drawn_table
 from ..bodies.turning import Turning
 from ..connections import Connection, ends
 from ..contact import PointContact
@@ -23,6 +24,8 @@ from ..system import System
 from .packed import LONGEST_LIST, packed
 from .probes import Probe
 
+# Bytes of the surface of a body that a record keeps for films, at most.
+LARGEST_DRAWN = 20_000_000
 # A list as tomli_w writes it, one number on a line; texts are on one line each and never match.
 _LIST_OF_NUMBERS = re.compile(r"\[\n((?:\s*[-+.\dinfaeE]+,\n)+)\s*\]")
 
@@ -157,7 +160,7 @@ def _value(value: Any) -> Any:
 
 
 def _body(body: Any) -> dict[str, Any]:
-    given = _plain(body, "material", "section", "points", "turning", "velocities", "circles")
+    given = _plain(body, "material", "section", "points", "turning", "velocities", "circles", "drawn", "places")
     if hasattr(body, "material"):
         given["material"] = _plain(body.material)
     if hasattr(body, "points"):
@@ -168,6 +171,10 @@ def _body(body: Any) -> dict[str, Any]:
         given |= {"turning": _turning_table(body.turning), "velocities": _value(velocities)}
     if getattr(body, "circles", None):
         given["circles"] = _value({name: circle.tolist() for name, circle in body.circles.items()})
+    if getattr(body, "is_drawn", False):
+        given |= _drawn(body)
+    if getattr(body, "places", None):
+        given["places"] = _value(body.places)
     if not hasattr(body, "section"):
         return given
     return {**given, "section": {"shape": body.section.shape, **_plain(body.section)}}
@@ -223,8 +230,18 @@ def _modes_table(body: Any, points: Sequence[BodyPoint], circles: Sequence[Point
             {point.label: point for point in points if point.body == body},
         ),
         **_circles(circles),
+        **_drawn(body),
+        "places": {point.label: _value(body.place(point.position)) for point in points if point.body == body},
         "name": body.name,
     }
+
+
+def _drawn(body: Any) -> dict[str, Any]:
+    """Return the surface of a body as it is drawn, nothing where that is too large."""
+    arrays = drawn_table(body.drawn)
+    if sum(array.nbytes for array in arrays.values()) > LARGEST_DRAWN:
+        return {}
+    return {"drawn": {name: _value(array) for name, array in arrays.items()}}
 
 
 def _circles(contacts: Sequence[PointContact]) -> dict[str, Any]:

@@ -28,6 +28,7 @@ from ..bodies import (
 )
 from ..bodies.body_surfaces import surface_of
 from ..bodies.damping import DAMPING_LAWS
+from ..bodies.drawn_surfaces import drawn_of
 from ..bodies.ordinary import NotOrdinary
 from ..bodies.sections import SECTIONS
 from ..bodies.turning import Turning
@@ -216,6 +217,9 @@ class Builder:
         if isinstance(table.get("outer_surface"), dict):
             with self._within(*path):
                 table["outer_surface"] = surface_of(table["outer_surface"])
+        if isinstance(table.get("drawn"), dict):
+            with self._within(*path):
+                table["drawn"] = drawn_of(table["drawn"], len(table["angular_frequency"]) + (table["residual"] or 0))
         if kind in OF_SPACE:
             with self._within(*path):
                 return OF_SPACE[kind](**{name: value for name, value in table.items() if value is not None})

@@ -148,6 +148,25 @@ class OuterSurface(Table):
     """point on the axis where z is 0, of rings [m]"""
 
 
+class Drawn(Table):
+    place: is_.Rows
+    """places of the corners of polygons [m], or r and z of the corners of an outline"""
+    shapes: is_.Rows
+    """by how much each mode moves the corners: three rows for each, along x, y, z or r, theta, z"""
+    polygons: is_.Rows | None = None
+    """corners of each polygon, round its outward normal"""
+    sides: is_.Rows | None = None
+    """corners of the sides of an outline"""
+    orders: is_.Vector | None = None
+    """number of waves round the axis of each mode, of an outline"""
+    phases: is_.Vector | None = None
+    """0 for modes that go round as the cosine, 1 for those as the sine, of an outline"""
+    frame: is_.Rows | None = None
+    """directions theta = 0 and theta = 90 degrees and of the axis, of an outline"""
+    origin: is_.Vector | None = None
+    """point on the axis where z is 0, of an outline [m]"""
+
+
 class Modal(Table):
     kind: Literal["modal body"]
     """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"""
@@ -169,6 +188,10 @@ class Modal(Table):
     """outer surface and how the modes move it, which a body needs to be heard"""
     circles: is_.PlaceTable | None = None
     """circles that others may move round, by the name of a point: radius and its abscissa [m], direction there"""
+    drawn: Drawn | None = None
+    """surface as it is drawn in films, and how modes move it"""
+    places: is_.PlaceTable | None = None
+    """where points are at rest along x, y and z, by name, for films [m]"""
     name: str = ""
     """what it is called in records, the table's own name if left out"""
 

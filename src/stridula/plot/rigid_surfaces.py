@@ -1,0 +1,84 @@
+"""What rigid bodies in space are drawn as: the hull of their points, or a small ball."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+
+from ..arrays import Array
+from ..bodies import BodyPoint
+from ..bodies.drawn_surfaces import DrawnSurface
+from ..connections import ends
+from ..system import System
+
+# Points of a ball.
+POINTS = 80
+# Its angle from one to the next about the axis, the golden one [rad].
+GOLDEN = np.pi * (3.0 - np.sqrt(5.0))
+
+
+def place_of(point: BodyPoint) -> Array | None:
+    """Return where in the world a point is at rest [m], None if its body does not know."""
+    body: Any = point.body
+    return body.place(point.position) if hasattr(body, "place") else None
+
+
+def rigid_surfaces(system: System, radius: float) -> dict[Any, DrawnSurface]:
+    """Return the surfaces of the rigid bodies that touch, or are joined to, a point whose place is known.
+
+    Parameters
+    ----------
+    system : System
+        A system in space.
+    radius : float
+        Radius of the balls [m].
+    """
+    found: dict[Any, DrawnSurface] = {}
+    for ours, other, away in _joined(system):
+        body: Any = ours.body
+        place = place_of(other)
+        if place is not None and body not in found and hasattr(body, "shapes_at"):
+            points = np.array(list(body.points.values())).reshape(-1, 3)
+            # A ball touches the other body instead of sticking in it.
+            polygons, offsets = _hull(points, radius * (_ball() + away))
+            centre = place - body.offset(ours.position)
+            found[body] = DrawnSurface(centre + offsets, polygons, body.shapes_at(offsets))
+    return found
+
+
+def _joined(system: System) -> Iterator[tuple[BodyPoint, BodyPoint, Array]]:
+    """Yield both points of each contact and connection, and the normal away from the second; then the other way."""
+    for contact in system.contacts:
+        if contact.touched_point is not None:
+            normal = np.array(contact.normal or (0.0, 0.0, 0.0))
+            normal = normal / (np.linalg.norm(normal) or 1.0)
+            yield contact.tip, contact.touched_point, normal
+            yield contact.touched_point, contact.tip, -normal
+    for first, *second in map(ends, system.connections):
+        for other in second:
+            yield first, other, np.zeros(3)
+            yield other, first, np.zeros(3)
+
+
+def _hull(points: Array, ball: Array) -> tuple[Array, Array]:
+    """Return triangles of a convex hull, round its outward normals, and its corners; a ball where there is none."""
+    try:
+        hull = ConvexHull(np.vstack([points, np.zeros(3)]))
+    except (QhullError, ValueError):
+        hull = ConvexHull(ball)
+    used, triangles = np.unique(hull.simplices, return_inverse=True)
+    corners, triangles = hull.points[used], triangles.reshape(-1, 3)
+    first, second, third = corners[triangles].transpose(1, 0, 2)
+    inward = np.einsum("pi,pi->p", np.cross(second - first, third - first), hull.equations[:, :3]) < 0.0
+    triangles[inward] = triangles[inward, ::-1]
+    return triangles, corners
+
+
+def _ball() -> Array:
+    """Return points all over the unit sphere."""
+    height = 1.0 - (2.0 * np.arange(POINTS) + 1.0) / POINTS
+    angle, across = GOLDEN * np.arange(POINTS), np.sqrt(1.0 - height**2)
+    return np.column_stack([across * np.cos(angle), height, across * np.sin(angle)])
