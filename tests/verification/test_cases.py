@@ -42,14 +42,14 @@ def test_a_plate_of_another_poissons_ratio_falls_short(monkeypatch):
 
 
 def test_a_ball_on_a_plane_of_another_material_or_friction_falls_short(monkeypatch):
-    """Negative control: Poisson's ratio 0.02 off, then friction 5 % off."""
+    """Negative control: Poisson's ratio 0.02 off, then friction 3 % off."""
     monkeypatch.setattr(partial_slip, "GRIDS", (7, 11))
     right = partial_slip.Material
     monkeypatch.setattr(partial_slip, "Material", lambda young, density, poisson: right(young, density, poisson - 0.02))
     assert {"7 squares across: approach", "11 squares across: approach"} <= missed(partial_slip.cattaneo())
     monkeypatch.setattr(partial_slip, "Material", right)
     law = partial_slip.Coulomb
-    monkeypatch.setattr(partial_slip, "Coulomb", lambda friction: law(0.95 * friction))
+    monkeypatch.setattr(partial_slip, "Coulomb", lambda friction: law(0.97 * friction))
     assert "11 squares across: shift" in missed(partial_slip.cattaneo())
 
 

@@ -119,9 +119,8 @@ def _rows(known: Known, found: Known, side: float, grid: str) -> list[Row]:
     # The gap of a ball, a mean over a square, is beyond that of its middle by side² / 12 R.
     gap, half = side**2 / (12.0 * RADIUS), 0.5 * side
     share, slipping = gap / known.approach, known.radius**2 - known.stuck**2
-    # In proportion to the approach of the whole contact less that of what sticks (Cattaneo): twice the gap, and what
-    # sticks, which makes the shift least, to half a square.
-    pulled = 2.0 * share * known.radius**2 / slipping + half**2 / slipping
+    # In proportion to the approach of the whole contact less that of what sticks (Cattaneo): the gap of both.
+    pulled = 2.0 * share * known.radius**2 / slipping
     by_gap = "gap in the middle of a square for its mean"
     return [
         Row(f"{grid}: radius of contact", known.radius, found.radius, half, "half a square", "m"),
@@ -129,7 +128,7 @@ def _rows(known: Known, found: Known, side: float, grid: str) -> list[Row]:
         Row(f"{grid}: approach", known.approach, found.approach, gap, by_gap, "m"),
         # The middle square has the mean of its pressure, too.
         Row(f"{grid}: peak pressure", known.peak, found.peak, 2.0 * share * known.peak, f"{by_gap}, twice", "Pa"),
-        Row(f"{grid}: shift", known.shift, found.shift, pulled * known.shift, f"{by_gap}, and half a square", "m"),
+        Row(f"{grid}: shift", known.shift, found.shift, pulled * known.shift, f"{by_gap}, twice", "m"),
     ]
 
 
