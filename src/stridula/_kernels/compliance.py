@@ -62,13 +62,14 @@ def shared(spans, first_span, i, begin):
 
 
 @numba.njit(**OPTIONS)
-def set_compliance_of_coupled(rows, matrices, faces, blocks, coupled, places, count, run, zero):
+def set_compliance_of_coupled(modes, faces, blocks, coupled, places, count, run, zero):
     """Put the compliance of bodies of which some have coupled modes.
 
     It is symmetric but where stiffness and damping of these do not commute.
     """
+    rows = modes.rows
     for j in range(2 * count):
-        respond(rows, matrices, coupled, places, run, CONTACTS + j, POSITION, zero)
+        respond(rows, modes.matrices, modes.reach, coupled, places, run, CONTACTS + j, POSITION, zero)
         for i in range(2 * count):
             value = product(rows, CONTACTS + i, POSITION, 0, coupled, run, zero)
             value += product(rows, CONTACTS + i, CONTACTS + j, coupled, blocks, run, zero)

@@ -1,6 +1,7 @@
 """What the march does to modes that springs or their own damping join: the first blocks, whose states are not scaled.
 
 The matrices lie in blocks like the modes, ``matrices[block, kind * places + j, lane]``: what mode `j` does to a block.
+``reach[block]`` has the first such mode and the one after the last: springs join few modes, and residual shapes none.
 """
 
 import numba
@@ -12,11 +13,11 @@ from .modes import OPTIONS, complete, stored_energy
 
 
 @numba.njit(**OPTIONS)
-def try_coupled(rows, matrices, coupled, places, run, zero):
+def try_coupled(rows, matrices, reach, coupled, places, run, zero):
     """Put increment and position at the end of the step without contact force into the rows."""
     for k in range(coupled):
         increment = load(rows, k, FORCE, run)
-        for j in range(places):
+        for j in range(reach[k, 0], reach[k, 1]):
             increment = fused(load(matrices, k, KEPT * places + j, run), entry(rows, j, D, run, zero), increment)
             lowered = load(matrices, k, STIFFNESS * places + j, run) * entry(rows, j, Q, run, zero)
             increment = increment - lowered
@@ -25,25 +26,25 @@ def try_coupled(rows, matrices, coupled, places, run, zero):
 
 
 @numba.njit(**OPTIONS)
-def respond(rows, matrices, coupled, places, run, row, response, zero):
+def respond(rows, matrices, reach, coupled, places, run, row, response, zero):
     """Put the increments for forces on the modes, given by a row, into another one."""
     for k in range(coupled):
         moved = spread(0.0)
-        for j in range(places):
+        for j in range(reach[k, 0], reach[k, 1]):
             moved = fused(load(matrices, k, MOBILITY * places + j, run), entry(rows, j, row, run, zero), moved)
         store(rows, k, response, run, moved)
 
 
 @numba.njit(**OPTIONS)
-def complete_coupled(rows, matrices, coupled, places, run, zero):
+def complete_coupled(rows, matrices, reach, coupled, places, run, zero):
     """Complete the step under the push of the contacts; return the work of the push and what damping took."""
-    respond(rows, matrices, coupled, places, run, PUSH, POSITION, zero)
+    respond(rows, matrices, reach, coupled, places, run, PUSH, POSITION, zero)
     for k in range(coupled):
         store(rows, k, INCREMENT, run, load(rows, k, INCREMENT, run) + load(rows, k, POSITION, run))
     works, losses = spread(0.0), spread(0.0)
     for k in range(coupled):
         loss = spread(0.0)
-        for j in range(places):
+        for j in range(reach[k, 0], reach[k, 1]):
             before = entry(rows, j, D, run, zero)
             both = entry(rows, j, INCREMENT, run, zero) + before
             loss = fused(load(matrices, k, LOSS * places + j, run), both, loss)
@@ -57,12 +58,12 @@ def complete_coupled(rows, matrices, coupled, places, run, zero):
 
 
 @numba.njit(**OPTIONS)
-def energy_of_coupled(rows, matrices, coupled, places, run, zero):
+def energy_of_coupled(rows, matrices, reach, coupled, places, run, zero):
     """Return the energy half a step ago."""
     energy = spread(0.0)
     for k in range(coupled):
         kinetic, elastic = spread(0.0), spread(0.0)
-        for j in range(places):
+        for j in range(reach[k, 0], reach[k, 1]):
             q, d = entry(rows, j, Q, run, zero), entry(rows, j, D, run, zero)
             kinetic = fused(load(matrices, k, KINETIC * places + j, run), d, kinetic)
             elastic = fused(load(matrices, k, ELASTIC * places + j, run), q - d, elastic)
@@ -74,5 +75,5 @@ def energy_of_coupled(rows, matrices, coupled, places, run, zero):
 def energy_of(modes, sizes, run, zero):
     """Return the energy half a step ago."""
     places = sizes.coupled * sizes.per_block
-    coupled = energy_of_coupled(modes.rows, modes.matrices, sizes.coupled, places, run, zero)
+    coupled = energy_of_coupled(modes.rows, modes.matrices, modes.reach, sizes.coupled, places, run, zero)
     return coupled + stored_energy(modes.rows, sizes.coupled, sizes.blocks, run, zero)

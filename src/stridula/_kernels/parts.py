@@ -48,10 +48,12 @@ class Timing(NamedTuple):
 
 
 class Modes(NamedTuple):
-    """Rows of all modes, ``(blocks, rows, lanes)``, matrices of coupled ones, work of each load when last changed."""
+    """Rows of all modes, ``(blocks, rows, lanes)``, matrices of coupled ones, their reach, work of each load when last
+    changed."""
 
     rows: np.ndarray
     matrices: np.ndarray
+    reach: np.ndarray
     given: np.ndarray
 
 

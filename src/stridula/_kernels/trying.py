@@ -150,7 +150,8 @@ def try_many(modes, paths, contacts, turning, state, imposed, sizes, n, ended, r
     """Try a step of all modes, and put what each contact is at its end without contact forces."""
     rows, spans, now = modes.rows, paths.spans, contacts.now
     # 1.
-    try_coupled(rows, modes.matrices, sizes.coupled, sizes.coupled * sizes.per_block, run, zero)
+    places = sizes.coupled * sizes.per_block
+    try_coupled(rows, modes.matrices, modes.reach, sizes.coupled, places, run, zero)
     try_all(rows, sizes.coupled, sizes.blocks, run)
     for i in range(sizes.contacts):
         across, along = zero, zero
@@ -188,9 +189,7 @@ def soften(modes, paths, contacts, sizes, run, zero):
     """Put the compliance of contacts on paths where they will be: 4."""
     if sizes.coupled_paths:
         places = sizes.coupled * sizes.per_block
-        set_compliance_of_coupled(
-            modes.rows, modes.matrices, contacts.faces, sizes.blocks, sizes.coupled, places, sizes.contacts, run, zero
-        )
+        set_compliance_of_coupled(modes, contacts.faces, sizes.blocks, sizes.coupled, places, sizes.contacts, run, zero)
     elif sizes.paths:
         set_compliance(modes.rows, contacts.faces, paths.spans, paths.first_span, paths, sizes.contacts, run, zero)
 
@@ -210,7 +209,7 @@ def complete_many(modes, paths, contacts, sizes, run, zero):
             for s in range(paths.first_span[i], paths.first_span[i + 1]):
                 add_push(rows, i, spans[s, at.BEGIN], spans[s, at.END], run, normal, tangential)
     places = sizes.coupled * sizes.per_block
-    work, lost = complete_coupled(rows, modes.matrices, sizes.coupled, places, run, zero)
+    work, lost = complete_coupled(rows, modes.matrices, modes.reach, sizes.coupled, places, run, zero)
     more, taken = complete_all(rows, sizes.coupled, sizes.blocks, run, zero)
     return work + more, lost + taken
 

@@ -32,6 +32,7 @@ from .packing import (
     layout_of,
     matrices_of,
     pack,
+    reach_of,
     rows_of,
     scale_of,
     side_by_side,
@@ -163,6 +164,7 @@ class March:
         self.modes = Modes(
             pack(self.layout, rows, width),
             matrices_of(self.layout, [one.modes for one in blocks], width),
+            reach_of(self.layout, [one.modes for one in blocks]),
             columns(aligned(len(first.modes.loads), runs)),
         )
         self.paths = self._paths(width)

@@ -352,6 +352,17 @@ def matrices_of(where: Layout, runs: Sequence[Recurrence], width: int) -> Array:
     return out.reshape(coupled, at.MATRICES * places, width)
 
 
+def reach_of(where: Layout, runs: Sequence[Recurrence]) -> Array:
+    """Return the first place of a coupled mode that acts on each block of them, and the one after the last."""
+    here, found = where.coupled_places, np.zeros((where.sizes.coupled, 2), dtype=np.int64)
+    acts = np.any([(modes.matrices != 0.0).any(axis=0) for modes in runs], axis=0)
+    for block in range(where.sizes.coupled):
+        places = here[acts[here // where.sizes.per_block == block].any(axis=0)]
+        if places.size:
+            found[block] = places.min(), places.max() + 1
+    return found
+
+
 def compliance_in_blocks(compliances: Sequence[Array], sizes: Sizes, width: int) -> Array:
     """Return room for the displacements of the contacts of runs, and their compliances, shape (rows, blocks, width)."""
     size = 2 * sizes.contacts
