@@ -25,7 +25,7 @@ class LuGre(StaticAndKinetic):
         z' = v - stiffness |v| z / g(v),    g(v) = kinetic + (static - kinetic) exp(-(v / velocity)²)
         tangential force = normal force * (stiffness z + damping z' + viscous v)
 
-    In space z, v and the force are vectors of the tangent plane, with their size in g: bent bristles turn after the slip.
+    In space z, v and the force are vectors of the tangent plane, with their size in g; bristles turn after the slip.
 
     All coefficients are per unit of normal force. The deflection moves exactly over a step at constant slip velocity
     and the force is solved for together with the contact, so that the step need not resolve the bristles. There is no
