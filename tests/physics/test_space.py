@@ -13,6 +13,7 @@ import stridula as st
 from stridula._kernels import layout as at
 from stridula.integration.contact_solve import GaussSeidel
 from stridula.integration.forces import forces_of
+from stridula.verification.surfaces import RADIUS, WEIGHT, coin
 
 from .lattice import lattice, matrices
 from .test_equilibrium_starts import growth
@@ -404,31 +405,6 @@ def test_a_start_in_sliding_equilibrium_stays_there(scheme):
 
 
 # Bodies that come to rest.
-
-RADIUS, WEIGHT = 0.1, 10.0
-
-
-def coin(rings: int, around: int, speed: float, spin: float) -> tuple[st.System, np.ndarray]:
-    """A disc of 1 kg that slides along x and spins about y; each of its points always bears its share of the weight."""
-    nodes, weights = np.polynomial.legendre.leggauss(rings)
-    radii, shares = RADIUS * np.sqrt(0.5 * (nodes + 1.0)), np.repeat(0.5 * weights, around) / around
-    angles = 2.0 * pi * (np.arange(around) + 0.5 * np.arange(rings)[:, None]) / around
-    places = np.stack([(radii[:, None] * np.cos(angles)).ravel(), (radii[:, None] * np.sin(angles)).ravel()], axis=1)
-    count = len(places)
-    mass = np.diag(np.concatenate([[1.0, 1.0, 0.5 * RADIUS**2], 1e-3 * shares]))
-    points = {}
-    for k, (x, z) in enumerate(places):
-        rows = np.zeros((3, count + 3))
-        rows[0, [0, 2]], rows[1, 3 + k], rows[2, [1, 2]] = (1.0, z), 1.0, (1.0, -x)
-        points[f"p{k}"] = rows
-    body = st.ReducedBody(mass, np.zeros_like(mass), points, name="coin")
-    contacts = [
-        st.PointContact(body.at(point), st.RigidTrack(name=f"below {point}"), friction=st.Coulomb(0.2), name=point)
-        for point in points
-    ]
-    loads = [st.Force(body.at(f"p{k}"), y=-WEIGHT * share) for k, share in enumerate(shares.tolist())]
-    thrown = st.InitialState(body, velocity=[speed, 0.0, spin, *np.zeros(count)])
-    return st.System(contacts, [*loads, thrown]), places
 
 
 def test_a_coin_that_slides_and_spins_stops_doing_both_at_once():

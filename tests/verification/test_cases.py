@@ -20,6 +20,7 @@ from stridula.verification import (
     sliders,
     stability,
     strings,
+    surfaces,
 )
 from stridula.verification.case import schemes
 from stridula.verification.cases import CASES
@@ -51,6 +52,17 @@ def test_a_ball_on_a_plane_of_another_material_or_friction_falls_short(monkeypat
     law = partial_slip.Coulomb
     monkeypatch.setattr(partial_slip, "Coulomb", lambda friction: law(0.97 * friction))
     assert "11 squares across: shift" in missed(partial_slip.cattaneo())
+
+
+def test_points_of_one_mesh_another_friction_and_another_rig_fall_short(monkeypatch):
+    """Negative controls: the patch test by points of one mesh, a coin and a pin with other coefficients of friction."""
+    both, load, law = surfaces.patches, surfaces.load_scenario, surfaces.Coulomb
+    monkeypatch.setattr(surfaces, "patches", lambda: both(overlay=False))
+    assert missed(surfaces.patch_test()) == {"pressure at the worst point"}
+    monkeypatch.setattr(surfaces, "Coulomb", lambda friction: law(0.99 * friction))
+    assert {"friction at the start", "its moment at the start"} <= missed(surfaces.spinning())
+    monkeypatch.setattr(surfaces, "load_scenario", lambda name: load(name, {"friction": 0.3}))
+    assert "frequency" in missed(surfaces.pin_on_disc())
 
 
 def test_a_slider_with_another_friction_falls_short(monkeypatch):

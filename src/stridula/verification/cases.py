@@ -20,6 +20,7 @@ from . import (
     space,
     stability,
     strings,
+    surfaces,
     turning,
 )
 from .case import Case
@@ -38,6 +39,7 @@ CASES: tuple[Case, ...] = (
     *plates.CASES,
     *strings.CASES,
     *space.CASES,
+    *surfaces.CASES,
     *turning.CASES,
     *orders.CASES,
     *radiation.CASES,
