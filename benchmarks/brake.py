@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import ctypes
 import os
-import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -20,7 +19,7 @@ import numpy as np
 
 import stridula as st
 from against_c import Result, built, parameters, without_gcc
-from ratios import FORM, Ratio, must_agree, over, seconds, show, sized
+from ratios import Ratio, must_agree, over, peak_memory, seconds, show, sized
 from space import IRON, LINING
 from stridula._kernels import contacts as kernel
 from stridula._kernels import layout as at
@@ -193,12 +192,7 @@ def ratios(regime: str, pair: Pair) -> Iterator[Ratio | str]:
 
 def peak() -> float:
     """Return the peak memory of a fresh process that marches the brake [GB]."""
-    process = subprocess.Popen([sys.executable, __file__, "child", *FORM])
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        raise RuntimeError(f"the run whose memory is taken ended with exit code {process.returncode}")
-    return usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024) / 1e9
+    return peak_memory(__file__) / 1e9
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elimination.h"
 #include "layout.h"
 
 static void displace(int size, const double *restrict w, double *restrict u, int i, double normal, double tangential)
@@ -48,29 +49,8 @@ static void solve_states(int count, const double *restrict w, const double *rest
             x[first[i] + 1] = -slips[i] - away[i];
         }
     }
-    for (int k = 0; k < equations; k++) {
-        double *restrict pivots = m + k * size;
-        if (pivots[k] == 0.0)
-            return;
-        const double inverse = 1.0 / pivots[k];
-        for (int r = k + 1; r < equations; r++)
-            pivots[r] *= inverse;
-        for (int c = k + 1; c < equations; c++) {
-            double *restrict column = m + c * size;
-            const double factor = column[k];
-            for (int r = k + 1; r < equations; r++)
-                column[r] -= factor * pivots[r];
-        }
-        const double factor = x[k];
-        for (int r = k + 1; r < equations; r++)
-            x[r] -= factor * pivots[r];
-    }
-    for (int k = equations - 1; k >= 0; k--) {
-        const double *restrict column = m + k * size, found = x[k] / column[k];
-        x[k] = found;
-        for (int r = 0; r < k; r++)
-            x[r] -= column[r] * found;
-    }
+    if (!eliminate(m, x, equations, size))
+        return;
     for (int i = 0; i < count; i++)
         if (status[i] && x[first[i]] < 0.0)
             return;

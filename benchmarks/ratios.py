@@ -7,7 +7,9 @@ agrees, and the ratios mean nothing.
 from __future__ import annotations
 
 import argparse
+import os
 import statistics
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -163,3 +165,13 @@ def write_between(begin: str, end: str, target: Path, lines: list[str]) -> None:
     if not mark:
         raise SystemExit(f"{target} must have the lines {begin} and {end}")
     target.write_text("\n".join([f"{before}{begin}", "", *lines, "", f"{end}{after}"]), encoding="utf-8")
+
+
+def peak_memory(script: str) -> float:
+    """Return the peak memory of a fresh process that runs a script with the word child [bytes]."""
+    process = subprocess.Popen([sys.executable, script, "child", *FORM])
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise RuntimeError(f"the run whose memory is taken ended with exit code {process.returncode}")
+    return float(usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024))

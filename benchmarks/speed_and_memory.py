@@ -6,12 +6,11 @@ Memory is taken first: a process counts what the one that made it held then.
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 from collections.abc import Iterator
 
 import stridula as st
-from ratios import FORM, REPEATS, Ratio, over, seconds, show, sized
+from ratios import REPEATS, Ratio, over, peak_memory, seconds, show, sized
 from stridula.scenarios import load_scenario
 
 TITLE = "squeal with 122 modes at 0.8 us"
@@ -54,12 +53,7 @@ def rows() -> Iterator[Ratio | str]:
 
 def peak() -> float:
     """Return the peak memory of a fresh process that runs twice as long, over its bar."""
-    process = subprocess.Popen([sys.executable, __file__, "child", *FORM])
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        raise RuntimeError(f"the run whose memory is taken ended with exit code {process.returncode}")
-    return usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024) / LARGEST_MEMORY
+    return peak_memory(__file__) / LARGEST_MEMORY
 
 
 if __name__ == "__main__":

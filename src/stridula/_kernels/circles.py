@@ -10,7 +10,7 @@ import numba
 
 from . import layout as at
 from .block_rows import CONTACTS, POSITION, Q
-from .lanes import fused, held, hold, load, read, spread, store, total, whole
+from .lanes import fused, held, hold, load, read, spread, store, total
 from .modes import OPTIONS, product, two_products
 from .space import is_second
 from .turning import (
@@ -26,18 +26,14 @@ from .turning import (
     RISEN,
     small_turn,
 )
-from .waves import sine_and_cosine
+from .waves import sine_and_cosine_of_half_turns
 
 
 @numba.njit(**OPTIONS)
 def set_rows_at(rows, at_start, turns, begin, end, i, angle, run):
     """Put the rows of contact `i` and of its second tangent at an angle from where it started."""
     for k in range(begin, end, 2):
-        half_turns = load(turns, k, ORDER, run) * (angle / math.pi)
-        passed = whole(half_turns)
-        s, c = sine_and_cosine((half_turns - passed) * math.pi)
-        sign = 1.0 - 2.0 * (passed - 2.0 * whole(0.5 * passed))
-        s, c = s * sign, c * sign
+        s, c = sine_and_cosine_of_half_turns(load(turns, k, ORDER, run) * (angle / math.pi))
         for row in (2 * i, 2 * i + 1, 2 * i + 3):
             first, second = load(at_start, k, row, run), load(at_start, k + 1, row, run)
             store(rows, k, CONTACTS + row, run, fused(c, first, -s * second))

@@ -186,10 +186,10 @@ def change(contacts, carried, sizes, j, in_space, step, active, run, zero):
     wanted = choose(active > 0.5, wanted, status)
     if not anywhere(magnitude(wanted - status) > 0.5):
         return
-    opens = choose(status > 0.5 * STICKING, choose(wanted < 0.5 * STICKING, 1.0, zero), zero) > 0.5
-    closes = choose(status < 0.5 * STICKING, choose(wanted > 0.5 * STICKING, 1.0, zero), zero) > 0.5
-    moves = choose(status < SLIDING - 0.5, choose(wanted > SLIDING - 0.5, 1.0, zero), zero) > 0.5
-    stops = choose(wanted < SLIDING - 0.5, choose(status > SLIDING - 0.5, 1.0, zero), zero) > 0.5
+    opens = choose(wanted < 0.5 * STICKING, status, zero) > 0.5 * STICKING
+    closes = choose(status < 0.5 * STICKING, wanted, zero) > 0.5 * STICKING
+    moves = choose(status < SLIDING - 0.5, wanted, zero) > SLIDING - 0.5
+    stops = choose(wanted < SLIDING - 0.5, status, zero) > SLIDING - 0.5
     normal = held(now, here + at.NORMAL_NOW, run, zero)
     first, second = held(now, here + at.TANGENTIAL_NOW, run, zero), zero
     # A contact that closes slides the way that it moves, one that breaks away as it was pulled.
@@ -209,15 +209,16 @@ def change(contacts, carried, sizes, j, in_space, step, active, run, zero):
     left, pulled = choose(opens, zero, normal), choose(opens, zero, first)
     hold(now, here + at.NORMAL_NOW, run, left)
     hold(now, here + at.TANGENTIAL_NOW, run, pulled)
-    displace(faces, sizes.faces, j, run, left - normal, pulled - first)
-    if in_space:
+    if not in_space:
+        displace(faces, sizes.faces, j, run, left - normal, pulled - first)
+    else:
         ratio = choose(moves, at_rest * s, held(now, there + at.RATIO, run, zero))
         hold(now, there + at.RATIO, run, choose(stops, zero, ratio))
         hold(now, there + at.STATUS_NOW, run, wanted)
         hold(now, there + at.NORMAL_NOW, run, left)
         swerved = choose(opens, zero, second)
         hold(now, there + at.TANGENTIAL_NOW, run, swerved)
-        displace(faces, sizes.faces, j + 1, run, zero, swerved - second)
+        displace_in_space(faces, sizes.faces, j, run, left - normal, pulled - first, swerved - second)
 
 
 @numba.njit(**OPTIONS)

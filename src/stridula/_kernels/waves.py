@@ -38,6 +38,15 @@ def sine_and_cosine(theta):
     return 1.0 - 2.0 * s * s, -2.0 * s * c
 
 
+@numba.njit(**OPTIONS)
+def sine_and_cosine_of_half_turns(half_turns):
+    """Return sin and cos of any number of half turns."""
+    passed = whole(half_turns)
+    s, c = sine_and_cosine((half_turns - passed) * math.pi)
+    sign = 1.0 - 2.0 * (passed - 2.0 * whole(0.5 * passed))
+    return s * sign, c * sign
+
+
 def set_multiples(theta, from_zero, count, waves, first, sine, run):
     """Put sin(k theta) and cos(k theta), k from 1, or from 0 on, into `count` blocks of rows of `waves`."""
     s, c = sine_and_cosine(theta)
@@ -63,11 +72,7 @@ def set_multiples(theta, from_zero, count, waves, first, sine, run):
 @numba.njit(**OPTIONS)
 def set_eight_at_a_time(theta, from_zero, count, waves, first, sine, run):
     """Do so for one run, whose blocks have eight multiples: the first eight at once, the others by turning on."""
-    half_turns = load(waves, first, NUMBER, run) * (theta / math.pi)
-    passed = whole(half_turns)
-    s, c = sine_and_cosine((half_turns - passed) * math.pi)
-    sign = 1.0 - 2.0 * (passed - 2.0 * whole(0.5 * passed))
-    s, c = s * sign, c * sign
+    s, c = sine_and_cosine_of_half_turns(load(waves, first, NUMBER, run) * (theta / math.pi))
     store(waves, first, sine, run, s)
     store(waves, first, sine + 1, run, c)
     turn_s, turn_c = lane(s, LANES - 1), lane(c, LANES - 1)

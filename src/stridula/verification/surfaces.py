@@ -56,7 +56,7 @@ def patches(overlay: bool = True) -> System:
 def patch_test() -> Outcome:
     """A uniform pressure goes through faces of unlike meshes as it is."""
     system = patches()
-    surface: Any = system.contact[0] if isinstance(system.contact, tuple) else system.contact
+    (surface,) = system.faces
     found = find_equilibrium(Structure(system), np.full(len(system.contacts), 0.1))
     pressures = found.normal_force / surface.areas
     worst = float(pressures[np.abs(pressures - PRESSURE).argmax()])
