@@ -19,7 +19,7 @@ from .space import free_of_own, is_second, put_second, solve_in_space
 from .yielding import comes_close, forces_yielding, forces_yielding_in_space, yields_anywhere, yields_of
 
 # Sweeps after which, and then between which, the forces of the states that were found are solved for directly.
-FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 2, 8
+FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 1, 8
 # Sweeps after which a contact that has broken away in this step is no longer held by its static coefficient.
 PATIENCE = 24
 # What is kept of contacts that have not, so that those in space know that it is late.

@@ -3,8 +3,8 @@
 Unknown are the normal forces of those that are closed and the tangential forces of those that are held; where a contact
 slides, its tangential force is the ratio found last times its normal force. Contacts that pull then open, open ones
 that overlap close, those held beyond their cone slide and those that slide against their friction are held: an active
-set. The system lies in blocks like the compliance, ``scratch[row, block, lane]``: a row for each equation, one for
-right sides, one to work with, one for displacements to come back to. Runs side by side have the equations of all.
+set. The system lies in blocks like the compliance, ``scratch[row, block, lane]``: a row for each unknown, with what it
+displaces at all equations, one for right sides, then those named below. Runs side by side have the equations of all.
 """
 
 import math
@@ -21,6 +21,13 @@ from .modes import OPTIONS
 from .solves import strayed
 from .space import direction, is_second
 from .yielding import give_of, yields_anywhere, yields_of
+
+# Rows of the scratch before its end: displacements to come back to, multipliers of two unknowns, what a normal force
+# displaces with the tangential one that goes with it, and which equations a run has.
+SAVED, MULTIPLIERS, MORE_MULTIPLIERS, ALONG, HAS = range(-5, 0)
+# Before these lie masks of the lanes of a block that come after each lane, last lane first.
+# Rows of the scratch but the masks and those of the unknowns.
+FURTHER_ROWS = 6
 
 # Share of the cone that a force may be beyond it by rounding.
 BEYOND = 1.0 + 1e-9
@@ -43,14 +50,13 @@ def solve_states(contacts, carried, sizes, step, run, tried, zero):
     active, given_up = choose(tried > 0.5, 1.0, zero), zero
     fewest, vain = zero + math.inf, zero
     for _ in range(TRIALS):
-        size = number_equations(now, codes, sizes.contacts, run, zero)
+        size = number_equations(contacts, sizes.contacts, run, zero)
         for j in range(sizes.contacts):
             if equation(now, j, at.NORMAL_EQUATION, run, zero) >= 0:
                 in_space = sizes.space and is_second(codes, j + 1)
-                put_columns(contacts, sizes, j, in_space, run, zero)
+                put_columns(contacts, sizes, j, in_space, size, run, zero)
                 put_rights(contacts, carried, j, in_space, size, run, zero)
-        blocks = (size + sizes.per_block - 1) // sizes.per_block
-        regular = eliminate(scratch, size, blocks, sizes.per_block, run, active, zero)
+        regular = eliminate(scratch, size, sizes.per_block, run, active, zero)
         for j in range(sizes.contacts):
             if equation(now, j, at.NORMAL_EQUATION, run, zero) >= 0:
                 more, pulled = take(contacts, j, j, size, regular, run, zero)
@@ -92,7 +98,7 @@ def farthest(now, count, run, zero):
 @numba.njit(**OPTIONS)
 def keep_found(contacts, sizes, run, zero):
     """Keep forces, states and displacements to come back to, and put the ratios of those that slide."""
-    now, saved = contacts.now, 2 * sizes.contacts + 2
+    now, saved = contacts.now, contacts.scratch.shape[0] + SAVED
     for i in range(sizes.contacts):
         here = i * at.IN_STEP
         normal, tangential, status = (
@@ -114,7 +120,7 @@ def put_back(contacts, sizes, given_up, run, zero):
     """Put back what was kept, in runs that are given up."""
     if not anywhere(given_up > 0.5):
         return
-    now, saved = contacts.now, 2 * sizes.contacts + 2
+    now, saved = contacts.now, contacts.scratch.shape[0] + SAVED
     for i in range(sizes.contacts):
         here = i * at.IN_STEP
         for row, kept in (
@@ -259,15 +265,10 @@ def equation(now, i, which, run, zero):
 
 
 @numba.njit(**OPTIONS)
-def has_equation(now, i, which, run, zero):
-    """Return whether contact `i` has an equation, the same in all runs."""
-    return lane(held(now, i * at.IN_STEP + which, run, zero), 0) >= 0.0
-
-
-@numba.njit(**OPTIONS)
-def number_equations(now, codes, count, run, zero):
-    """Number the equations of all contacts; return how many there are."""
-    size = 0
+def number_equations(contacts, count, run, zero):
+    """Number the equations of all contacts and put where they are and which a run has; return how many there are."""
+    now, codes, scratch = contacts.now, contacts.codes, contacts.scratch
+    size, has = 0, scratch.shape[0] + HAS
     for i in range(count):
         here = i * at.IN_STEP
         of_normal, of_tangential = -1, -1
@@ -277,8 +278,12 @@ def number_equations(now, codes, count, run, zero):
         law = codes[i - 1] if mirrors else codes[i]
         holds = choose(sticks, 1.0, zero) if set_valued(law) else zero
         if not mirrors and anywhere(closed):
+            set_component(scratch, size, has, run, choose(closed, 1.0, zero))
+            contacts.places[size] = 2 * i
             of_normal, size = size, size + 1
         if anywhere(holds > 0.5):
+            set_component(scratch, size, has, run, holds)
+            contacts.places[size] = 2 * i + 1
             of_tangential, size = size, size + 1
         hold(now, here + at.NORMAL_EQUATION, run, zero + float(of_normal))
         hold(now, here + at.TANGENTIAL_EQUATION, run, zero + float(of_tangential))
@@ -299,42 +304,41 @@ def is_held(now, i, run, zero):
 
 
 @numba.njit(**OPTIONS)
-def put_columns(contacts, sizes, j, in_space, run, zero):
-    """Put the columns of the forces of contact `j`: what they displace at every equation."""
+def put_columns(contacts, sizes, j, in_space, size, run, zero):
+    """Put what the forces of contact `j` displace at every equation."""
     now, faces, scratch = contacts.now, contacts.faces, contacts.scratch
-    column = equation(now, j, at.NORMAL_EQUATION, run, zero)
-    first = equation(now, j, at.TANGENTIAL_EQUATION, run, zero)
-    ratio, swerve, second = held(now, j * at.IN_STEP + at.RATIO, run, zero), zero, -1
+    ratio, swerve = held(now, j * at.IN_STEP + at.RATIO, run, zero), zero
     if in_space:
         swerve = held(now, (j + 1) * at.IN_STEP + at.RATIO, run, zero)
-        second = equation(now, j + 1, at.TANGENTIAL_EQUATION, run, zero)
     n, t, b = COMPLIANCE + 2 * j, COMPLIANCE + 2 * j + 1, COMPLIANCE + 2 * j + 3
-    give = held(now, j * at.IN_STEP + at.GIVE, run, zero)
-    # What the normal force displaces with the tangential one that goes with it, in the last row.
-    last = 2 * sizes.contacts + 1
+    together = scratch.shape[0] + ALONG
     for block in range(sizes.faces):
         along = fused(-ratio, load(faces, t, block, run), load(faces, n, block, run))
-        store(scratch, last, block, run, fused(-swerve, load(faces, b, block, run), along) if in_space else along)
-    row = 0
-    for i in range(sizes.contacts):
-        for k in range(2):
-            if not has_equation(now, i, at.NORMAL_EQUATION if k == 0 else at.TANGENTIAL_EQUATION, run, zero):
-                continue
-            moves = is_closed(now, i, run, zero) if k == 0 else is_held(now, i, run, zero)
-            # Where this run has no such equation, the unknown is zero.
-            idle = zero + 1.0
-            along = component(scratch, 2 * i + k, last, run, zero)
-            if row == column:
-                along += give
-            set_component(scratch, column, row, run, choose(moves, along, idle if row == column else zero))
-            if first >= 0:
-                pulled = component(faces, 2 * i + k, t, run, zero)
-                set_component(scratch, first, row, run, choose(moves, pulled, idle if row == first else zero))
-            if second >= 0:
-                across = component(faces, 2 * i + k, b, run, zero)
-                set_component(scratch, second, row, run, choose(moves, across, idle if row == second else zero))
-            # They are numbered in this order.
-            row += 1
+        along = fused(-swerve, load(faces, b, block, run), along) if in_space else along
+        store(scratch, together, block, run, along)
+    column = equation(now, j, at.NORMAL_EQUATION, run, zero)
+    give = held(now, j * at.IN_STEP + at.GIVE, run, zero)
+    put_column(scratch, contacts.places, scratch, together, column, give, size, run, zero)
+    first = equation(now, j, at.TANGENTIAL_EQUATION, run, zero)
+    if first >= 0:
+        put_column(scratch, contacts.places, faces, t, first, zero, size, run, zero)
+    second = equation(now, j + 1, at.TANGENTIAL_EQUATION, run, zero) if in_space else -1
+    if second >= 0:
+        put_column(scratch, contacts.places, faces, b, second, zero, size, run, zero)
+
+
+@numba.njit(**OPTIONS)
+def put_column(scratch, places, displaced, row, column, give, size, run, zero):
+    """Put what an unknown displaces at every equation, given by a row, and by how much more its own contact gives.
+
+    Where this run has no such equation, the unknown is zero.
+    """
+    has = scratch.shape[0] + HAS
+    for i in range(size):
+        value = component(displaced, places[i], row, run, zero) * component(scratch, i, has, run, zero)
+        set_component(scratch, i, column, run, value)
+    own, value = component(scratch, column, has, run, zero), component(scratch, column, column, run, zero)
+    set_component(scratch, column, column, run, choose(own > 0.5, value + give, 1.0))
 
 
 @numba.njit(**OPTIONS)
@@ -378,29 +382,56 @@ def take(contacts, j, i, size, regular, run, zero):
 
 
 @numba.njit(**OPTIONS)
-def eliminate(scratch, size, blocks, per_block, run, regular, zero):
+def eliminate(scratch, size, per_block, run, regular, zero):
     """Solve the system in place by Gauss's elimination without exchange of rows; return where it is regular.
 
-    A contact's own compliance is on the diagonal. What this loses of digits, the sweep that follows finds.
+    A contact's own compliance is on the diagonal. What this loses of digits, the sweep that follows finds. Two unknowns
+    are taken from all that follow at once.
     """
-    for k in range(size):
-        pivot = component(scratch, k, k, run, zero)
-        regular = choose(magnitude(pivot) > 0.0, regular, zero)
-        inverse = 1.0 / choose(regular > 0.5, pivot, 1.0)
-        right = component(scratch, k, size, run, zero)
-        for row in range(k + 1, size):
-            factor = component(scratch, k, row, run, zero) * inverse
-            if anywhere(magnitude(factor) > 0.0):
-                for block in range(k // per_block, blocks):
-                    changed = fused(-factor, load(scratch, k, block, run), load(scratch, row, block, run))
-                    store(scratch, row, block, run, changed)
-                set_component(scratch, row, size, run, fused(-factor, right, component(scratch, row, size, run, zero)))
+    one, other = scratch.shape[0] + MULTIPLIERS, scratch.shape[0] + MORE_MULTIPLIERS
+    blocks = (size + per_block - 1) // per_block
+    for k in range(0, size, 2):
+        begin = k // per_block
+        regular = put_multipliers(scratch, k, one, begin, blocks, per_block, run, regular, zero)
+        if k + 1 < size:
+            factor = component(scratch, k, k + 1, run, zero)
+            for block in range(begin, blocks):
+                left = fused(-factor, load(scratch, one, block, run), load(scratch, k + 1, block, run))
+                store(scratch, k + 1, block, run, left)
+            regular = put_multipliers(scratch, k + 1, other, begin, blocks, per_block, run, regular, zero)
+            between = component(scratch, k + 1, one, run, zero)
+            for column in range(k + 2, size + 1):
+                factor = component(scratch, k, column, run, zero)
+                more = fused(-factor, between, component(scratch, k + 1, column, run, zero))
+                for block in range(begin, blocks):
+                    left = fused(-factor, load(scratch, one, block, run), load(scratch, column, block, run))
+                    store(scratch, column, block, run, fused(-more, load(scratch, other, block, run), left))
     for back in range(size):
         k = size - 1 - back
         pivot = choose(regular > 0.5, component(scratch, k, k, run, zero), 1.0)
         found = component(scratch, k, size, run, zero) / pivot
         set_component(scratch, k, size, run, found)
-        for row in range(k):
-            left = fused(-component(scratch, k, row, run, zero), found, component(scratch, row, size, run, zero))
+        whole = k // per_block
+        for block in range(whole):
+            left = fused(-found, load(scratch, k, block, run), load(scratch, size, block, run))
+            store(scratch, size, block, run, left)
+        for row in range(whole * per_block, k):
+            left = fused(-found, component(scratch, row, k, run, zero), component(scratch, row, size, run, zero))
             set_component(scratch, row, size, run, left)
+    return regular
+
+
+@numba.njit(**OPTIONS)
+def put_multipliers(scratch, k, row, begin, blocks, per_block, run, regular, zero):
+    """Put by how much equation `k` is taken from those after it to rid them of its unknown; return where it can be."""
+    pivot = component(scratch, k, k, run, zero)
+    regular = choose(magnitude(pivot) > 0.0, regular, zero)
+    inverse = 1.0 / choose(regular > 0.5, pivot, 1.0)
+    own, mask = k // per_block, scratch.shape[0] + SAVED - 1 - k % per_block
+    for block in range(begin, own):
+        store(scratch, row, block, run, 0.0 * load(scratch, mask, 0, run))
+    after = load(scratch, k, own, run) * load(scratch, mask, 0, run)
+    store(scratch, row, own, run, after * inverse)
+    for block in range(own + 1, blocks):
+        store(scratch, row, block, run, load(scratch, k, block, run) * inverse)
     return regular

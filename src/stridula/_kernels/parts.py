@@ -99,7 +99,9 @@ class Contacts(NamedTuple):
     constants, fixed : ndarray, a column a run
         Constants of each contact; compliance of the only one on constant rows.
     faces, scratch : ndarray, shape (rows, blocks, lanes)
-        Forces, displacements and compliances of all contacts; a linear system.
+        Displacements and compliances of all contacts; a linear system.
+    places : ndarray, shape (2 contacts,)
+        Row of the displacements that each equation of the system is of.
     now, sums : ndarray, a column a run
         What each contact is in a step; sums over a sample.
     """
@@ -110,6 +112,7 @@ class Contacts(NamedTuple):
     fixed: np.ndarray
     faces: np.ndarray
     scratch: np.ndarray
+    places: np.ndarray
     now: np.ndarray
     sums: np.ndarray
 

@@ -10,7 +10,7 @@ from .._kernels.parts import Contacts, Sizes, Timing
 from .._kernels.vectors import LANES
 from ..arrays import Array
 from .contact_solve import GaussSeidel
-from .packing import PLAIN, aligned, columns, compliance_in_blocks, side_by_side
+from .packing import PLAIN, aligned, columns, compliance_in_blocks, room_to_solve, side_by_side
 
 
 def forces_of(
@@ -51,8 +51,8 @@ def forces_of(
         *laws,
         columns(side_by_side([constants.ravel()])),
         columns(aligned(3, 1)),
-        compliance_in_blocks([compliance], sizes, 1 if PLAIN else LANES),
-        aligned(2 * count + 3, sizes.faces * per_block).reshape(2 * count + 3, sizes.faces, per_block),
+        compliance_in_blocks([compliance], sizes, per_block),
+        *room_to_solve(sizes, per_block),
         columns(side_by_side([now.ravel()])),
         columns(aligned(count * at.SUMS, 1)),
     )

@@ -33,6 +33,7 @@ from .packing import (
     matrices_of,
     pack,
     reach_of,
+    room_to_solve,
     rows_of,
     scale_of,
     side_by_side,
@@ -200,14 +201,13 @@ class March:
 
     def _contacts(self, contacts: Sequence[ContactBlocks], width: int) -> Contacts:
         runs, count, sizes = self.runs, self.contact_count, self.layout.sizes
-        equations = aligned(2 * count + 3, sizes.faces * width).reshape(2 * count + 3, sizes.faces, width)
         return Contacts(
             contacts[0].codes,
             np.stack([one.laws for one in contacts], axis=1).reshape(count * runs, -1),
             columns(side_by_side([one.constants.reshape(-1) for one in contacts])),
             columns(side_by_side([one.compliance[[0, 0, 1], [0, 1, 1]] for one in contacts])),
             compliance_in_blocks([one.compliance for one in contacts], sizes, width),
-            equations,
+            *room_to_solve(sizes, width),
             columns(aligned(count * at.IN_STEP, runs)),
             columns(aligned(count * at.SUMS, runs)),
         )

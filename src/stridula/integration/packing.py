@@ -10,6 +10,7 @@ from numba.core import config
 
 from .._kernels import layout as at
 from .._kernels.block_rows import AMPLITUDE, COMPLIANCE, CONTACTS, NUMBER, WAVE_ROWS
+from .._kernels.direct import FURTHER_ROWS, SAVED
 from .._kernels.parts import Sizes
 from .._kernels.turning import DRAG, TURN_ROWS
 from .._kernels.vectors import LANES
@@ -373,6 +374,15 @@ def compliance_in_blocks(compliances: Sequence[Array], sizes: Sizes, width: int)
         for first in (COMPLIANCE, COMPLIANCE + size):
             out[first + np.arange(size)[None, :], block[:, None], (lane + run)[:, None]] = compliance
     return out
+
+
+def room_to_solve(sizes: Sizes, width: int) -> tuple[Array, Array]:
+    """Return room for the system of the forces of all contacts, shape (rows, blocks, width), and for places in it."""
+    rows = 2 * sizes.contacts + FURTHER_ROWS + sizes.per_block
+    out = aligned(rows, sizes.faces * width).reshape(rows, sizes.faces, width)
+    if sizes.faces and sizes.per_block > 1:
+        out[SAVED - sizes.per_block : SAVED, 0] = np.tri(width, k=-1).T[::-1]
+    return out, np.zeros(rows, dtype=np.int64)
 
 
 def turns_of(where: Layout, bodies: Sequence[Sequence[TurningBlocks]], width: int) -> Array:
