@@ -152,9 +152,23 @@ def draw_status(axes: Axes, run: xr.Dataset, name: str) -> None:
 
 
 def draw_contact(above: Axes, below: Axes, run: xr.Dataset) -> list[Line2D]:
-    """Draw normal force and status under a film, and return the lines that say where in time it is."""
-    draw_line(above, run, "normal_force")
-    draw_status(below, run, "status")
+    """Draw forces and status under a film, and return the lines that say where in time it is.
+
+    Of several contacts there are the forces of all together and the mean of their shares. Tangential forces in space,
+    which have directions of their own, are left out.
+    """
+    forces = run[[name for name in ("normal_force", "tangential_force") if "tangent" not in run[name].dims]]
+    shown = run[["status_share"]].assign(force=forces.to_array("force_name", "force").assign_attrs(units="N"))
+    if "contact" in shown.dims:
+        shown = xr.Dataset(
+            {
+                "force": shown["force"].sum("contact", keep_attrs=True),
+                "status_share": shown["status_share"].mean("contact"),
+            }
+        )
+    shown["force_name"] = [str(name).removesuffix("_force") for name in shown["force_name"].values]
+    draw_line(above, shown.transpose("time", "force_name", ...), "force")
+    draw_status(below, shown, "status")
     first, last = run["time"].values[[0, -1]]
     cursors = []
     for axes in (above, below):
