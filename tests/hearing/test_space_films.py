@@ -13,7 +13,7 @@ from PIL import Image
 import stridula as st
 from stridula import plot
 from stridula.bodies.drawn_surfaces import drawn_of, drawn_table
-from stridula.plot import mode_films
+from stridula.plot import mode_films, space_films
 from stridula.plot.colours import STATUS_COLOURS
 from stridula.plot.motion import ModalMotion, Timing, motion_of
 from stridula.plot.scenes import VIEW, Scene, surfaces_of
@@ -110,6 +110,22 @@ def test_colours_are_velocities_out_of_the_surface():
     sinking.show(0)
     red, _, blue, _ = sinking.sides.get_facecolor().T
     assert np.count_nonzero(blue > 2.0 * red) == np.count_nonzero(top)
+
+
+@pytest.mark.parametrize(
+    ("speed", "unit"), [(-12.3456, "m/s"), (0.123456, "mm/s"), (0.001234, "mm/s"), (2.3e-11, "nm/s")]
+)
+def test_the_scale_of_colours_is_in_the_picture(speed, unit):
+    figure = Figure(figsize=(9.6, 6.0), dpi=100)
+    scene = still_scene(block(), (0.0, speed, 0.0))
+    axes = figure.add_axes(space_films.COLOUR_BAR)
+    scene._figure = figure
+    scene.colour_bar(axes, scene.largest_velocity)
+    figure.draw_without_rendering()
+    assert axes.get_ylabel() == f"velocity out of the surface [{unit}]"
+    assert axes.yaxis.label.get_window_extent().x1 < 960 - 5
+    size = {"m/s": 1.0, "mm/s": 1e-3, "nm/s": 1e-9}[unit]
+    assert axes.get_ylim()[1] * size == pytest.approx(abs(speed))
 
 
 def test_departures_from_the_mean_are_exaggerated():
@@ -223,6 +239,21 @@ def test_rigid_bodies_are_hulls_of_their_points_or_balls(points):
     np.testing.assert_allclose(rigid.shapes_at(np.array([rigid.offset(point)]))[0], rigid.trace(point), atol=1e-15)
     turned = rigid.modal_coordinates([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
     np.testing.assert_allclose(surface.shapes @ turned, np.cross([0.0, 0.0, 1.0], apart), atol=1e-12)
+
+
+def test_rigid_bodies_are_where_other_rigid_bodies_have_them():
+    """The last one hangs on the middle one, which is named later among the connections."""
+    middle = st.RigidBody(0.2, 1e-4, points={"end": (0.03, 0.0, 0.0)}, name="middle")
+    last = st.RigidBody(0.1, name="last")
+    body = block()
+    springs = [
+        st.Spring(last.centre, middle.at("end"), stiffness=1e3),
+        st.Spring(middle.centre, body.at((0.04, 0.01, 0.02)), stiffness=1e4),
+    ]
+    found = surfaces_of(st.System(on_plane(body).contacts[0], connections=springs), np.zeros(3))
+    centres = {one.name: one.surface.place.mean(axis=0) for one in found}
+    np.testing.assert_allclose(centres["middle"], [0.04, 0.01, 0.02], atol=1e-4)
+    np.testing.assert_allclose(centres["last"], [0.07, 0.01, 0.02], atol=1e-4)
 
 
 def test_rigid_bodies_in_no_known_place_are_not_drawn():

@@ -55,8 +55,8 @@ def animate(
 
     Of a system in space one sees the surfaces of its meshed bodies and bodies of revolution in perspective, coloured by
     the velocity out of them, and its contact points by their status. What departs from the mean over the window is
-    exaggerated. Rigid bodies that touch them, or are joined to them, are hulls of their points, or small balls; others
-    are not drawn.
+    exaggerated. Rigid bodies that touch them, or are joined to them, also by way of others, are hulls of their points,
+    or small balls; others are not drawn.
 
     Parameters
     ----------

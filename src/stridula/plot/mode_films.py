@@ -110,8 +110,8 @@ class _InSpace:
         self.scene = Scene(self.figure, SCENE, system, motion, 1.0, view)
         largest = self.scene.largest_velocity or 1.0
         self.scene.motion = replace(motion, velocity={name: v / largest for name, v in motion.velocity.items()})
-        label = "velocity out of the surface over the largest [1]"
-        self.scene.colour_bar(self.figure.add_axes(COLOUR_BAR), 1.0, label)
+        words = "velocity out of the surface over the largest"
+        self.scene.colour_bar(self.figure.add_axes(COLOUR_BAR), 1.0, words, "1")
         self.show(0)
         self.scene.fill()
 

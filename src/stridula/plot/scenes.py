@@ -27,6 +27,8 @@ from .rigid_surfaces import place_of, rigid_surfaces
 # Elevation above the plane across y and azimuth from z towards x: 30 and 35 degrees [rad].
 VIEW = (np.pi / 6.0, 7.0 * np.pi / 36.0)
 VELOCITIES = "RdBu_r"
+# Of units of velocity, and what they stand for.
+PREFIXES = (("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9))
 # Darkest a side that turns away from the light gets.
 DARK = 0.72
 # Cosine between an outward normal and the direction of the eye below which a side is not seen, perspective included.
@@ -123,10 +125,15 @@ class Scene:
         """Largest velocity across the surfaces that are seen, of all frames [m/s]."""
         return max(float(np.abs(self._velocities(frame)).max()) for frame in range(self.motion.frames))
 
-    def colour_bar(self, axes: Axes, largest: float, label: str = "velocity out of the surface [m/s]") -> None:
-        """Have colours go up to a velocity, and say so."""
-        self.scale = Normalize(-largest or -1.0, largest or 1.0)
-        self._figure.colorbar(ScalarMappable(self.scale, VELOCITIES), cax=axes, label=label)
+    def colour_bar(
+        self, axes: Axes, largest: float, words: str = "velocity out of the surface", unit: str = "m/s"
+    ) -> None:
+        """Have colours go up to a velocity, and say so, with a prefix to its unit that leaves short numbers."""
+        largest = largest or 1.0
+        self.scale = Normalize(-largest, largest)
+        prefix, size = next((one for one in PREFIXES if largest >= one[1]), PREFIXES[-1])
+        shown = ScalarMappable(Normalize(-largest / size, largest / size), VELOCITIES)
+        self._figure.colorbar(shown, cax=axes).set_label(f"{words} [{prefix}{unit}]", fontsize=9)
         axes.tick_params(labelsize=8)
 
     def fill(self) -> None:
