@@ -13,11 +13,11 @@ from PIL import Image
 import stridula as st
 from stridula import plot
 from stridula.bodies.drawn_surfaces import drawn_of, drawn_table
-from stridula.plot import mode_films
+from stridula.plot import mode_films, space_films
 from stridula.plot.colours import STATUS_COLOURS
+from stridula.plot.motion import ModalMotion, Timing, motion_of
 from stridula.plot.scenes import VIEW, Scene, surfaces_of
 from stridula.plot.space_films import SpacePicture
-from stridula.plot.space_motion import ModalMotion, space_motion_of
 from stridula.records import provenance
 from stridula.records.variables import STATUS_WORDS
 
@@ -35,7 +35,7 @@ def rig():
 @pytest.fixture(scope="module")
 def motion(rig):
     """Return its motion over 2 ms that hold every status."""
-    return space_motion_of(rig.system, 0.018, 0.002, FRAME, rig.scheme, rig.step)
+    return motion_of(rig.system, (0.018, 0.002), FRAME, Timing(rig.scheme, rig.step), velocities=True)
 
 
 def block(**options):
@@ -58,7 +58,7 @@ def wheel():
 @pytest.mark.parametrize("body", [block(), wheel(), st.SolidBody.block((0.1, 0.1, 0.1), (1, 2, 3), STEEL, linear=True)])
 def test_a_surface_is_closed_and_its_normals_point_out(body):
     """By the theorem of Gauss it then holds the volume of the body."""
-    found = body.drawn_surface()
+    found = body.drawn.swept
     corners = found.place[found.polygons]
     apart = corners - corners[:, :1]
     vectors = 0.5 * np.cross(apart, np.roll(apart, -1, axis=1)).sum(axis=1)
@@ -72,7 +72,7 @@ def test_a_surface_is_closed_and_its_normals_point_out(body):
     ("body", "positions"), [(wheel(), [(0.08, 0.0, 0.01), (0.05, np.pi, 0.0)]), (block(), [(0.02, 0.01, 0.0)])]
 )
 def test_corners_move_as_points_of_the_body_do(body, positions):
-    found = body.drawn_surface()
+    found = body.drawn.swept
     for position in positions:
         place = body.place(position)
         corner = int(np.linalg.norm(found.place - place, axis=1).argmin())
@@ -110,6 +110,22 @@ def test_colours_are_velocities_out_of_the_surface():
     sinking.show(0)
     red, _, blue, _ = sinking.sides.get_facecolor().T
     assert np.count_nonzero(blue > 2.0 * red) == np.count_nonzero(top)
+
+
+@pytest.mark.parametrize(
+    ("speed", "unit"), [(-12.3456, "m/s"), (0.123456, "mm/s"), (0.001234, "mm/s"), (2.3e-11, "nm/s")]
+)
+def test_the_scale_of_colours_is_in_the_picture(speed, unit):
+    figure = Figure(figsize=(9.6, 6.0), dpi=100)
+    scene = still_scene(block(), (0.0, speed, 0.0))
+    axes = figure.add_axes(space_films.COLOUR_BAR)
+    scene._figure = figure
+    scene.colour_bar(axes, scene.largest_velocity)
+    figure.draw_without_rendering()
+    assert axes.get_ylabel() == f"velocity out of the surface [{unit}]"
+    assert axes.yaxis.label.get_window_extent().x1 < 960 - 5
+    size = {"m/s": 1.0, "mm/s": 1e-3, "nm/s": 1e-9}[unit]
+    assert axes.get_ylim()[1] * size == pytest.approx(abs(speed))
 
 
 def test_departures_from_the_mean_are_exaggerated():
@@ -225,6 +241,21 @@ def test_rigid_bodies_are_hulls_of_their_points_or_balls(points):
     np.testing.assert_allclose(surface.shapes @ turned, np.cross([0.0, 0.0, 1.0], apart), atol=1e-12)
 
 
+def test_rigid_bodies_are_where_other_rigid_bodies_have_them():
+    """The last one hangs on the middle one, which is named later among the connections."""
+    middle = st.RigidBody(0.2, 1e-4, points={"end": (0.03, 0.0, 0.0)}, name="middle")
+    last = st.RigidBody(0.1, name="last")
+    body = block()
+    springs = [
+        st.Spring(last.centre, middle.at("end"), stiffness=1e3),
+        st.Spring(middle.centre, body.at((0.04, 0.01, 0.02)), stiffness=1e4),
+    ]
+    found = surfaces_of(st.System(on_plane(body).contacts[0], connections=springs), np.zeros(3))
+    centres = {one.name: one.surface.place.mean(axis=0) for one in found}
+    np.testing.assert_allclose(centres["middle"], [0.04, 0.01, 0.02], atol=1e-4)
+    np.testing.assert_allclose(centres["last"], [0.07, 0.01, 0.02], atol=1e-4)
+
+
 def test_rigid_bodies_in_no_known_place_are_not_drawn():
     body = block()
     touching = st.PointContact(
@@ -288,7 +319,7 @@ def test_a_body_by_its_modes_is_drawn_as_the_one_they_are_of(body):
     given = {"angular_frequency": modes.angular_frequency[held], "residual": int(modes.massless.sum())}
     kept = drawn_of(drawn_table(body.drawn), modes.count)
     copy = st.ModalBody(points={"tip": rows}, drawn=kept, places={"tip": (1.0, 2.0, 3.0)}, **given)
-    found, expected = copy.drawn_surface(), body.drawn_surface()
+    found, expected = copy.drawn.swept, body.drawn.swept
     np.testing.assert_array_equal(found.polygons, expected.polygons)
     np.testing.assert_allclose(found.place, expected.place, atol=1e-15)
     np.testing.assert_allclose(found.shapes, expected.shapes, atol=1e-6 * np.abs(expected.shapes).max())
@@ -297,8 +328,7 @@ def test_a_body_by_its_modes_is_drawn_as_the_one_they_are_of(body):
     bare = st.ModalBody(points={"tip": rows}, **given)
     assert bare != copy
     assert bare.place("tip") is None
-    with pytest.raises(ValueError, match=r"^drawn must be given to be seen"):
-        bare.drawn_surface()
+    assert not bare.is_drawn
 
 
 @pytest.mark.parametrize(
@@ -374,7 +404,10 @@ def test_a_closed_contact_stays_closed_in_a_mode_of_beams(monkeypatch, tmp_path)
     system = st.load_scenario("squeal").system
     theory = st.sliding_stability(system, velocity=0.1, status="sliding")
     picture, _ = filmed(monkeypatch, system, theory, 3, tmp_path / "a.gif")
-    slider, track = picture.places
+    places = {
+        line.name: one[:, : line.count] for line, one in zip(picture.scene.lines, picture.scene.places, strict=True)
+    }
+    slider, track = places["slider"], places["track"]
     below = [np.interp(tip[0, 0], line[:, 0], line[:, 1]) for tip, line in zip(slider, track, strict=True)]
     moved = np.abs(track[:, :, 1]).max()
     assert moved > 0.0
@@ -382,9 +415,9 @@ def test_a_closed_contact_stays_closed_in_a_mode_of_beams(monkeypatch, tmp_path)
     under = [np.interp(at_rest, line[:, 0], line[:, 1]) for line in track]
     np.testing.assert_allclose(slider[:, 0, 1], under, atol=0.02 * np.ptp(slider[:, :, 1]))
     assert len(below) == 32
-    line = picture.lines[0]
     picture.show(5)
-    np.testing.assert_allclose(line.get_xydata(), slider[5])
+    for line, drawn in zip(picture.scene.lines, picture.scene.bodies, strict=True):
+        np.testing.assert_allclose(drawn.get_xydata(), places[line.name][5])
 
 
 def test_a_mode_film_is_written(rig, tmp_path):

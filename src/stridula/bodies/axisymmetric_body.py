@@ -17,7 +17,7 @@ from ..histories import HISTORIES, Constant, History
 from .body_surfaces import HIGHEST, RingSurface, largest_part
 from .circular_path import CircularPath
 from .damping import DampingLaw, checked_damping, damping_rates
-from .drawn_surfaces import DrawnRings, DrawnSurface
+from .drawn_surfaces import DrawnRings
 from .long_searches import search_told
 from .modes import BodyPoint, Modes, hashed_once
 from .ordinary import NotOrdinary, of_ordinary_size
@@ -287,13 +287,9 @@ class AxisymmetricBody:
         """Return the outer surface as rings, fine enough for sound up to a frequency [Hz], and how modes move it."""
         return _surface(self, largest_part(frequency))
 
-    def drawn_surface(self) -> DrawnSurface:
-        """Return its surface: the outline of its profile round the axis, four places or more for each wave."""
-        return self.drawn.swept
-
     @property
     def drawn(self) -> DrawnRings:
-        """Its surface as the outline of its profile and how modes move it."""
+        """Its surface as it is drawn: the outline of its profile and how modes move it."""
         solution, mesh = _solution(self), self.mesh
         used, sides = np.unique(mesh.outline, return_inverse=True)
         shapes = []

@@ -14,6 +14,7 @@ from ..arrays import Array
 from ..checks import ArgumentError, instance, within
 from ..declared import Angle, Choice, Count, Frequency, Length, Name, Own, check_declared
 from .damping import DampingLaw, checked_damping, damping_rates
+from .drawn_lines import places_between
 from .finite_elements import (
     FIXED_BY_SUPPORT,
     X,
@@ -114,6 +115,11 @@ class FiniteElementBeam:
     def ends(self) -> tuple[float, float]:
         """Distances of its two ends from the first [m]."""
         return 0.0, self.length
+
+    @property
+    def drawn_places(self) -> Array:
+        """Distances from the tip at which it is drawn [m], those of its nodes and of the middles between them."""
+        return places_between(self.ends, 2 * self.elements)
 
     @property
     def posture(self) -> str:

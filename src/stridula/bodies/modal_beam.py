@@ -12,6 +12,7 @@ import numpy as np
 from ..checks import ArgumentError, at_least, instance, within
 from ..declared import Count, CountFrom0, Frequency, Length, Name, Own, Tension, check_declared
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
+from .drawn_lines import places_between
 from .modes import Array, BodyPoint, Modes, hashed_once
 from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .paths import Path, along_one_angle
@@ -94,6 +95,11 @@ class ModalBeam:
     def ends(self) -> tuple[float, float]:
         """Abscissas of its two ends [m]."""
         return 0.0, self.length
+
+    @property
+    def drawn_places(self) -> Array:
+        """Abscissas at which it is drawn [m], four for each half-wave of bending."""
+        return places_between(self.ends, 4 * self.harmonics[0])
 
     @property
     def dimensions(self) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..checks import ArgumentError, at_least, at_most, count, finite, instance, positive, within
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
+from .drawn_lines import places_between
 from .modes import Array, BodyPoint, Modes
 from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .paths import Path, Waves, along_one_angle
@@ -177,6 +178,20 @@ class ModalPlate:
     def ends(self) -> tuple[float, float]:
         """Abscissas at which the line enters and leaves the plate [m]."""
         return _ends(self, self.track_line)
+
+    @property
+    def drawn_places(self) -> Array:
+        """Abscissas of the line at which it is drawn, as a cut along it [m], four for each half-wave of bending."""
+        # Along the line a product of two sines has the sum of their wavenumbers.
+        highest = float((self.wavenumbers @ np.abs(self.track_line.tangent)).max())
+        low, high = self.ends
+        return places_between(self.ends, math.ceil(4.0 * highest * (high - low) / math.pi))
+
+    def abscissa(self, position: float | tuple[float, float]) -> float:
+        """Return the abscissa of the place on the line that is nearest to a point [m]."""
+        if not isinstance(position, tuple):
+            return position
+        return float(np.subtract(position, self.track_line.origin) @ np.array(self.track_line.tangent))
 
     @property
     def axes(self) -> Array:

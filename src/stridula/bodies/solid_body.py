@@ -284,13 +284,9 @@ class SolidBody(NamedPoints):
             return np.asarray(face_mean(self.mesh, position) @ self.mesh.nodes)
         return np.array(place_of("position", position))
 
-    def drawn_surface(self) -> DrawnSurface:
-        """Return its surface: the faces of elements that no other one shares."""
-        return self.drawn
-
     @property
     def drawn(self) -> DrawnSurface:
-        """Its surface, and how modes move it."""
+        """Its surface as it is drawn: the faces of elements that no other one shares, and how modes move them."""
         return surface_of_mesh(self.mesh, self.shapes)
 
     def modal_coordinates(self, vector: Any) -> Array:

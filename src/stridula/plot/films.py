@@ -1,4 +1,4 @@
-"""Films of a slider, its track and their contact, in slow motion."""
+"""Films of bodies and their contacts, in slow motion."""
 
 from __future__ import annotations
 
@@ -6,27 +6,24 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..arrays import Array
-from ..checks import positive
+from ..checks import instance, positive
 from ..integration.schemes import Scheme
 from ..records.variables import STATUS_WORDS
 from ..system import System
-from .colours import LINE, STATUS_COLOURS
-from .motion import SAMPLE_RATE, Motion, motion_of
-from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Film, rounded, still, write_film, writer_for
-from .scenes import VIEW
-from .space_films import animate_in_space
-from .space_motion import has_surfaces
+from .lines import lines_of
+from .motion import SAMPLE_RATE, Timing, motion_of
+from .plane_motion import PlaneMotion, plane_motion
+from .plane_scenes import PlaneScene
+from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Drawn, Film, rounded, still, write_film, writer_for
+from .scenes import VIEW, checked_view, has_surfaces
+from .space_films import SpacePicture, exaggeration_of
 from .timelines import draw_contact
 
 DURATION, SLOWDOWN = 0.01, 1000.0
 # Without a number, the largest vibration is drawn as this share of the bodies' extent.
 SHARE = 0.1
-# Thickness of the bodies' lines [points].
-THICK = 2.5
 
 
 def animate(
@@ -44,24 +41,27 @@ def animate(
     title: str = "",
     progress: Callable[[int, int], None] = still,
 ) -> Film:
-    """Film a slider and its track in slow motion, the contact point coloured by its status.
+    """Film bodies in slow motion, the points of contact coloured by their status.
 
-    The system is simulated from its start to the end of the window, with displacement probes along both bodies. With
+    The system is simulated from its start to the end of the window, with probes of all modes of its bodies. With
     the scheme and the step of a record the film shows that very run. What is faster than the frames is smoothed away,
-    and never seen as something slower. The mean shape of the track, the slide of the tip and the mean bend of the
-    slider are to scale; the vibration about them is exaggerated, the gap with it. Motion of the track along itself is
-    not drawn. Of a plate one sees the cut along the line of contact.
+    and never seen as something slower.
+
+    Of a system in the plane one sees its bodies as lines: the mean shape of each, and its slide along a track, are to
+    scale; the vibration about them is exaggerated, the gap with it. Motion of a track along itself is not drawn. Of a
+    plate one sees the cut along the line of contact, of bodies that are known at points only these points. A pale band
+    is what a body without a tip sweeps over in the window. A line with strokes is a rigid track, or the side of the tip
+    that slides past a point with a ``surface_velocity``: what sticks moves along with its strokes.
 
     Of a system in space one sees the surfaces of its meshed bodies and bodies of revolution in perspective, coloured by
     the velocity out of them, and its contact points by their status. What departs from the mean over the window is
-    exaggerated. Rigid bodies that touch them, or are joined to them, are hulls of their points, or small balls; others
-    are not drawn.
+    exaggerated. Rigid bodies that touch them, or are joined to them, also by way of others, are hulls of their points,
+    or small balls; others are not drawn.
 
     Parameters
     ----------
     system : System
-        One contact of a finite-element beam on a modal beam, a modal plate or a rigid track; or any system with a
-        `SolidBody` or an `AxisymmetricBody`.
+        Any system in the plane, or with a `SolidBody` or an `AxisymmetricBody`.
     out : str or Path
         The file, ``.mp4`` or ``.gif``, written whole or not at all. MP4 takes an encoder: ``pip install
         .[video]`` in the sources, or an ffmpeg on the path.
@@ -98,29 +98,36 @@ def animate(
     OSError
         If the file cannot be written.
     """
+    instance("system", system, System)
     positive("slowdown", slowdown)
     if exaggeration is not None:
         positive("exaggeration", exaggeration)
-    if has_surfaces(system):
-        timing, window = (scheme, step, sample_rate), (start, duration)
-        return animate_in_space(system, out, window, slowdown, exaggeration, view, timing, title, progress)
+    seen, in_space = checked_view(view), has_surfaces(system)
+    if not in_space:
+        lines_of(system)
     writer = writer_for(out)
-    frame = 1.0 / (FRAMES_PER_SECOND * slowdown)
-    motion = motion_of(system, start, duration, frame, scheme, step, sample_rate)
-    times = rounded(SHARE * motion.extent / motion.largest) if exaggeration is None else exaggeration
+    frame, timing = 1.0 / (FRAMES_PER_SECOND * slowdown), Timing(scheme, step, sample_rate)
+    motion = motion_of(system, (start, duration), frame, timing, velocities=in_space)
     interval = float(motion.run.attrs["sample_interval"])
     slowed = 1.0 / (FRAMES_PER_SECOND * interval)
-    picture = Picture(motion, times, slowed, title)
+    picture: Drawn
+    if in_space:
+        times = exaggeration_of(system, motion.modes, exaggeration, seen)
+        picture = SpacePicture(system, motion, times, slowed, title, seen)
+    else:
+        flat = plane_motion(system, motion)
+        times = exaggeration or (rounded(SHARE * flat.extent / flat.largest) if flat.largest > 0.0 else 1.0)
+        picture = Picture(flat, times, slowed, title)
     write_film(picture, out, writer, progress)
     return Film(str(out), picture.frames, start, picture.frames * interval, slowed, times)
 
 
 class Picture:
-    """The picture, to be drawn frame by frame.
+    """The picture of a system in the plane, to be drawn frame by frame.
 
     Parameters
     ----------
-    motion : Motion
+    motion : PlaneMotion
         What to draw.
     exaggeration, slowdown : float
         What is said of them, and done with the first.
@@ -131,18 +138,24 @@ class Picture:
     ----------
     figure : matplotlib.figure.Figure
         The figure.
+    scene : PlaneScene
+        The bodies.
     frames : int
         Number of frames.
     """
 
-    def __init__(self, motion: Motion, exaggeration: float, slowdown: float, title: str) -> None:
+    def __init__(self, motion: PlaneMotion, exaggeration: float, slowdown: float, title: str) -> None:
         self.run = motion.run
         self.scales = f"slowed down {slowdown:.6g} times, vibration drawn {exaggeration:.6g} times"
-        self.slider, self.track = motion.drawn(exaggeration)
-        self.frames = len(self.slider)
         self.figure = Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI, layout="constrained")
         bodies, force, status = self.figure.subplots(3, 1, height_ratios=[4.2, 1.0, 0.35])
-        self._draw_bodies(bodies, "x along the cut through the plate [m]" if motion.is_cut else "x [m]")
+        drawn = motion.drawn(exaggeration)
+        self.scene = PlaneScene(bodies, motion.lines, motion.touches, drawn, motion.surfaces, exaggeration)
+        self.frames = self.scene.frames
+        if motion.largest > 0.0:
+            self.scene.draw_scale(bodies, rounded(motion.largest))
+        # On two lines from one edge: side by side they would run into each other above a tall picture.
+        self.words = bodies.set_title("", fontsize=9, loc="left")
         self.cursors = draw_contact(force, status, self.run)
         self.figure.suptitle(title, fontsize=11)
         self.show(0)
@@ -152,38 +165,11 @@ class Picture:
 
     def show(self, frame: int) -> None:
         """Draw one frame."""
-        self.lines[0].set_data(*self.track[frame].T)
-        self.lines[1].set_data(*self.slider[frame].T)
-        word = STATUS_WORDS[int(self.run["status"].values[frame])]
-        self.point.set_data(*self.slider[frame, :1].T)
-        self.point.set_markerfacecolor(STATUS_COLOURS[word])
+        status = np.atleast_1d(self.run["status"].values[frame])
+        self.scene.show(frame, status)
         time = float(self.run["time"].values[frame])
         for cursor in self.cursors:
             cursor.set_xdata([time, time])
-        self.words.set_text(f"{self.scales}\nt = {1e3 * time:.3f} ms, {word}")
-
-    def _draw_bodies(self, axes: Axes, label: str) -> None:
-        self.lines = [
-            axes.plot([], [], color=colour, linewidth=THICK, solid_capstyle="round", zorder=zorder)[0]
-            for colour, zorder in (("0.45", 1), (LINE, 2))
-        ]
-        self.point = axes.plot(
-            [], [], marker="o", markersize=8, markeredgecolor="black", markeredgewidth=0.8, zorder=3
-        )[0]
-        low, high = limits_of([self.slider, self.track])
-        axes.set_xlim(low[0], high[0])
-        axes.set_ylim(low[1], high[1])
-        axes.set_aspect("equal")
-        axes.set_xlabel(label, fontsize=8)
-        axes.set_ylabel("y [m]", fontsize=8)
-        axes.tick_params(labelsize=8)
-        # On two lines from one edge: side by side they would run into each other above a tall picture.
-        self.words = axes.set_title("", fontsize=9, loc="left")
-
-
-def limits_of(places: list[Array]) -> tuple[Array, Array]:
-    """Return the least and the largest x and y of what is drawn, with a margin."""
-    low = np.min([place.min(axis=(0, 1)) for place in places], axis=0)
-    high = np.max([place.max(axis=(0, 1)) for place in places], axis=0)
-    margin = 0.04 * float((high - low).max())
-    return low - margin, high + margin
+        # Of several contacts the marks say it.
+        word = f", {STATUS_WORDS[int(status[0])]}" if status.size == 1 else ""
+        self.words.set_text(f"{self.scales}\nt = {1e3 * time:.3f} ms{word}")

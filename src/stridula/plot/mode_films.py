@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,12 +14,13 @@ from ..arrays import Array
 from ..assembly import assemble
 from ..checks import ArgumentError, count, instance
 from ..system import System
-from .colours import LINE
-from .films import THICK, limits_of
-from .motion import body_places, pair_of
+from .lines import lines_of
+from .motion import ModalMotion
+from .plane_motion import extent_of as flat_extent_of
+from .plane_motion import surfaces_slid_on
+from .plane_scenes import PlaneScene
 from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Drawn, Film, still, write_film, writer_for
-from .scenes import VIEW, Scene, checked_view, extent_of, surfaces_of
-from .space_motion import ModalMotion, has_surfaces
+from .scenes import VIEW, Scene, checked_view, extent_of, has_surfaces, surfaces_of
 
 # Frames of a period.
 FRAMES = 32
@@ -46,8 +46,7 @@ def animate_mode(
     Parameters
     ----------
     system : System
-        The system: with a `SolidBody` or an `AxisymmetricBody`, or one contact of a finite-element beam on a modal
-        beam, a modal plate or a rigid track.
+        The system, of a kind that `animate` films.
     theory : xarray.Dataset
         What `sliding_stability` returned for the system.
     number : int
@@ -111,8 +110,8 @@ class _InSpace:
         self.scene = Scene(self.figure, SCENE, system, motion, 1.0, view)
         largest = self.scene.largest_velocity or 1.0
         self.scene.motion = replace(motion, velocity={name: v / largest for name, v in motion.velocity.items()})
-        label = "velocity out of the surface over the largest [1]"
-        self.scene.colour_bar(self.figure.add_axes(COLOUR_BAR), 1.0, label)
+        words = "velocity out of the surface over the largest"
+        self.scene.colour_bar(self.figure.add_axes(COLOUR_BAR), 1.0, words, "1")
         self.show(0)
         self.scene.fill()
 
@@ -122,40 +121,26 @@ class _InSpace:
 
 
 class _InPlane:
-    """A mode of a slider and its track, frame by frame."""
+    """A mode of a system in the plane, frame by frame."""
 
     def __init__(self, system: System, shapes: dict[str, Array]) -> None:
-        slider, track = pair_of(system)
-        contact = system.contacts[0]
-        normal, tangent = contact.frame
-        bodies: list[Any] = [slider] if contact.rigid_track is track else [slider, track]
-        along = [body_places(body) for body in bodies]
-        tip = contact.at * tangent + contact.gap * normal
-        rest = [tip + along[0][:, None] * slider.axes[0]]
-        rest += [np.stack([one, np.zeros_like(one)], axis=1) for one in along[1:]]
-        moved = [_lines(body, places, shapes, system) for body, places in zip(bodies, along, strict=True)]
-        extent = float(np.ptp(np.concatenate(rest), axis=0).max())
-        factor = SHARE * extent / float(max(np.abs(one).max() for one in moved))
-        self.places = [start + turned(factor * one) for start, one in zip(rest, moved, strict=True)]
+        lines, touches = lines_of(system)
+        moved = [np.einsum("pim,m->pi", line.shapes, shapes[line.name]) for line in lines]
+        rest = [np.tile(line.place, (FRAMES, 1, 1)) for line in lines]
+        factor = SHARE * flat_extent_of(rest) / (max(float(np.abs(one).max()) for one in moved) or 1.0)
+        apart = [turned(factor * one) for one in moved]
+        surfaces = surfaces_slid_on(lines, touches, rest, apart, np.zeros(FRAMES))
         self.frames, self.figure = FRAMES, Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI)
         axes = self.figure.add_axes((0.09, 0.1, 0.88, 0.78))
-        for one in rest:
-            axes.plot(*one.T, color="0.8", linewidth=1.0)
-        self.lines = [axes.plot([], [], color=colour, linewidth=THICK)[0] for colour in (LINE, "0.45")[: len(rest)]]
-        low, high = limits_of(self.places)
-        axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", xlabel="x [m]", ylabel="y [m]")
+        for line in lines:
+            axes.plot(*line.place[: line.count].T, color="0.8", linewidth=1.0)
+        places = [one + moved for one, moved in zip(rest, apart, strict=True)]
+        self.scene = PlaneScene(axes, lines, touches, places, surfaces)
         self.show(0)
 
     def show(self, frame: int) -> None:
         """Draw one frame."""
-        for line, places in zip(self.lines, self.places, strict=True):
-            line.set_data(*places[frame].T)
-
-
-def _lines(body: Any, along: Array, shapes: dict[str, Array], system: System) -> Array:
-    """Return the complex displacements of places along a body, shape (places, 2)."""
-    held = system.is_held(body)
-    return np.array([body.trace(float(s), held)[:2] @ shapes[system.body_name(body)] for s in along])
+        self.scene.show(frame)
 
 
 def _shapes(system: System, theory: xr.Dataset, number: int) -> dict[str, Array]:

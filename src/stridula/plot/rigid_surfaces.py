@@ -29,6 +29,8 @@ def place_of(point: BodyPoint) -> Array | None:
 def rigid_surfaces(system: System, radius: float) -> dict[Any, DrawnSurface]:
     """Return the surfaces of the rigid bodies that touch, or are joined to, a point whose place is known.
 
+    Those of other rigid bodies with a place, too, one after the other.
+
     Parameters
     ----------
     system : System
@@ -37,15 +39,21 @@ def rigid_surfaces(system: System, radius: float) -> dict[Any, DrawnSurface]:
         Radius of the balls [m].
     """
     found: dict[Any, DrawnSurface] = {}
-    for ours, other, away in _joined(system):
+    centres: dict[Any, Array] = {}
+
+    def known(point: BodyPoint) -> Array | None:
+        body: Any = point.body
+        return centres[body] + body.offset(point.position) if body in centres else place_of(point)
+
+    left = [one for one in _joined(system) if hasattr(one[0].body, "shapes_at")]
+    while ready := [one for one in left if one[0].body not in centres and known(one[1]) is not None]:
+        ours, other, away = ready[0]
         body: Any = ours.body
-        place = place_of(other)
-        if place is not None and body not in found and hasattr(body, "shapes_at"):
-            points = np.array(list(body.points.values())).reshape(-1, 3)
-            # A ball touches the other body instead of sticking in it.
-            polygons, offsets = _hull(points, radius * (_ball() + away))
-            centre = place - body.offset(ours.position)
-            found[body] = DrawnSurface(centre + offsets, polygons, body.shapes_at(offsets))
+        points = np.array(list(body.points.values())).reshape(-1, 3)
+        # A ball touches the other body instead of sticking in it.
+        polygons, offsets = _hull(points, radius * (_ball() + away))
+        centres[body] = np.asarray(known(other)) - body.offset(ours.position)
+        found[body] = DrawnSurface(centres[body] + offsets, polygons, body.shapes_at(offsets))
     return found
 
 

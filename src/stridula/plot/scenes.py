@@ -17,16 +17,18 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from ..arrays import Array
 from ..bodies import BodyPoint
 from ..bodies.drawn_surfaces import DrawnSurface
-from ..checks import STATUS_WORDS, ArgumentError, finite
+from ..checks import STATUS_WORDS, ArgumentError, finite, instance
 from ..contact import PointContact
 from ..system import System
 from .colours import STATUS_COLOURS
+from .motion import ModalMotion
 from .rigid_surfaces import place_of, rigid_surfaces
-from .space_motion import ModalMotion, is_drawn
 
 # Elevation above the plane across y and azimuth from z towards x: 30 and 35 degrees [rad].
 VIEW = (np.pi / 6.0, 7.0 * np.pi / 36.0)
 VELOCITIES = "RdBu_r"
+# Of units of velocity, and what they stand for.
+PREFIXES = (("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9))
 # Darkest a side that turns away from the light gets.
 DARK = 0.72
 # Cosine between an outward normal and the direction of the eye below which a side is not seen, perspective included.
@@ -123,10 +125,15 @@ class Scene:
         """Largest velocity across the surfaces that are seen, of all frames [m/s]."""
         return max(float(np.abs(self._velocities(frame)).max()) for frame in range(self.motion.frames))
 
-    def colour_bar(self, axes: Axes, largest: float, label: str = "velocity out of the surface [m/s]") -> None:
-        """Have colours go up to a velocity, and say so."""
-        self.scale = Normalize(-largest or -1.0, largest or 1.0)
-        self._figure.colorbar(ScalarMappable(self.scale, VELOCITIES), cax=axes, label=label)
+    def colour_bar(
+        self, axes: Axes, largest: float, words: str = "velocity out of the surface", unit: str = "m/s"
+    ) -> None:
+        """Have colours go up to a velocity, and say so, with a prefix to its unit that leaves short numbers."""
+        largest = largest or 1.0
+        self.scale = Normalize(-largest, largest)
+        prefix, size = next((one for one in PREFIXES if largest >= one[1]), PREFIXES[-1])
+        shown = ScalarMappable(Normalize(-largest / size, largest / size), VELOCITIES)
+        self._figure.colorbar(shown, cax=axes).set_label(f"{words} [{prefix}{unit}]", fontsize=9)
         axes.tick_params(labelsize=8)
 
     def fill(self) -> None:
@@ -218,10 +225,29 @@ def surfaces_of(system: System, eye: Array) -> list[_Body]:
 
     Those that have a surface, and rigid bodies that are joined to one of them.
     """
-    surfaces = {body: body.drawn_surface() for body in system.bodies if is_drawn(body)}
+    surfaces = {body: body.drawn.swept for body in system.bodies if _is_drawn(body)}
     places = np.concatenate([surface.place for surface in surfaces.values()])
     surfaces |= rigid_surfaces(system, BALL * float(np.ptp(places, axis=0).max()))
     return [_Body(system.body_name(body), surface, surface.normals @ eye > AWAY) for body, surface in surfaces.items()]
+
+
+def has_surfaces(system: System) -> bool:
+    """Return whether a system has bodies whose surface is known."""
+    instance("system", system, System)
+    return any(_is_drawn(body) for body in system.bodies)
+
+
+def check_surfaces(system: System) -> None:
+    """Raise ValueError unless a system has a body whose surface is known."""
+    if not has_surfaces(system):
+        kinds = sorted({type(body).__name__ for body in system.bodies})
+        words = "have a SolidBody or an AxisymmetricBody, whose surface is drawn"
+        raise ArgumentError("system", words, system, got=", ".join(kinds))
+
+
+def _is_drawn(body: Any) -> bool:
+    """Return whether the surface of a body is known, without making it."""
+    return hasattr(type(body), "drawn") and getattr(body, "is_drawn", True)
 
 
 def largest_departure(bodies: list[_Body], motion: ModalMotion) -> float:

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-
 import numpy as np
-import xarray as xr
 from matplotlib.figure import Figure
 
 from ..checks import positive
 from ..integration.schemes import Scheme
 from ..system import System
-from .motion import SAMPLE_RATE
-from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Film, rounded, write_film, writer_for
-from .scenes import VIEW, Scene, checked_view, extent_of, largest_departure, surfaces_of
-from .space_motion import ModalMotion, SpaceMotion, check_surfaces, space_motion_of
+from .motion import SAMPLE_RATE, ModalMotion, Motion, Timing, motion_of
+from .reels import DPI, HEIGHT, WIDTH, rounded
+from .scenes import VIEW, Scene, check_surfaces, checked_view, extent_of, largest_departure, surfaces_of
 from .timelines import draw_contact
 
 # Without a number, the largest vibration is drawn as this share of the bodies' extent.
@@ -78,36 +73,11 @@ def bodies(
     duration = min(positive("time", time), BEFORE)
     frame = min(FRAME, 0.5 * duration)
     start = max(time - duration, 0.0)
-    motion = space_motion_of(system, start, duration, frame, scheme, step, sample_rate)
+    motion = motion_of(system, (start, duration), frame, Timing(scheme, step, sample_rate), velocities=True)
     times = exaggeration_of(system, motion.modes, exaggeration, seen)
     picture = SpacePicture(system, motion, times, None, title, seen)
     picture.show(picture.frames - 1)
     return picture.figure
-
-
-def animate_in_space(
-    system: System,
-    out: str | Path,
-    window: tuple[float, float],
-    slowdown: float,
-    exaggeration: float | None,
-    view: tuple[float, float],
-    timing: tuple[Scheme | None, float | None, float],
-    title: str,
-    progress: Callable[[int, int], None],
-) -> Film:
-    """Film a system in space, see `animate`; `window` is start and duration, `timing` scheme, step and sample rate."""
-    seen = checked_view(view)
-    writer = writer_for(out)
-    frame = 1.0 / (FRAMES_PER_SECOND * slowdown)
-    scheme, step, sample_rate = timing
-    motion = space_motion_of(system, *window, frame, scheme, step, sample_rate)
-    times = exaggeration_of(system, motion.modes, exaggeration, seen)
-    interval = float(motion.run.attrs["sample_interval"])
-    slowed = 1.0 / (FRAMES_PER_SECOND * interval)
-    picture = SpacePicture(system, motion, times, slowed, title, seen)
-    write_film(picture, out, writer, progress)
-    return Film(str(out), picture.frames, window[0], picture.frames * interval, slowed, times)
 
 
 def exaggeration_of(system: System, modes: ModalMotion, given: float | None, view: tuple[float, float]) -> float:
@@ -126,7 +96,7 @@ class SpacePicture:
     ----------
     system : System
         The system.
-    motion : SpaceMotion
+    motion : Motion
         How it moves.
     exaggeration : float
         How many times larger than life vibration is drawn.
@@ -150,7 +120,7 @@ class SpacePicture:
     def __init__(
         self,
         system: System,
-        motion: SpaceMotion,
+        motion: Motion,
         exaggeration: float,
         slowdown: float | None,
         title: str,
@@ -163,7 +133,7 @@ class SpacePicture:
         self.scene = Scene(self.figure, SCENE, system, motion.modes, exaggeration, view)
         self.scene.colour_bar(self.figure.add_axes(COLOUR_BAR), self.scene.largest_velocity)
         self.words = self.figure.text(0.01, 0.98, "", fontsize=9, verticalalignment="top")
-        self.cursors = draw_contact(self.figure.add_axes(FORCE), self.figure.add_axes(STATUS), self._contacts())
+        self.cursors = draw_contact(self.figure.add_axes(FORCE), self.figure.add_axes(STATUS), self.run)
         self.figure.suptitle(title, fontsize=11)
         self.show(0)
         self.scene.fill()
@@ -175,11 +145,3 @@ class SpacePicture:
         for cursor in self.cursors:
             cursor.set_xdata([time, time])
         self.words.set_text(f"{self.scales}\nt = {1e3 * time:.3f} ms")
-
-    def _contacts(self) -> xr.Dataset:
-        """Return the normal force of all contacts together and the mean of their shares."""
-        together = self.run[["normal_force", "status_share"]]
-        if "contact" not in together.dims:
-            return together
-        force = together["normal_force"].sum("contact", keep_attrs=True)
-        return xr.Dataset({"normal_force": force, "status_share": together["status_share"].mean("contact")})

@@ -18,6 +18,8 @@ from ..records.variables import STATUS_WORDS
 from .colours import LINES, STATUS_COLOURS
 
 COLUMNS = 1600
+# Variation of a force, as a share of it, below which it counts as steady.
+STEADY = 1e-3
 
 
 def timeline(
@@ -152,9 +154,24 @@ def draw_status(axes: Axes, run: xr.Dataset, name: str) -> None:
 
 
 def draw_contact(above: Axes, below: Axes, run: xr.Dataset) -> list[Line2D]:
-    """Draw normal force and status under a film, and return the lines that say where in time it is."""
-    draw_line(above, run, "normal_force")
-    draw_status(below, run, "status")
+    """Draw forces and status under a film, and return the lines that say where in time it is.
+
+    Of several contacts there are the forces of all together and the mean of their shares. Tangential forces in space,
+    which have directions of their own, are left out.
+    """
+    names = [name for name in ("normal_force", "tangential_force") if "tangent" not in run[name].dims]
+    lines = run[names].to_array("force_name").assign_attrs(units="N")
+    share = run["status_share"]
+    if "contact" in share.dims:
+        lines, share = lines.sum("contact", keep_attrs=True), share.mean("contact")
+    name = names[0] if len(names) == 1 else "force"
+    lines["force_name"] = [one.removesuffix("_force") for one in names]
+    draw_line(above, xr.Dataset({name: lines.transpose("time", "force_name")}), name)
+    if np.ptp(lines.values) < STEADY * np.abs(lines.values).max():
+        # Magnified, what hardly varies has numbers that nobody reads.
+        above.set_ylim(*sorted((0.0, 1.2 * float(lines.mean()))))
+    shown = run[[]].assign(status_share=share)
+    draw_status(below, shown, "status")
     first, last = run["time"].values[[0, -1]]
     cursors = []
     for axes in (above, below):

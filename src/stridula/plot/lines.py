@@ -1,0 +1,185 @@
+"""Bodies in the plane as lines, or as points where no more is known of them: where they are, how modes move them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..bodies import BodyPoint
+from ..checks import ArgumentError
+from ..connections import ends
+from ..contact import PointContact
+from ..system import System
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A body in the plane as a line, or one of its points.
+
+    Attributes
+    ----------
+    name : str
+        Name of the body.
+    along : ndarray, shape (points,)
+        Abscissas of its points on the body [m]: first those of the line in their order, then others.
+    place : ndarray, shape (points, 2)
+        World places at rest [m].
+    shapes : ndarray, shape (points, 2, modes)
+        World displacement of each point for unit modes [kg^(-1/2)].
+    count : int
+        How many of the points make the line.
+    rows : mapping
+        Which of the points is at a position of the body, for those where it touches or is joined.
+    is_held : bool
+        Whether it also moves along x as its imposed velocity says.
+    is_cut : bool
+        Whether it is the cut through a plate.
+    """
+
+    name: str
+    along: Array
+    place: Array
+    shapes: Array
+    count: int
+    rows: Mapping[Any, int]
+    is_held: bool
+    is_cut: bool
+
+    def moved(self, modal: Array) -> Array:
+        """Return the displacements of the points for modes in frames, shape (frames, modes), as (frames, points, 2)."""
+        return np.einsum("pim,fm->fpi", self.shapes, modal)
+
+
+@dataclass(frozen=True, eq=False)
+class Touch:
+    """A contact between lines.
+
+    Attributes
+    ----------
+    contact : PointContact
+        The contact.
+    tip : tuple of int
+        Number of the line of its tip, and of the tip among its points.
+    touched : tuple of int or None
+        The same of the point that it touches at rest, None of a rigid track.
+    """
+
+    contact: PointContact
+    tip: tuple[int, int]
+    touched: tuple[int, int] | None
+
+
+@dataclass(frozen=True, eq=False)
+class _Joint:
+    """Two points of which the first is away from the second at rest [m]; away from the origin without a second."""
+
+    first: BodyPoint
+    second: BodyPoint | None
+    away: Array
+
+
+def lines_of(system: System) -> tuple[list[Line], list[Touch]]:
+    """Return the lines and the points of a system in the plane, and where they touch.
+
+    The track of the first contact is where it says itself, along x, all others are where contacts and connections have
+    them. Bodies that have no line are points, each where it touches another body, or is joined to one.
+
+    Raises
+    ------
+    ValueError
+        If bodies are in space.
+    """
+    if system.is_spatial:
+        kinds = sorted({type(body).__name__ for body in system.bodies if body.is_spatial})
+        words = "be in the plane, or have a SolidBody or an AxisymmetricBody, to be filmed"
+        raise ArgumentError("system", words, system, got=", ".join(kinds))
+    joints = list(_joints(system))
+    points = [point for joint in joints for point in (joint.first, joint.second) if point is not None]
+    origins = _origins(joints)
+    numbers = {thing: number for number, thing in enumerate(origins)}
+    lines = [_line(thing, origin, points, system) for thing, origin in origins.items()]
+
+    def found(point: BodyPoint) -> tuple[int, int]:
+        number = numbers[_thing(point)]
+        return number, lines[number].rows[point.position]
+
+    touches = []
+    for contact in system.contacts:
+        touched = _touched(contact)
+        touches.append(Touch(contact, found(contact.tip), None if touched is None else found(touched)))
+    return lines, touches
+
+
+def _touched(contact: PointContact) -> BodyPoint | None:
+    """Return the point that a contact touches at rest, None of a rigid track."""
+    return contact.touched_point if contact.path_body is None else BodyPoint(contact.path_body, contact.at)
+
+
+def _joints(system: System) -> Iterator[_Joint]:
+    for contact in system.contacts:
+        normal, tangent = contact.frame
+        along = 0.0 if contact.rigid_track is None else contact.at
+        yield _Joint(contact.tip, _touched(contact), along * tangent + contact.gap * normal)
+    for first, *second in map(ends, system.connections):
+        for other in second:
+            yield _Joint(first, other, np.zeros(2))
+
+
+def _thing(point: BodyPoint) -> Any:
+    """Return what is drawn of a point's body: the body itself where it has a line, else the point."""
+    return point.body if hasattr(point.body, "drawn_places") else point
+
+
+def _abscissa(point: BodyPoint) -> float:
+    """Return how far along its body's line a point is [m]."""
+    body: Any = point.body
+    position: Any = point.position
+    return float(body.abscissa(position) if hasattr(body, "abscissa") else position)
+
+
+def _offset(point: BodyPoint) -> Array:
+    """Return where a point is on what is drawn of its body [m]."""
+    return _abscissa(point) * point.body.axes[0] if _thing(point) is point.body else np.zeros(2)
+
+
+def _origins(joints: list[_Joint]) -> dict[Any, Array]:
+    """Return where everything is that is drawn [m]."""
+    found: dict[Any, Array] = {}
+    left = list(joints)
+    while left:
+        # What is in no known place yet begins anew, where it would be alone.
+        known = (
+            k
+            for k, one in enumerate(left)
+            if one.second is None or {_thing(one.first), _thing(one.second)} & found.keys()
+        )
+        joint = left.pop(next(known, 0) if found else 0)
+        away = joint.away + (0.0 if joint.second is None else _offset(joint.second)) - _offset(joint.first)
+        if joint.second is None:
+            found.setdefault(_thing(joint.first), away)
+        elif _thing(joint.first) in found:
+            found.setdefault(_thing(joint.second), found[_thing(joint.first)] - away)
+        else:
+            found[_thing(joint.first)] = found.setdefault(_thing(joint.second), np.zeros(2)) + away
+    return found
+
+
+def _line(thing: Any, origin: Array, points: list[BodyPoint], system: System) -> Line:
+    """Return what is drawn of a body, or a point alone, with its points that touch or are joined."""
+    is_line = hasattr(thing, "drawn_places")
+    body = thing if is_line else thing.body
+    drawn = thing.drawn_places.tolist() if is_line else []
+    ours = list(dict.fromkeys(point for point in points if _thing(point) == thing))
+    along = np.array([*drawn, *(_abscissa(point) if is_line else 0.0 for point in ours)])
+    held = system.is_held(body)
+    shapes = np.array([body.trace(position, held) for position in (*drawn, *(point.position for point in ours))])
+    if any(contact.path_body == body for contact in system.contacts):
+        # A tip is where it is along its track, whatever the track does along itself.
+        shapes[:, 0] = 0.0
+    place = origin + along[:, None] * body.axes[0]
+    rows = {point.position: len(drawn) + number for number, point in enumerate(ours)}
+    return Line(system.body_name(body), along, place, shapes, len(drawn) or 1, rows, held, hasattr(body, "track_line"))

@@ -1,0 +1,207 @@
+"""Motion of systems in the plane as it is drawn: what is to scale, and what departs from it and is exaggerated."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from ..arrays import Array
+from ..system import System
+from .lines import Line, Touch, lines_of
+from .motion import Motion
+
+# Length of a rigid track on both sides of what is seen of it, as a share of the bodies' extent.
+BEYOND = 0.1
+# Extent of what has none: a point that rests [m].
+SMALLEST = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A straight surface that moves along itself: a rigid track, or what slides past a point.
+
+    Attributes
+    ----------
+    place : ndarray, shape (frames, 2)
+        World place of its abscissa 0, drawn to scale [m].
+    departure : ndarray, shape (frames, 2)
+        What is exaggerated of it [m].
+    tangent, outwards : ndarray, shape (2,)
+        Its direction, and the one from its surface to its inside.
+    ends : ndarray, shape (2,)
+        Abscissas between which it is drawn [m].
+    travel : ndarray, shape (frames,)
+        How far it has moved along itself [m].
+    is_exaggerated : bool
+        Whether its travel is exaggerated, as the slip of a point on it is.
+    """
+
+    place: Array
+    departure: Array
+    tangent: Array
+    outwards: Array
+    ends: Array
+    travel: Array
+    is_exaggerated: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneMotion:
+    """A system in the plane over a window of time, in frames.
+
+    What is to scale of a body: its mean shape, moved so that its contacts are just closed, which rides on the mean
+    shape of what it slides on. Departures from that are exaggerated. So a closed contact is closed in the picture, and
+    a gap is as large as the vibration beside it.
+
+    Attributes
+    ----------
+    run : xarray.Dataset
+        Record over the window, a sample for each frame.
+    lines : list of Line
+        What is drawn.
+    touches : list of Touch
+        Where lines touch, contact by contact.
+    reference, departure : list of ndarray, shape (frames, points, 2)
+        Of each line the world places drawn to scale, and what departs from them [m].
+    surfaces : list of Surface
+        Rigid tracks, and surfaces that slide past points.
+    """
+
+    run: xr.Dataset
+    lines: list[Line]
+    touches: list[Touch]
+    reference: list[Array]
+    departure: list[Array]
+    surfaces: list[Surface]
+
+    def drawn(self, exaggeration: float) -> list[Array]:
+        """Return the places of each line with departures drawn `exaggeration` times, shape (frames, points, 2)."""
+        return [one + exaggeration * apart for one, apart in zip(self.reference, self.departure, strict=True)]
+
+    @property
+    def largest(self) -> float:
+        """Largest departure [m]."""
+        return max(float(np.abs(apart).max()) for apart in self.departure)
+
+    @property
+    def extent(self) -> float:
+        """Largest extent of what is to scale [m]."""
+        return extent_of(self.reference)
+
+
+def extent_of(places: list[Array]) -> float:
+    """Return the largest extent of places, 1 mm if they are one and the same [m]."""
+    return float(np.ptp(np.concatenate([one.reshape(-1, 2) for one in places]), axis=0).max()) or SMALLEST
+
+
+def plane_motion(system: System, motion: Motion) -> PlaneMotion:
+    """Return how the lines of a system in the plane move."""
+    lines, touches = lines_of(system)
+    places = []
+    for line in lines:
+        moved = line.place + line.moved(motion.modes.displacement[line.name])
+        moved[..., 0] += motion.travel[:, None] * line.is_held
+        places.append(moved)
+    time = motion.run["time"].values
+    bodies = _References(lines, touches, places, time).found
+    reference = [bodies[number] for number in range(len(lines))]
+    departure = [place - one for place, one in zip(places, reference, strict=True)]
+    surfaces = surfaces_slid_on(lines, touches, reference, departure, time)
+    return PlaneMotion(motion.run, lines, touches, reference, departure, surfaces)
+
+
+def rest(touch: Touch, lines: list[Line]) -> Array:
+    """Return the place of abscissa 0 of a rigid track at rest [m]."""
+    normal, tangent = touch.contact.frame
+    line, tip = touch.tip
+    found: Array = lines[line].place[tip] - touch.contact.gap * normal - touch.contact.at * tangent
+    return found
+
+
+def _raised(touch: Touch, time: Array) -> Array:
+    """Return how far a rigid track has moved towards the tip [m]."""
+    track = touch.contact.rigid_track
+    assert track is not None
+    return track.normal_travel(time)
+
+
+class _References:
+    """What is to scale of each line, those that are touched before those that touch them."""
+
+    def __init__(self, lines: list[Line], touches: list[Touch], places: list[Array], time: Array) -> None:
+        self._lines, self._places, self._time = lines, places, time
+        self.found: dict[int, Array] = {}
+        left = list(range(len(lines)))
+        while left:
+            ours = {k: [one for one in touches if one.tip[0] == k] for k in left}
+            ready = (
+                k
+                for k, found in ours.items()
+                if all(one.touched is None or one.touched[0] in self.found for one in found)
+            )
+            # Two that touch each other cannot both come first.
+            number = next(ready, left[0])
+            left.remove(number)
+            known = [one for one in ours[number] if one.touched is None or one.touched[0] in self.found]
+            self.found[number] = self._of(number, known)
+
+    def _of(self, number: int, touches: list[Touch]) -> Array:
+        place, line = self._places[number], self._lines[number]
+        below = [self._below(one) for one in touches]
+        ridden = below[0][:, None] if touches else np.zeros((1, 1, 2))
+        found = np.asarray(ridden + (place - ridden).mean(axis=0) + np.zeros_like(place))
+        rows = sorted({one.tip[1] for one in touches}, key=lambda row: line.along[row])
+        opened = np.zeros((len(place), len(rows), 2))
+        for k, row in enumerate(rows):
+            here = [(one.contact.frame[0], b) for one, b in zip(touches, below, strict=True) if one.tip[1] == row]
+            normals = np.array([normal for normal, _ in here])
+            gaps = np.array([(found[:, row] - b) @ normal for normal, b in here])
+            opened[:, k] = (np.linalg.pinv(normals) @ gaps).T
+        shares = np.array([np.interp(line.along, line.along[rows], one) for one in np.eye(len(rows))])
+        return found - np.einsum("fki,kp->fpi", opened, shares) if rows else found
+
+    def _below(self, touch: Touch) -> Array:
+        """Return what a tip rides on over time: its track to scale, shape (frames, 2)."""
+        normal, tangent = touch.contact.frame
+        tip = self._places[touch.tip[0]][:, touch.tip[1]]
+        if touch.touched is None:
+            origin = rest(touch, self._lines)
+            height = origin @ normal + _raised(touch, self._time).mean()
+            return np.asarray(np.outer(tip @ tangent, tangent) + height * normal)
+        track, row = touch.touched
+        places = self.found[track]
+        if touch.contact.path_body is None:
+            return places[:, row]
+        count = self._lines[track].count
+        x = tip[:, 0]
+        heights = [np.interp(here, one[:count, 0], one[:count, 1]) for here, one in zip(x, places, strict=True)]
+        return np.stack([x, heights], axis=1)
+
+
+def surfaces_slid_on(
+    lines: list[Line], touches: list[Touch], reference: list[Array], departure: list[Array], time: Array
+) -> list[Surface]:
+    """Return the rigid tracks and the surfaces that slide past points."""
+    beyond = BEYOND * extent_of(reference)
+    found = []
+    for touch in touches:
+        contact, (normal, tangent) = touch.contact, touch.contact.frame
+        if touch.touched is None:
+            origin, raised = rest(touch, lines), _raised(touch, time)
+            along = (reference[touch.tip[0]][:, touch.tip[1]] - origin) @ tangent
+            ends = np.array([along.min() - beyond, along.max() + beyond])
+            track = contact.rigid_track
+            assert track is not None
+            place = np.tile(origin + raised.mean() * normal, (time.size, 1))
+            apart = np.outer(raised - raised.mean(), normal)
+            found.append(Surface(place, apart, tangent, -normal, ends, track.travel(time)))
+        elif contact.surface_velocities[0]:
+            line, row = touch.touched
+            reach = np.abs(departure[line][:, row] @ tangent).max()
+            place = reference[line][:, row]
+            travel = -contact.surface_velocities[0] * time
+            ends = np.array([-1.0, 1.0]) * reach
+            found.append(Surface(place, np.zeros_like(place), tangent, normal, ends, travel, True))
+    return found
