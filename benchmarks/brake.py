@@ -197,6 +197,6 @@ def peak() -> float:
 
 if __name__ == "__main__":
     if "child" in sys.argv:
-        st.simulate(brake(), STEPS * STEP, probes=[])
+        st.simulate(brake(), STEPS * STEP, probes=[], surface_rate="all")
     else:
         show(TITLE, rows())

@@ -140,7 +140,7 @@ def simulated_window(
     chosen: Scheme = ExactModal() if scheme is None else scheme
     if step is None:
         step = choose_timing(assemble(system, ()), chosen, end, None, sample_rate).step
-    run = simulate(system, end, scheme=chosen, step=step, sample_rate=1.0 / frame, probes=probes)
+    run = simulate(system, end, scheme=chosen, step=step, sample_rate=1.0 / frame, probes=probes, surface_rate="all")
     window = run.isel(time=run["time"].values > start + 0.5 * float(run.attrs["sample_interval"]))
     if window.sizes["time"] < FEWEST_FRAMES:
         ended = f"{run.attrs['ended']} at {at_most(float(run['time'][-1]))} s"

@@ -20,12 +20,6 @@ POINTS = 80
 GOLDEN = np.pi * (3.0 - np.sqrt(5.0))
 
 
-def place_of(point: BodyPoint) -> Array | None:
-    """Return where in the world a point is at rest [m], None if its body does not know."""
-    body: Any = point.body
-    return body.place(point.position) if hasattr(body, "place") else None
-
-
 def rigid_surfaces(system: System, radius: float) -> dict[Any, DrawnSurface]:
     """Return the surfaces of the rigid bodies that touch, or are joined to, a point whose place is known.
 
@@ -39,7 +33,7 @@ def rigid_surfaces(system: System, radius: float) -> dict[Any, DrawnSurface]:
     found: dict[Any, DrawnSurface] = {}
     for ours, other, away in _joined(system):
         body: Any = ours.body
-        place = place_of(other)
+        place = other.place
         if place is not None and body not in found and hasattr(body, "shapes_at"):
             points = np.array(list(body.points.values())).reshape(-1, 3)
             # A ball touches the other body instead of sticking in it.

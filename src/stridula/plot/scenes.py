@@ -21,7 +21,7 @@ from ..checks import STATUS_WORDS, ArgumentError, finite
 from ..contact import PointContact
 from ..system import System
 from .colours import STATUS_COLOURS
-from .rigid_surfaces import place_of, rigid_surfaces
+from .rigid_surfaces import rigid_surfaces
 from .space_motion import ModalMotion, is_drawn
 
 # Elevation above the plane across y and azimuth from z towards x: 30 and 35 degrees [rad].
@@ -254,7 +254,7 @@ def _axes_in_space(figure: Figure, room: tuple[float, float, float, float]) -> A
 def _known_end(contact: PointContact) -> BodyPoint | None:
     """Return the end of a contact whose place in the world is known, None if neither is."""
     ends = (contact.tip, contact.touched_point)
-    return next((one for one in ends if one is not None and place_of(one) is not None), None)
+    return next((one for one in ends if one is not None and one.place is not None), None)
 
 
 def _eye(view: tuple[float, float]) -> Array:
