@@ -14,6 +14,7 @@ from stridula import analysis, plot
 from stridula.acoustics.redriven import redriven
 from stridula.contact.resultants import RESULTANTS
 from stridula.integration import together
+from stridula.plot.surfaces import QUANTITIES
 from stridula.records.by_point import by_point, counted
 from stridula.records.by_surface import by_surface
 
@@ -106,6 +107,14 @@ def test_regime_figures_and_files_know_it(both, tmp_path):
     assert float(st.compare(short, short).attrs["within_tolerance"]) == 1
 
 
+def test_the_usual_record_goes_on():
+    given = system()
+    run, first = (st.simulate(given, duration, **WORDS) for duration in (4e-3, 2e-3))
+    rest = st.simulate(given, 2e-3, start=first, **WORDS)
+    for name in ("normal_force", "point_normal_force", "point_status_share", "point_landings", "map_slip_velocity"):
+        np.testing.assert_array_equal(np.concatenate([first[name], rest[name]]), run[name], err_msg=name)
+
+
 def test_it_goes_on_and_runs_again(both):
     whole, short = both
     given = system()
@@ -129,25 +138,30 @@ def test_it_goes_on_and_runs_again(both):
     assert short.nbytes < whole.nbytes
 
 
-def test_what_an_interrupt_leaves_is_whole(both, monkeypatch):
+@pytest.mark.parametrize("rate", [MAPS, None], ids=["maps", "usual"])
+def test_what_an_interrupt_leaves_is_whole(both, monkeypatch, rate):
     """After some chunks, and before the first."""
     whole, _ = both
+    every = round(RATE / (rate or 1e3))
     given, stopped = system(), {}
-    known = st.simulate(given, 4e-3, surface_rate=MAPS, **WORDS)
+    known = st.simulate(given, 4e-3, surface_rate=rate, **WORDS)
     for name, chunk in (("some", 7), ("none", 0)):
         monkeypatch.setattr(together, "STEPS_PER_CHUNK", chunk * round(1 / (RATE * whole.attrs["step"])))
         monkeypatch.setattr(together, "SAMPLES_PER_CHUNK", chunk)
         if not chunk:
             monkeypatch.setattr(together, "DeferredInterrupt", lambda: nullcontext(SimpleNamespace(requested=True)))
         with pytest.raises(st.Interrupted) as caught:
-            st.simulate(given, 4e-3, surface_rate=MAPS, watchers=[interrupt], **WORDS)
+            st.simulate(given, 4e-3, surface_rate=rate, watchers=[interrupt], **WORDS)
         stopped[name] = caught.value.record
     count = stopped["some"].sizes["time"]
     assert 0 < count < known.sizes["time"]
     np.testing.assert_array_equal(stopped["some"].surface_force, known.surface_force[:count])
-    assert stopped["some"].sizes["map_time"] == count // round(RATE / MAPS)
+    assert stopped["some"].sizes["map_time"] == count // every
     assert stopped["none"].surface_force.shape == (0, 1, 3)
     assert stopped["none"].map_normal_force.shape == (0, 4)
+    if rate is None:
+        np.testing.assert_array_equal(stopped["some"].point_normal_force, known.point_normal_force[:count])
+        assert stopped["none"].point_tangential_force.shape == (0, 4, 2)
 
 
 def test_a_record_of_maps_has_no_sound(both, pair):
@@ -204,7 +218,7 @@ def test_regimes_and_fields_of_the_usual_record_are_those_of_all_points(both, us
     assert {str(face[name].dims[0]) for name in ("pressure", "shear", "status_share", "force")} == {"time"}
     assert face.slip_velocity.dims[0] == "map_time"
     np.testing.assert_allclose(face.pressure, all_points.pressure, atol=1e-6 * float(all_points.pressure.max()))
-    for quantity in plot.surfaces.QUANTITIES:
+    for quantity in QUANTITIES:
         plot.surface(face, quantity)
 
 
@@ -230,8 +244,14 @@ def test_many_runs_record_surfaces_as_one_does(both, usual, pair):
         assert list(plain.contacts) == (both[1] if rate == MAPS else both[0]).contact.values.tolist()
         assert analysis.regime_of(plain)["regime"] == str(st.regime(known).regime.item())
     scenario = replace(st.load_scenario(usual), surface_rate=MAPS)
-    found = st.sweep(lambda _: scenario, {"_": [0.0]}, {"maps": lambda run: run.sizes["map_time"]})
-    assert found.maps.item() == both[1].sizes["map_time"]
+    asked = pair, {"duration": 8.2e-3, "surface_rate": MAPS}
+    for made in (scenario, asked):
+        swept = st.sweep(lambda _, made=made: made, {"_": [0.0]}, {"maps": lambda run: run.sizes["map_time"]})
+        assert swept.maps.item() == both[1].sizes["map_time"]
+    kept = {"points": lambda run: float("point_normal_force" in run), "contacts": lambda run: run.sizes["contact"]}
+    for rate, known in ((None, [1.0, 2.0]), ("all", [0.0, 5.0])):
+        measured = st.ensemble(pair, 1e-3, kept, runs=2, surface_rate=rate, **WORDS)
+        assert [float(measured[name][0]) for name in kept] == known
 
 
 def test_what_is_refused():
@@ -245,3 +265,5 @@ def test_what_is_refused():
     ):
         with pytest.raises(st.ArgumentError, match=words):
             st.simulate(given, 1e-3, surface_rate=rate, **WORDS)
+    with pytest.raises(st.ArgumentError, match="area must be left out but at a point of a surface"):
+        st.PointContact(mass.centre, st.RigidTrack(), area=1e-4)

@@ -172,6 +172,7 @@ def _made(function: SystemOf, values: Mapping[str, Any], given: Mapping[str, Any
         sample_rate=words["sample_rate"],
         probes=None if probes is None else tuple(probes),
         contact_solve=words.get("contact_solve"),
+        surface_rate=words.get("surface_rate"),
     )
 
 
