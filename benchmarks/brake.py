@@ -53,10 +53,10 @@ def pad(side: float, disc: st.AxisymmetricBody) -> tuple[st.SurfaceContact, st.F
     return face, st.Force(body.at("top"), y=-2000.0 * side), springs
 
 
-def brake() -> st.System:
-    """Return two pads pressed on a disc that turns, in equilibrium at the start."""
+def brake(turning: float = 20.0) -> st.System:
+    """Return two pads pressed on a disc that turns, in equilibrium at the start; on a slow one they soon stick."""
     profile = st.RectangleProfile({"disc": ((0.06, 0.13), (-0.01, 0.01))})
-    disc = st.AxisymmetricBody(profile, IRON, 17e3, "inner", damping=0.001, axis=(0.0, 1.0, 0.0), turning=20.0)
+    disc = st.AxisymmetricBody(profile, IRON, 17e3, "inner", damping=0.001, axis=(0.0, 1.0, 0.0), turning=turning)
     faces, loads, springs = zip(*(pad(side, disc) for side in (1.0, -1.0)), strict=True)
     return st.System(faces, [*loads, st.InitialEquilibrium()], [spring for own in springs for spring in own])
 
@@ -197,6 +197,6 @@ def peak() -> float:
 
 if __name__ == "__main__":
     if "child" in sys.argv:
-        st.simulate(brake(), STEPS * STEP, probes=[])
+        st.simulate(brake(), STEPS * STEP, probes=[], surface_rate="all")
     else:
         show(TITLE, rows())

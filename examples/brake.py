@@ -84,7 +84,7 @@ run = st.simulate(
     probes=[st.Velocity(disc.at((0.13, 0.0, 0.0)), "y")],
 )
 found = [surface(run, face) for face in faces]
-print(f"{run.sizes['contact']} contacts, {run.modes} modes")
+print(f"{len(system.contacts)} contacts, {run.modes} modes")
 
 figure, panels = plt.subplots(1, 3, figsize=(12.0, 3.6), layout="constrained")
 panels[0].plot(1e3 * run.time, run.velocity[:, 0])

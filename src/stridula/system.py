@@ -10,7 +10,8 @@ from typing import Any, TypeVar
 
 from .checks import ArgumentError, instance
 from .connections import CONNECTIONS, Connection, ends, unit
-from .contact import PointContact, SurfaceContact
+from .contact import PointContact, SurfaceContact, SurfacePoints
+from .contact.surface_points import surfaces_among
 from .drives import DRIVES, Drive, ImposedVelocity, InitialEquilibrium
 
 T = TypeVar("T")
@@ -64,11 +65,13 @@ class System:
         given = (self.contact,) if isinstance(self.contact, PLACES) else tuple(self.contact)
         return tuple(point for one in given for point in one.contacts)
 
-    @property
-    def faces(self) -> tuple[SurfaceContact, ...]:
-        """The surfaces that were given as such, which know the places and areas of their points."""
+    @cached_property
+    def faces(self) -> tuple[SurfaceContact | SurfacePoints, ...]:
+        """The surfaces of which places and areas of all points are known: those given as such, then those of points."""
         given = (self.contact,) if isinstance(self.contact, PLACES) else tuple(self.contact)
-        return tuple(one for one in given if hasattr(one, "areas"))  # type: ignore[misc]
+        whole: list[Any] = [one for one in given if hasattr(one, "areas")]
+        alone: list[Any] = [one for one in given if not hasattr(one, "areas")]
+        return (*whole, *surfaces_among(alone))
 
     @cached_property
     def bodies(self) -> tuple[Any, ...]:

@@ -77,6 +77,57 @@ def test_another_step_in_c_is_refused(copied, right, other, quantity):
     assert complaint(copied("step.c", right, other).with_name("against_c.py")).startswith(quantity)
 
 
+# Marches a brake whose points stick by the package and by each source in C, and says how they agree.
+STICKING = """
+import sys, tempfile
+from pathlib import Path
+
+import brake
+from against_c import built
+
+pair = brake.Pair(brake.brake(turning=0.01), 1000)
+(chunk,) = pair.march.copy().advance([pair.case.imposed], brake.STEPS // brake.RATIO)
+print(chunk.contacts[:, ::2, brake.at.STICKING].mean())
+for name in sys.argv[2:]:
+    folder = tempfile.mkdtemp()
+    try:
+        brake.agree(pair.ours(), pair.theirs(built(Path(folder), Path(name), vars(brake.kernel))))
+    except SystemExit as stop:
+        print(stop)
+    else:
+        print("agree")
+"""
+WRONG_BRAKES = (
+    ("ledger[DAMPING_LOSS] += lost + 0.25 * taken;", "ledger[DAMPING_LOSS] += lost;", "ledgers"),
+    ("c[MATERIAL] - c[ANCHOR] : 0.0;", "c[MATERIAL] - 0.9 * c[ANCHOR] : 0.0;", "forces"),
+)
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed, so there is no C to compare with")
+def test_a_brake_that_sticks_agrees_with_c_and_another_c_is_refused(copied):
+    """Of the distance from where a point stuck, too, which only such a brake knows."""
+    given = FOLDER / "brake.c"
+    sources = [given]
+    for number, (right, other, _) in enumerate(WRONG_BRAKES):
+        path = copied("brake.c", right, other)
+        sources.append(path.rename(path.with_name(f"wrong{number}.c")))
+        shutil.copy(given, path)
+    package = {"PYTHONPATH": os.pathsep.join([str(Path(stridula.__file__).parents[1]), str(FOLDER)])}
+    done = subprocess.run(
+        [sys.executable, "-c", STICKING, "--short", *map(str, sources)],
+        env=os.environ | package,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    share, agreed, *complaints = done.stdout.splitlines()
+    assert float(share) > 0.5
+    assert agreed == "agree"
+    for line, (*_, quantity) in zip(complaints, WRONG_BRAKES, strict=True):
+        assert line.startswith(quantity)
+        assert "brake.c" in line
+
+
 WRONG_SIDES = {
     "many_runs.py": ("simulate_many(systems, workers=1", "simulate_many(systems[::-1], workers=1", "normal forces"),
     "maps.py": ('sweep("--workers", "1")', 'sweep("--set", "transverse=3")', "maps of one worker and of all"),

@@ -295,7 +295,7 @@ def test_a_face_slides_steadily_on_bristles(law):
     disc = st.RigidTrack(velocity=-0.2 * cos(0.5), lateral_velocity=-0.2 * sin(0.5), normal_velocity=1e-4)
     disc = replace(disc, normal_history=st.Sampled((0.0, 1e-3, 1.1e-3), (1.0, 1.0, 0.0)))
     surface = st.SurfaceContact(pad, "bottom", disc, friction=law, stiffness=1e12)
-    run = st.simulate(st.System(surface), 0.02, sample_rate=2e4, probes=[])
+    run = st.simulate(st.System(surface), 0.02, sample_rate=2e4, probes=[], surface_rate="all")
     normal, pulled = run.normal_force.values[-1], run.tangential_force.values[-1]
     slips = run.slip_velocity.values[-1]
     assert normal.sum() > 10.0

@@ -1,8 +1,9 @@
-"""Surfaces recorded in short: what is left is what all points come to."""
+"""Surfaces recorded in short: what is left is what all points come to, and what is heard of them."""
 
 from __future__ import annotations
 
 from contextlib import nullcontext
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,8 +11,11 @@ import pytest
 
 import stridula as st
 from stridula import analysis, plot
+from stridula.acoustics.redriven import redriven
 from stridula.contact.resultants import RESULTANTS
 from stridula.integration import together
+from stridula.plot.surfaces import QUANTITIES
+from stridula.records.by_point import by_point, counted
 from stridula.records.by_surface import by_surface
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
@@ -36,14 +40,25 @@ def interrupt(_):
 
 
 @pytest.fixture(scope="module")
-def both():
-    """The same run with all points and in short, with a point beside the face."""
+def pair():
+    """A system with a point beside the face."""
     shoe = st.RigidBody(mass=0.1, name="shoe")
     heel = st.PointContact(
         shoe.centre, st.RigidTrack(velocity=0.5), friction=st.Coulomb(0.3), normal=(0, 1, 0), name="heel"
     )
-    given = system(heel)
-    return st.simulate(given, 8.2e-3, **WORDS), st.simulate(given, 8.2e-3, surface_rate=MAPS, **WORDS)
+    return system(heel)
+
+
+@pytest.fixture(scope="module")
+def both(pair):
+    """The same run with all points and in short."""
+    return [st.simulate(pair, 8.2e-3, surface_rate=rate, **WORDS) for rate in ("all", MAPS)]
+
+
+@pytest.fixture(scope="module")
+def usual(pair):
+    """The run as it is recorded where nobody says otherwise."""
+    return st.simulate(pair, 8.2e-3, **WORDS)
 
 
 def test_a_surface_is_one_contact(both):
@@ -92,6 +107,14 @@ def test_regime_figures_and_files_know_it(both, tmp_path):
     assert float(st.compare(short, short).attrs["within_tolerance"]) == 1
 
 
+def test_the_usual_record_goes_on():
+    given = system()
+    run, first = (st.simulate(given, duration, **WORDS) for duration in (4e-3, 2e-3))
+    rest = st.simulate(given, 2e-3, start=first, **WORDS)
+    for name in ("normal_force", "point_normal_force", "point_status_share", "point_landings", "map_slip_velocity"):
+        np.testing.assert_array_equal(np.concatenate([first[name], rest[name]]), run[name], err_msg=name)
+
+
 def test_it_goes_on_and_runs_again(both):
     whole, short = both
     given = system()
@@ -104,39 +127,131 @@ def test_it_goes_on_and_runs_again(both):
         assert "contact" not in run[name].dims
         np.testing.assert_array_equal(np.concatenate([first[name], rest[name]]), run[name])
         np.testing.assert_allclose(np.concatenate([first[over], rest[over]]), run[over])
-    # The record has points alone: no areas, and no resultants.
-    again = st.load_scenario(run).simulate()
+    scenario = st.load_scenario(run)
+    again = scenario.simulate()
     np.testing.assert_array_equal(again.normal_force, run.normal_force)
     np.testing.assert_array_equal(again.map_status, run.map_status)
-    assert "surface_force" not in again
+    # The system of a record has no mesh, and knows the areas and places of its points.
+    np.testing.assert_allclose(again.surface_moment, run.surface_moment, rtol=1e-12, atol=1e-15)
+    (face,) = scenario.system.faces
+    assert analysis.surface(run, face).identical(analysis.surface(run, SOLE))
     assert short.nbytes < whole.nbytes
 
 
-def test_what_an_interrupt_leaves_is_whole(both, monkeypatch):
+@pytest.mark.parametrize("rate", [MAPS, None], ids=["maps", "usual"])
+def test_what_an_interrupt_leaves_is_whole(both, monkeypatch, rate):
     """After some chunks, and before the first."""
     whole, _ = both
+    every = round(RATE / (rate or 1e3))
     given, stopped = system(), {}
-    known = st.simulate(given, 4e-3, surface_rate=MAPS, **WORDS)
+    known = st.simulate(given, 4e-3, surface_rate=rate, **WORDS)
     for name, chunk in (("some", 7), ("none", 0)):
         monkeypatch.setattr(together, "STEPS_PER_CHUNK", chunk * round(1 / (RATE * whole.attrs["step"])))
         monkeypatch.setattr(together, "SAMPLES_PER_CHUNK", chunk)
         if not chunk:
             monkeypatch.setattr(together, "DeferredInterrupt", lambda: nullcontext(SimpleNamespace(requested=True)))
         with pytest.raises(st.Interrupted) as caught:
-            st.simulate(given, 4e-3, surface_rate=MAPS, watchers=[interrupt], **WORDS)
+            st.simulate(given, 4e-3, surface_rate=rate, watchers=[interrupt], **WORDS)
         stopped[name] = caught.value.record
     count = stopped["some"].sizes["time"]
     assert 0 < count < known.sizes["time"]
     np.testing.assert_array_equal(stopped["some"].surface_force, known.surface_force[:count])
-    assert stopped["some"].sizes["map_time"] == count // round(RATE / MAPS)
+    assert stopped["some"].sizes["map_time"] == count // every
     assert stopped["none"].surface_force.shape == (0, 1, 3)
     assert stopped["none"].map_normal_force.shape == (0, 4)
+    if rate is None:
+        np.testing.assert_array_equal(stopped["some"].point_normal_force, known.point_normal_force[:count])
+        assert stopped["none"].point_tangential_force.shape == (0, 4, 2)
 
 
-def test_sound_needs_all_points(both):
+def test_a_record_of_maps_has_no_sound(both, pair):
     _, short = both
-    with pytest.raises(st.ArgumentError, match="a record with a surface_rate: record it without"):
-        st.radiate(short, system(), (0.0, 1.0, 0.0))
+    with pytest.raises(st.ArgumentError, match="a record of maps alone: leave surface_rate out"):
+        st.radiate(short, pair, (0.0, 1.0, 0.0))
+
+
+def test_the_usual_record_sounds_as_all_points_do(both, usual, pair):
+    whole, _ = both
+    wrong = usual.assign(point_normal_force=1.001 * usual.point_normal_force)
+    # Sound is linear in these.
+    known, found, other = (redriven(one, pair).accelerations for one in (whole, usual, wrong))
+    assert known.std() > 0.0
+    assert np.abs(found - known).max() < 1e-6 * np.abs(known).max()
+    assert np.abs(other - known).max() > 1e-5 * np.abs(known).max()
+
+
+def test_the_usual_record_has_the_points_in_fewer_digits(both, usual, tmp_path):
+    whole, short = both
+    of_points = [one for one in whole.isel(contact=whole.surface == "sole").data_vars.values() if "contact" in one.dims]
+    kept = sum(one.nbytes for name, one in usual.data_vars.items() if name.startswith("point_"))
+    assert kept < 0.2 * sum(one.nbytes for one in of_points)
+    for name in short.data_vars:
+        if not name.startswith("map_"):
+            np.testing.assert_array_equal(usual[name], short[name], err_msg=name)
+    points = by_point(usual)
+    assert points.contact.values.tolist() == whole.contact.values.tolist()
+    assert points.surface.values.tolist() == whole.surface.values.tolist()
+    for name, digits in (("normal_force", 1e-6), ("tangential_force", 1e-6), ("status_share", 4e-3), ("landings", 0.0)):
+        largest = float(np.abs(whole[name]).max())
+        np.testing.assert_allclose(points[name], whole[name], rtol=0.0, atol=digits * largest, err_msg=name)
+        assert points[name].dims == whole[name].dims
+    assert by_point(whole) is whole
+    assert by_point(short) is short
+    assert by_point(usual.sel(contact=["sole"])).contact.values.tolist() == [one.name for one in SOLE.contacts]
+    st.save(usual, tmp_path / "usual.nc")
+    assert st.load(tmp_path / "usual.nc").identical(usual)
+    st.export(usual, tmp_path / "usual.mat")
+
+
+def test_regimes_and_fields_of_the_usual_record_are_those_of_all_points(both, usual):
+    whole, _ = both
+    known, found = st.regime(whole), st.regime(usual)
+    for name in known.data_vars:
+        if name != "regime":
+            np.testing.assert_allclose(found[name], known[name], rtol=0.02, err_msg=name)
+    assert found.regime.item() == known.regime.item()
+    assert (
+        st.regime(usual.isel(contact=usual.surface == "sole")).impact_rate
+        == st.regime(whole.isel(contact=whole.surface == "sole")).impact_rate
+    )
+    face, all_points = analysis.surface(usual, SOLE), analysis.surface(whole, SOLE)
+    assert {str(face[name].dims[0]) for name in ("pressure", "shear", "status_share", "force")} == {"time"}
+    assert face.slip_velocity.dims[0] == "map_time"
+    np.testing.assert_allclose(face.pressure, all_points.pressure, atol=1e-6 * float(all_points.pressure.max()))
+    for quantity in QUANTITIES:
+        plot.surface(face, quantity)
+
+
+def test_shares_are_counted_so_that_none_and_all_are_exact():
+    share = np.array([0.0, 1e-12, 1e-4, 0.5, 1.0 - 1e-4, 1.0 - 1e-12, 1.0])
+    np.testing.assert_array_equal(counted(share), [0, 0, 1, 128, 254, 255, 255])
+
+
+def test_a_record_says_how_its_surfaces_were_recorded(both, usual):
+    whole, short = both
+    assert [st.load_scenario(run).surface_rate for run in (whole, short, usual)] == ["all", MAPS, None]
+    again = st.load_scenario(usual).simulate()
+    np.testing.assert_array_equal(again.point_normal_force, usual.point_normal_force)
+    np.testing.assert_allclose(again.surface_force, usual.surface_force, rtol=1e-12, atol=1e-12)
+
+
+def test_many_runs_record_surfaces_as_one_does(both, usual, pair):
+    for rate, known in (("all", both[0]), (MAPS, both[1]), (None, usual)):
+        (found,) = st.simulate_many([pair], 8.2e-3, surface_rate=rate, **WORDS)
+        assert set(found.variables) == set(known.variables)
+        np.testing.assert_array_equal(found.normal_force, known.normal_force)
+        (plain,) = st.simulate_many([pair], 8.2e-3, surface_rate=rate, labelled=False, **WORDS)
+        assert list(plain.contacts) == (both[1] if rate == MAPS else both[0]).contact.values.tolist()
+        assert analysis.regime_of(plain)["regime"] == str(st.regime(known).regime.item())
+    scenario = replace(st.load_scenario(usual), surface_rate=MAPS)
+    asked = pair, {"duration": 8.2e-3, "surface_rate": MAPS}
+    for made in (scenario, asked):
+        swept = st.sweep(lambda _, made=made: made, {"_": [0.0]}, {"maps": lambda run: run.sizes["map_time"]})
+        assert swept.maps.item() == both[1].sizes["map_time"]
+    kept = {"points": lambda run: float("point_normal_force" in run), "contacts": lambda run: run.sizes["contact"]}
+    for rate, known in ((None, [1.0, 2.0]), ("all", [0.0, 5.0])):
+        measured = st.ensemble(pair, 1e-3, kept, runs=2, surface_rate=rate, **WORDS)
+        assert [float(measured[name][0]) for name in kept] == known
 
 
 def test_what_is_refused():
@@ -146,6 +261,9 @@ def test_what_is_refused():
         (alone, 1e3, "surface_rate must be left out without surfaces in contact"),
         (system(), 0.0, "surface_rate must be"),
         (system(), 3e4, "surface_rate must be at most the sample rate"),
+        (system(), "points", "surface_rate must be a rate in Hz or 'all', got 'points'"),
     ):
         with pytest.raises(st.ArgumentError, match=words):
             st.simulate(given, 1e-3, surface_rate=rate, **WORDS)
+    with pytest.raises(st.ArgumentError, match="area must be left out but at a point of a surface"):
+        st.PointContact(mass.centre, st.RigidTrack(), area=1e-4)

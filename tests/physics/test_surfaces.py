@@ -102,7 +102,7 @@ def test_a_pad_stays_in_equilibrium_and_says_its_resultants():
     theory = st.sliding_stability(system)
     assert theory.attrs["equilibrium"] == "sliding"
     assert not theory.unstable.any()
-    run = st.simulate(starting(system), 2e-3, step=1e-6, probes=[])
+    run = st.simulate(starting(system), 2e-3, step=1e-6, probes=[], surface_rate="all")
     np.testing.assert_allclose(
         run.normal_force.values, np.broadcast_to(theory.normal_force.values, run.normal_force.shape), rtol=2e-3
     )

@@ -23,7 +23,7 @@ def run():
         other.centre, st.RigidTrack(velocity=0.5), friction=st.Coulomb(0.3), normal=(0, 1, 0), name="heel"
     )
     drives = [st.Gravity(), st.Force(block.at("top"), y=-20.0)]
-    return st.simulate(st.System([point, face], drives), 2e-3, sample_rate=2e4)
+    return st.simulate(st.System([point, face], drives), 2e-3, sample_rate=2e4, surface_rate="all")
 
 
 def test_forces_add_up_and_shares_are_those_of_the_points(run):

@@ -10,6 +10,7 @@ import soundfile
 
 import stridula as st
 from stridula.cli import bars
+from stridula.scenarios.load import Scenario
 
 
 @pytest.fixture(scope="module")
@@ -50,6 +51,23 @@ def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
     np.testing.assert_allclose(pressure["x"], track.length / 2 + np.array([-0.09, 0.09]))
     assert stridula("sound", "run.nc", "--wav", "again.wav")[0] == 0
     assert (tmp_path / "run.wav").read_bytes() == (tmp_path / "again.wav").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("name", "asked", "message"),
+    [
+        ("brake", ("--set", "surface_rate=1 kHz"), "surface_rate must be left out, or all, to be heard, got 1000.0"),
+        ("squeal", ("--duration", "10 us"), "duration must be at least 2e-05 s, two samples, to be heard, got 1e-05"),
+    ],
+)
+def test_what_cannot_be_heard_is_refused_before_the_run(stridula, monkeypatch, tmp_path, name, asked, message):
+    def fail(*_, **__):
+        raise AssertionError("it ran")
+
+    monkeypatch.setattr(Scenario, "simulate", fail)
+    code, out, err = stridula("run", name, *asked, "--wav", "run.wav")
+    assert (code, out, err) == (2, "", f"stridula: {message}\n")
+    assert written(tmp_path) == {}
 
 
 @pytest.mark.usefixtures("kept")

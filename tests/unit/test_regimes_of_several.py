@@ -264,7 +264,7 @@ def test_points_of_a_face_know_their_surface(tmp_path):
     )
     face = st.SurfaceContact(block, "bottom", st.RigidTrack(velocity=0.1), friction=st.Coulomb(0.3), name="face")
     load = [st.Force(one.tip, y=-1.0) for one in face.contacts]
-    run = st.simulate(st.System(face, load), 2e-3, sample_rate=1e5, probes=[])
+    run = st.simulate(st.System(face, load), 2e-3, sample_rate=1e5, probes=[], surface_rate="all")
     assert run.surface.values.tolist() == ["face"] * len(face.contacts)
     assert named(run.isel(contact=run.surface == "face")) == named(run)
     st.save(run, tmp_path / "face.nc")

@@ -29,10 +29,20 @@ def track_of(system: Any) -> ModalBeam | ModalPlate:
     raise ArgumentError("track", "be a modal beam or a modal plate to be heard", got=f"a {type(tracks[0]).__name__}")
 
 
-def check_heard(system: Any) -> None:
-    """Raise ValueError if no body in space and no track in a baffle can be heard of a system."""
+def check_heard(system: Any, surface_rate: float | str | None = None) -> None:
+    """Raise ValueError if no body in space and no track in a baffle can be heard of a system.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    surface_rate : float or str, optional
+        What is to be recorded of its surfaces, as for `simulate`: maps alone have no sound.
+    """
     if not bodies_heard(system)[0]:
         panel_of(track_of(system))
+    elif surface_rate is not None and not isinstance(surface_rate, str):
+        raise ArgumentError("surface_rate", "be left out, or all, to be heard", surface_rate)
 
 
 def heard(record: xr.Dataset, system: Any, places: Any = None, baffled: bool = True) -> xr.DataArray:

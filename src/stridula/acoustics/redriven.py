@@ -20,6 +20,8 @@ import xarray as xr
 from ..arrays import Array
 from ..assembly import Assembly, TurningModes, assemble
 from ..checks import ArgumentError
+from ..records.by_point import by_point
+from ..records.checked import record
 from ..system import System
 from .driven import FASTEST, LEAD, respond, steady
 from .recorded import sampled
@@ -71,11 +73,15 @@ def redriven(run: xr.Dataset, system: System) -> Moved:
     ValueError
         If the record is not usable or not one of the system.
     """
-    start, interval, steps, (normal, tangential) = sampled(run, "normal_force", "tangential_force")
-    flat, samples = assemble(system), normal.shape[1]
-    if "map_time" in run.dims:
+    given = record("run", run)
+    points = by_point(given)
+    if "map_time" in given.dims and points is given:
         words = "have the forces at all points of surfaces at every sample"
-        raise ArgumentError("run", words, run, got="a record with a surface_rate: record it without")
+        raise ArgumentError("run", words, run, got="a record of maps alone: leave surface_rate out")
+    start, interval, steps, (normal, tangential) = sampled(
+        _in_order(points, system), "normal_force", "tangential_force"
+    )
+    flat, samples = assemble(system), normal.shape[1]
     if len(normal) != len(system.contacts):
         words = f"be a record of this system, of {len(system.contacts)} contacts"
         raise ArgumentError("run", words, run, got=f"one of {len(normal)}")
@@ -83,8 +89,7 @@ def redriven(run: xr.Dataset, system: System) -> Moved:
     times = first + interval * np.arange(samples + 2 * LEAD)
     rows, signals = _of_contacts(flat, normal, tangential)
     if any(one.circle is not None for one in flat.contacts):
-        *_, (places,) = sampled(run, "contact_position")
-        rows, signals = _gone_round(flat, rows, signals, places[:, 0])
+        rows, signals = _gone_round(flat, rows, signals, _places(run, system))
     loads = _of_drives(flat, start, interval, min(steps, MOST_STEPS), samples)
     if system.initial_equilibrium is not None:
         # It has stood so for long.
@@ -96,6 +101,26 @@ def redriven(run: xr.Dataset, system: System) -> Moved:
     found, left_out = _moved(flat, forces, times, interval)
     pushed = 0.0 if loads.any() else (float(pushes[0]) * interval if pushes.size else None)
     return Moved(start, interval, samples, first, found, left_out, pushed)
+
+
+def _in_order(points: xr.Dataset, system: System) -> xr.Dataset:
+    """Return a record with its contacts in the order of the system, as it is where they have other names."""
+    names = list(system.contact_names)
+    if "contact" not in points.dims or sorted(points["contact"].values.tolist()) != sorted(names):
+        return points
+    return points.sel(contact=names)
+
+
+def _places(run: xr.Dataset, system: System) -> Array:
+    """Return abscissas of the contacts of a system [m], shape (contacts, samples), zero of the points of surfaces."""
+    *_, (places,) = sampled(run, "contact_position")
+    if len(places) == len(system.contacts):
+        return places[:, 0]
+    found = np.zeros((len(system.contacts), places.shape[-1]))
+    for name, values in zip(run["contact"].values.tolist(), places[:, 0], strict=True):
+        if name in system.contact_names:
+            found[system.contact_names.index(name)] = values
+    return found
 
 
 def _of_drives(flat: Assembly, start: float, interval: float, steps: int, samples: int) -> Array:

@@ -10,6 +10,7 @@ import xarray as xr
 
 from ..checks import ArgumentError, instance, listed, within
 from ..records import checked
+from ..records.by_point import by_point
 from ..records.by_surface import groups
 from ..records.plain import PlainRecord, plain_of
 from .regime_measures import BUDDING, Measures, Signals, Thresholds, measures
@@ -179,9 +180,9 @@ def _is_usable(run: PlainRecord) -> bool:
 def _checked(run: Any) -> PlainRecord:
     """Return the plain arrays of a record that has what is needed; ValueError if it is none."""
     given = run.labelled(*run.variables) if hasattr(run, "labelled") else run
-    held = checked.record("run", given, *NEEDED, least=2)
+    held = by_point(checked.record("run", given, *NEEDED, least=2))
     if "landings" in held.variables:
-        checked.record("run", given, "landings")
+        checked.record("run", held, "landings")
     if not held.sizes.get("contact", 1):
         raise ArgumentError("run", "have a contact", got="none")
     for word in OF_CONTACTS:

@@ -225,6 +225,12 @@ class BodyPoint:
         return next((name for name, position in named if position == self.position), None)
 
     @property
+    def place(self) -> Array | None:
+        """Where in the world it is at rest [m], shape (3,), None if it is not known."""
+        found = getattr(self.body, "place", None)
+        return None if found is None else found(self.position)
+
+    @property
     def circle(self) -> CircularPath | None:
         """The closed path that it stands for, None for a point alone."""
         return None

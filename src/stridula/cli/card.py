@@ -17,6 +17,7 @@ from ..analysis.phases import inside
 from ..analysis.regimes import LIMITS
 from ..analysis.several_contacts import loads, mean_shares
 from ..arrays import Array
+from ..records.by_point import by_point
 from ..records.by_surface import groups
 from ..records.variables import ENERGY, STATUS_WORDS
 from ..system import System
@@ -111,7 +112,7 @@ def _strings(record: xr.Dataset, system: System | None) -> dict[str, str]:
 
 def _contact(record: xr.Dataset) -> dict[str, str]:
     """Return what came of the contact; of several, of all together and of each one or each surface on its own line."""
-    if "contact" in record.dims:
+    if "contact" in by_point(record).dims:
         lines = {"regime": _regime(record)}
         for name, part in _parts(record):
             alone = _one_contact(part) if "contact" not in part.dims else _surface(part)
@@ -124,11 +125,14 @@ def _contact(record: xr.Dataset) -> dict[str, str]:
 
 def _parts(record: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
     """Yield the record of each contact, those of the points of a surface as one, and what it is called."""
-    names = [str(name) for name in record["contact"].values]
-    surfaces = [str(name) for name in record["surface"].values] if "surface" in record.coords else []
+    points = by_point(record)
+    names = [str(name) for name in points["contact"].values]
+    surfaces = [str(name) for name in points["surface"].values] if "surface" in points.coords else []
     for members in groups(names, surfaces):
-        whole = len(members) > 1
-        yield (surfaces if whole else names)[members[0]], record.isel(contact=members if whole else members[0])
+        if len(members) > 1:
+            yield surfaces[members[0]], points.isel(contact=members)
+        else:
+            yield names[members[0]], record.sel(contact=names[members[0]])
 
 
 def _surface(record: xr.Dataset) -> dict[str, str]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import xarray as xr
 
-from ..checks import ArgumentError
+from ..checks import ArgumentError, at_least
 from ..disk import check_writable
 from ..integration import Diverged, Interrupted
 from ..integration.watchers import Progress, Watcher
@@ -46,7 +46,7 @@ def run_scenario(
         )
     scenario = load_scenario(name, overrides)
     if wav is not None:
-        _check_wav(wav, name, out, plot, scenario.system)
+        _check_wav(wav, name, out, plot, scenario)
     try:
         with _progress(scenario.title or name) as watcher:
             record = scenario.simulate(watchers=[watcher])
@@ -67,7 +67,7 @@ def run_scenario(
         print(write_sound(record, scenario.system, wav))
 
 
-def _check_wav(wav: str, name: str, out: str | None, plot: str | None, system: Any) -> None:
+def _check_wav(wav: str, name: str, out: str | None, plot: str | None, scenario: Scenario) -> None:
     from ..acoustics.heard_system import check_heard
     from .sounding import check_ending
 
@@ -78,7 +78,10 @@ def _check_wav(wav: str, name: str, out: str | None, plot: str | None, system: A
         raise ArgumentError("--wav", "be another file than what is run", wav, got=f"{wav!r} for both")
     check_writable(wav)
     check_ending(wav)
-    check_heard(system)
+    check_heard(scenario.system, scenario.surface_rate)
+    if scenario.duration * scenario.sample_rate < 1.5:
+        words = f"be at least {at_least(2.0 / scenario.sample_rate)} s, two samples, to be heard"
+        raise ArgumentError("duration", words, scenario.duration)
 
 
 def _finish(record: xr.Dataset, scenario: Scenario, name: str, out: str | None, plot: str | None) -> list[str]:

@@ -9,6 +9,7 @@ from .rate_and_state import RateAndState
 from .rigid_track import RigidTrack
 from .stiffness import STIFFNESSES, ContactStiffness, HertzStiffness, LinearStiffness, PowerStiffness
 from .surface_contact import SurfaceContact
+from .surface_points import SurfacePoints
 from .weakening import ExponentialWeakening, LinearWeakening, Stribeck
 
 __all__ = [
@@ -29,4 +30,5 @@ __all__ = [
     "StaticKinetic",
     "Stribeck",
     "SurfaceContact",
+    "SurfacePoints",
 ]

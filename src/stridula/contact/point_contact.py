@@ -70,6 +70,8 @@ class PointContact:
         Stiffness of the contact itself, a number in N/m; rigid if left out.
     surface : str, optional
         Name of the surface that it is a point of: a part of its points may lift off in equilibrium.
+    area : float, optional
+        Area that it stands for, as a point of a surface [m²]; not known if left out.
 
     Notes
     -----
@@ -88,6 +90,7 @@ class PointContact:
     surface_velocity: Annotated[float | Sequence[float], OneOrEach(Number("m/s"))] = 0.0
     stiffness: ContactStiffness | float | None = None
     surface: str = ""
+    area: Annotated[float, Number("m2", least=0.0)] = 0.0
 
     def __post_init__(self) -> None:
         instance("tip", self.tip, BodyPoint)
@@ -109,6 +112,8 @@ class PointContact:
             raise ArgumentError("inclination", "be from -2 pi to 2 pi rad", self.inclination)
         for word in ("name", "surface"):
             instance(word, getattr(self, word), str)
+        if self.area and not self.surface:
+            raise ArgumentError("area", "be left out but at a point of a surface", self.area)
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
         self._check_directions()
 

@@ -6,6 +6,9 @@ import numpy as np
 
 from ..arrays import Array
 from .surface_contact import SurfaceContact
+from .surface_points import SurfacePoints
+
+Faces = SurfaceContact | SurfacePoints
 
 # Of each resultant its unit and meaning; force, moment and centre lie along the world's axes.
 RESULTANTS = {
@@ -19,20 +22,18 @@ RESULTANTS = {
 AXES = ("x", "y", "z")
 
 
-def forces_on(contact: SurfaceContact, normal: Array, tangential: Array) -> Array:
+def forces_on(contact: Faces, normal: Array, tangential: Array) -> Array:
     """Return the forces on the body at the points of a surface along the world's axes [N], (samples, points, 3)."""
     frames = np.array([one.frame for one in contact.contacts])
     return np.asarray(normal[..., None] * frames[:, 0] - np.einsum("tpi,pij->tpj", tangential, frames[:, 1:]))
 
 
-def resultants(
-    contact: SurfaceContact, normal: Array, tangential: Array, share: Array, slip: Array
-) -> dict[str, Array]:
+def resultants(contact: Faces, normal: Array, tangential: Array, share: Array, slip: Array) -> dict[str, Array]:
     """Return the resultants of a surface over time, by the names of `RESULTANTS`.
 
     Parameters
     ----------
-    contact : SurfaceContact
+    contact : SurfaceContact or SurfacePoints
         The surface.
     normal : ndarray, shape (samples, points)
         Normal forces [N].
@@ -41,7 +42,7 @@ def resultants(
     share : ndarray, shape (samples, points, 3)
         Shares of the interval in each status.
     """
-    places, areas = contact.points.place, contact.areas
+    places, areas = contact.places, contact.areas
     forces, total = forces_on(contact, normal, tangential), normal.sum(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
         centre = np.where(total[:, None] > 0.0, normal @ places / total[:, None], np.nan)

@@ -108,6 +108,11 @@ class SurfaceContact:
         """Areas of the points [m²], shape (points,)."""
         return self.points.area
 
+    @property
+    def places(self) -> Array:
+        """Places of the points [m], shape (points, 3)."""
+        return self.points.place
+
     @cached_property
     def contacts(self) -> tuple[PointContact, ...]:
         """The contacts of its points."""
@@ -133,6 +138,7 @@ class SurfaceContact:
                 stiffness=None if self.stiffness is None else per_area(self.stiffness, area),  # type: ignore[arg-type]
                 name=f"{self.name} {number + 1}",
                 surface=self.name,
+                area=area,
             )
             found.append(contact)
         return tuple(found)

@@ -27,6 +27,7 @@ from .marches import March
 from .run import Run
 from .schemes import Scheme
 from .simulate import Arrays, Asked
+from .surface_records import ALL_POINTS
 from .together import march_together
 from .watchers import Progress, Watcher
 
@@ -49,6 +50,7 @@ def simulate_many(
     sample_rate: float = 100e3,
     probes: Sequence[Probe] | None = None,
     contact_solve: GaussSeidel | None = None,
+    surface_rate: float | str | None = None,
     device: str = "cpu",
     workers: int | None = None,
     watchers: Sequence[Watcher] = (),
@@ -85,6 +87,8 @@ def simulate_many(
         What else to record, on bodies of all systems; as for `simulate` if left out.
     contact_solve : GaussSeidel, optional
         How several contacts are solved together.
+    surface_rate : float or str, optional
+        What is recorded of surfaces, as for `simulate`; plain records have all points as contacts if it is left out.
     device : {"cpu", "cuda"}, optional
         Where runs of the same kind march: on the processors, or all at once on an NVIDIA GPU, one in each thread.
     workers : int, optional
@@ -135,7 +139,9 @@ def simulate_many(
     wanted = _wanted(variables, labelled)
     if device == "cuda":
         require_cuda()
-    asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve)
+    if surface_rate is None and not labelled:
+        surface_rate = ALL_POINTS
+    asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve, surface_rate)
     results = _Results(errors == "return")
     arrays: dict[int, Arrays] = {}
     steps = []

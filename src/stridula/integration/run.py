@@ -30,7 +30,7 @@ from .restart import imposed_at, motion_about, moved_on, state_of
 from .schemes import Scheme
 from .start import state_at_start
 from .stops import ENDED, contact_words, divergence_words, rank_words
-from .surface_records import SurfaceRecord
+from .surface_records import ALL_POINTS, SurfaceRecord
 from .timing import Timing
 
 CONTACT_COLUMN = {
@@ -193,10 +193,15 @@ class Run:
 
     def plain_record(self) -> PlainRecord:
         """Return the record as plain arrays, in a fraction of the time."""
-        over = over_time(self.system, *self._over_time(), self.wanted)
+        surfaces = self.surfaces
+        over = over_time(
+            self.system, *self._over_time(), self.wanted, shown=None if surfaces is None else surfaces.shown
+        )
         variables = {name: values for name, (_, values) in over.items()}
-        names, surfaces = self.system.contact_names, self.system.surface_names
-        return PlainRecord(self._time(), variables, names, self._attributes(False, {}), surfaces)
+        names, points = self.system.contact_names, self.system.surface_names
+        if surfaces is not None:
+            names, points = surfaces.names, ()
+        return PlainRecord(self._time(), variables, names, self._attributes(False, {}), points)
 
     @property
     def _last_step(self) -> int:
@@ -263,7 +268,10 @@ class Run:
             "sample_rate": float(f"{1.0 / timing.interval:.12g}"),
         }
         if self.surfaces is not None:
-            simulation["surface_rate"] = float(f"{1.0 / (timing.interval * self.surfaces.every):.12g}")
+            if self.surfaces.points is None:
+                simulation["surface_rate"] = float(f"{1.0 / (timing.interval * self.surfaces.every):.12g}")
+        elif self.system.faces:
+            simulation["surface_rate"] = ALL_POINTS
         if self.solve != GaussSeidel():
             simulation["contact_solve"] = asdict(self.solve)
         return scenario_toml(self.system, self.probes, simulation)

@@ -14,14 +14,16 @@ from ..bodies import is_track
 from ..bodies.ordinary import of_ordinary_size
 from ..checks import ArgumentError, at_least, at_most, instance, positive
 from ..records import Acceleration, Probe
+from ..records.by_surface import groups
 from ..system import System
 from .contact_solve import GaussSeidel
 from .marches import March
+from .point_records import BYTES, PointRecord
 from .run import Run
 from .schemes import CentralDifference, ExactModal, Scheme
 from .stepping import Stepping
 from .stops import Diverged, Interrupted
-from .surface_records import SurfaceRecord
+from .surface_records import ALL_POINTS, SurfaceRecord
 from .timing import Timing
 from .together import march_together
 from .watchers import Watcher
@@ -29,6 +31,8 @@ from .watchers import Watcher
 LARGEST_RECORD = 8e9
 LARGEST_RATIO = 1_000_000
 SMALLEST_SHARE = 1e-7
+# Maps a second of surfaces where nobody says otherwise [Hz].
+MAP_RATE = 1e3
 
 
 def simulate(
@@ -43,7 +47,7 @@ def simulate(
     start: xr.Dataset | None = None,
     watchers: Sequence[Watcher] = (),
     title: str = "",
-    surface_rate: float | None = None,
+    surface_rate: float | str | None = None,
 ) -> xr.Dataset:
     """March a system in time and return its record.
 
@@ -74,9 +78,10 @@ def simulate(
         Called with a `Progress` between chunks of the march.
     title : str, optional
         Title of the record.
-    surface_rate : float, optional
-        Maps a second to record of surfaces [Hz], in the place of all their points at every sample; the nearest rate at
-        which an interval is a whole number of samples. All points at every sample if left out.
+    surface_rate : float or str, optional
+        Maps a second to record of surfaces [Hz] and nothing else of their points; the nearest rate at which an interval
+        is a whole number of samples. If left out, maps at 1 kHz, and what sound and regimes need of the points of
+        surfaces whose areas are known. With ``"all"`` every point is a contact of the record.
 
     Returns
     -------
@@ -84,10 +89,11 @@ def simulate(
         Forces (means over each sample interval), contact, energies and probes over ``time`` [s], with units and
         meanings in the attributes. ``attrs["ended"]`` is ``finished`` or ``off the track``; ``attrs["scenario"]`` is
         TOML that runs it again. The forces follow the convention: normal compressive, tangential on the track
-        along its tangent. Variables of the contact have the dimension ``contact`` where there are several. With a
-        `surface_rate` each surface is one of them: forces and counts are sums over its points, all else are means;
-        ``surface_force`` and the other resultants of `analysis.surface` are over ``face``, and variables that begin
-        with ``map_``, means over the interval, over ``map_time`` [s] and ``point``.
+        along its tangent. Variables of the contact have the dimension ``contact`` where there are several. Each surface
+        is one of them, but for a `surface_rate` of ``"all"``: forces and counts are sums over its points, all else are
+        means; ``surface_force`` and the other resultants of `analysis.surface` are over ``face``, variables that begin
+        with ``map_``, means over the interval, over ``map_time`` [s] and ``point``, and, without a `surface_rate`,
+        those that begin with ``point_`` over ``time`` and ``point``, in fewer digits.
 
     Raises
     ------
@@ -145,11 +151,11 @@ class Asked:
         sample_rate: float,
         probes: Sequence[Probe] | None,
         contact_solve: GaussSeidel | None,
-        surface_rate: float | None = None,
+        surface_rate: float | str | None = None,
     ) -> None:
         self.duration, self.step, self.sample_rate = positive("duration", duration), step, sample_rate
         self.common_step: float | None = None
-        self.surface_rate = None if surface_rate is None else positive("surface_rate", surface_rate)
+        self.surface_rate = checked_rate(surface_rate)
         self.scheme: Scheme = ExactModal() if scheme is None else scheme
         instance("scheme", self.scheme, (CentralDifference, ExactModal))
         if probes is not None and not isinstance(probes, Sequence):
@@ -177,30 +183,53 @@ class Asked:
     def run(self, arrays: Arrays, start: xr.Dataset | None = None, title: str = "") -> Run:
         """Return the run of a system, ready to march."""
         timing = self.timing(arrays)
-        surfaces = self._surfaces(arrays, timing)
-        rows = len(arrays.system.contacts)
-        if surfaces is not None:
-            rows = len(surfaces.shown) + -(-rows // surfaces.every)
-        columns = len(arrays.probes) + ENERGIES + COLUMNS * rows
-        if columns > LARGEST_RECORD / 8 / max(timing.samples, 1):
+        every = self._every(arrays.system, timing)
+        self._check_size(arrays, timing, every)
+        surfaces = None
+        if every:
+            points = sum(map(bool, arrays.system.surface_names))
+            kept = PointRecord(timing.samples, points, timing.ratio) if self.surface_rate is None else None
+            surfaces = SurfaceRecord(arrays.system, arrays.flat.firsts, every, kept)
+        return Run(arrays.system, arrays.flat, self.scheme, timing, arrays.probes, self.solve, start, title, surfaces)
+
+    def _check_size(self, arrays: Arrays, timing: Timing, every: int) -> None:
+        """Raise ValueError where a record would be too large."""
+        system = arrays.system
+        rows, more = len(system.contacts), 0
+        if every:
+            points = sum(map(bool, system.surface_names))
+            more = BYTES * points if self.surface_rate is None else 0
+            rows = len(groups(system.contact_names, system.surface_names)) + -(-rows // every)
+        size = 8 * (len(arrays.probes) + ENERGIES + COLUMNS * rows) + more
+        if size > LARGEST_RECORD / max(timing.samples, 1):
             raise ArgumentError(
                 "duration",
                 f"give a record below {LARGEST_RECORD / 1e9:g} GB",
                 self.duration,
                 got=f"{self.duration!r} s at {1 / timing.interval:.6g} Hz: lower sample_rate",
             )
-        return Run(arrays.system, arrays.flat, self.scheme, timing, arrays.probes, self.solve, start, title, surfaces)
 
-    def _surfaces(self, arrays: Arrays, timing: Timing) -> SurfaceRecord | None:
-        """Return what records surfaces in short, if that is asked for."""
-        if self.surface_rate is None:
-            return None
-        system, rate = arrays.system, 1.0 / timing.interval
+    def _every(self, system: System, timing: Timing) -> int:
+        """Return the samples in an interval of maps of surfaces, 0 where all points are contacts of the record."""
+        rate, asked = 1.0 / timing.interval, self.surface_rate
+        if isinstance(asked, str) or (asked is None and not system.faces):
+            return 0
+        if asked is None:
+            return max(1, round(rate / MAP_RATE))
         if not (system.surface_names and system.has_two_tangents):
-            raise ArgumentError("surface_rate", "be left out without surfaces in contact", self.surface_rate)
-        if self.surface_rate > rate * (1.0 + 1e-9):
-            raise ArgumentError("surface_rate", f"be at most the sample rate, {at_most(rate)} Hz", self.surface_rate)
-        return SurfaceRecord(system, arrays.flat.firsts, max(1, round(rate / self.surface_rate)))
+            raise ArgumentError("surface_rate", "be left out without surfaces in contact", asked)
+        if asked > rate * (1.0 + 1e-9):
+            raise ArgumentError("surface_rate", f"be at most the sample rate, {at_most(rate)} Hz", asked)
+        return max(1, round(rate / asked))
+
+
+def checked_rate(surface_rate: float | str | None) -> float | str | None:
+    """Return a rate of maps of surfaces, ``"all"`` or None; ValueError for anything else."""
+    if surface_rate is None or (isinstance(surface_rate, str) and surface_rate == ALL_POINTS):
+        return surface_rate
+    if isinstance(surface_rate, str):
+        raise ArgumentError("surface_rate", f"be a rate in Hz or {ALL_POINTS!r}", surface_rate)
+    return positive("surface_rate", surface_rate)
 
 
 def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float | None, sample_rate: float) -> Timing:

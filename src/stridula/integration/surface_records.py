@@ -14,6 +14,7 @@ from ..records.by_surface import groups
 from ..records.dataset import OVER_TIME
 from ..records.variables import STATUS, STATUS_SHARE, attributes_of, described, dominant_status, status_attributes
 from ..system import System
+from .point_records import PointRecord
 
 # Of the points of a surface, and of the samples of an interval of maps, these add up; of all else there is a mean.
 SUMMED = (at.NORMAL_FORCE, at.TANGENTIAL_FORCE, at.JAMMED, at.LANDINGS)
@@ -21,6 +22,8 @@ SHARES = slice(at.SEPARATED, at.SLIDING + 1)
 # What maps are of, means over an interval.
 MAPPED = ("normal_force", "tangential_force", "slip_velocity", STATUS_SHARE.name, STATUS.name)
 MAP = "map_"
+# What asks for all points of surfaces as contacts, in the place of a rate of maps.
+ALL_POINTS = "all"
 
 
 class SurfaceRecord:
@@ -34,10 +37,12 @@ class SurfaceRecord:
         Which pairs of rows are the first of a contact.
     every : int
         Samples in an interval of maps.
+    points : PointRecord, optional
+        What keeps the points at every sample, if that is asked for.
     """
 
-    def __init__(self, system: System, firsts: Array, every: int) -> None:
-        self.every = every
+    def __init__(self, system: System, firsts: Array, every: int, points: PointRecord | None = None) -> None:
+        self.every, self.points = every, points
         members = groups(system.contact_names, system.surface_names)
         self.shown = tuple(one[0] for one in members)
         self.names = tuple(system.surface_names[one[0]] or system.contact_names[one[0]] for one in members)
@@ -50,6 +55,7 @@ class SurfaceRecord:
         self.firsts = np.array([number % 2 == 0 for number, one in enumerate(rows) if len(one)])
         self._rows = [one for one in rows if len(one)]
         self._points = np.flatnonzero(np.array([bool(name) for name in system.surface_names]))
+        self._surfaces = [system.surface_names[number] for number in self._points]
         self._point_names = [system.contact_names[number] for number in self._points]
         self._first_rows = np.flatnonzero(firsts)
         self._has_second = np.append(is_second[1:], False)[self._first_rows]
@@ -67,6 +73,10 @@ class SurfaceRecord:
         for face, numbers, kept in zip(self._faces, self._of_face, self._resultants, strict=True):
             normal, tangential, slip, share = self._of_points(contacts, np.array(numbers))
             kept.append(resultants(face, normal, tangential, share, slip))
+        if self.points is not None:
+            normal, tangential, _, share = self._of_points(contacts, self._points)
+            landings = contacts[:, self._first_rows[self._points], at.LANDINGS]
+            self.points.take(normal, tangential, share, landings)
         self._keep_maps(contacts)
         found = np.stack([contacts[:, one].mean(axis=1) for one in self._rows], axis=1)
         for column in SUMMED:
@@ -105,9 +115,12 @@ class SurfaceRecord:
             values = np.stack([one[name] for one in self._maps]) if self._maps else empty
             words = status_attributes() if name == STATUS.name else attributes_of(OVER_TIME[name])
             data[MAP + name] = (("map_time", "point", *after), values, words)
+        if self.points is not None:
+            data |= self.points.variables()
         coordinates: dict[str, Any] = {
             "map_time": ("map_time", times, described("s", "time at the end of the interval of a map")),
             "point": ("point", self._point_names),
+            "point_surface": ("point", self._surfaces),
         }
         if self._faces:
             coordinates |= {"face": ("face", [face.name for face in self._faces]), "axis": ("axis", list(AXES))}

@@ -129,7 +129,7 @@ def _simulated(
     step = timing.step
     if step is None:
         step = choose_timing(assemble(system, ()), scheme, end, None, timing.sample_rate).step
-    run = simulate(system, end, scheme=scheme, step=step, sample_rate=1.0 / frame, probes=probes)
+    run = simulate(system, end, scheme=scheme, step=step, sample_rate=1.0 / frame, probes=probes, surface_rate="all")
     shown = run.isel(time=run["time"].values > start + 0.5 * float(run.attrs["sample_interval"]))
     if shown.sizes["time"] < FEWEST_FRAMES:
         ended = f"{run.attrs['ended']} at {at_most(float(run['time'][-1]))} s"

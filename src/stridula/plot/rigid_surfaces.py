@@ -20,12 +20,6 @@ POINTS = 80
 GOLDEN = np.pi * (3.0 - np.sqrt(5.0))
 
 
-def place_of(point: BodyPoint) -> Array | None:
-    """Return where in the world a point is at rest [m], None if its body does not know."""
-    body: Any = point.body
-    return body.place(point.position) if hasattr(body, "place") else None
-
-
 def rigid_surfaces(system: System, radius: float) -> dict[Any, DrawnSurface]:
     """Return the surfaces of the rigid bodies that touch, or are joined to, a point whose place is known.
 
@@ -43,7 +37,7 @@ def rigid_surfaces(system: System, radius: float) -> dict[Any, DrawnSurface]:
 
     def known(point: BodyPoint) -> Array | None:
         body: Any = point.body
-        return centres[body] + body.offset(point.position) if body in centres else place_of(point)
+        return centres[body] + body.offset(point.position) if body in centres else point.place
 
     left = [one for one in _joined(system) if hasattr(one[0].body, "shapes_at")]
     while ready := [one for one in left if one[0].body not in centres and known(one[1]) is not None]:

@@ -22,7 +22,7 @@ from ..contact import PointContact
 from ..system import System
 from .colours import STATUS_COLOURS
 from .motion import ModalMotion
-from .rigid_surfaces import place_of, rigid_surfaces
+from .rigid_surfaces import rigid_surfaces
 
 # Elevation above the plane across y and azimuth from z towards x: 30 and 35 degrees [rad].
 VIEW = (np.pi / 6.0, 7.0 * np.pi / 36.0)
@@ -280,7 +280,7 @@ def _axes_in_space(figure: Figure, room: tuple[float, float, float, float]) -> A
 def _known_end(contact: PointContact) -> BodyPoint | None:
     """Return the end of a contact whose place in the world is known, None if neither is."""
     ends = (contact.tip, contact.touched_point)
-    return next((one for one in ends if one is not None and place_of(one) is not None), None)
+    return next((one for one in ends if one is not None and one.place is not None), None)
 
 
 def _eye(view: tuple[float, float]) -> Array:

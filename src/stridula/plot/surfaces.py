@@ -82,9 +82,9 @@ def surface(
     ValueError
         If it is no face, or nothing of it was recorded then.
     """
-    found = _over_time(found)
-    face = _face(found)
     choice("quantity", quantity, QUANTITIES)
+    found = _over_time(found, quantity)
+    face = _face(found)
     shown, when = _chosen(found, time, span)
     maps = _maps(shown, quantity)
     means = [values.mean(axis=0) for _, values in maps]
@@ -136,9 +136,9 @@ def animate_surface(
     OSError
         If the file cannot be written.
     """
-    found = _over_time(found)
-    face = _face(found)
     choice("quantity", quantity, QUANTITIES)
+    found = _over_time(found, quantity)
+    face = _face(found)
     positive("slowdown", slowdown)
     writer = writer_for(out)
     shown, _ = _chosen(found, None, span)
@@ -224,16 +224,17 @@ class _FilmOfMaps:
         self.figure.suptitle(f"{self._words}\nt = {1e3 * time:.3f} ms", fontsize=10)
 
 
-def _over_time(found: xr.Dataset) -> xr.Dataset:
-    """Return the fields of a face over ``time``, whatever rate they have."""
+def _over_time(found: xr.Dataset, quantity: str) -> xr.Dataset:
+    """Return what is drawn of a face over ``time``, whatever rate it has."""
     instance("found", found, xr.Dataset)
-    if "map_time" not in found.dims:
-        return found
-    return found.drop_dims("time", errors="ignore").rename(map_time="time")
+    if any(name not in found for name in NEEDED):
+        raise ArgumentError("found", "be what analysis.surface returned, with at least one sample", found)
+    shown = found[["status_share" if quantity == "status" else quantity, "place", "area"]]
+    return shown.rename(map_time="time") if "map_time" in shown.dims else shown
 
 
 def _face(found: xr.Dataset) -> _Face:
-    if any(name not in found for name in NEEDED) or not found.sizes.get("time"):
+    if not found.sizes.get("time"):
         raise ArgumentError("found", "be what analysis.surface returned, with at least one sample", found)
     places, areas = found["place"].values, found["area"].values
     if len(places) < 3:

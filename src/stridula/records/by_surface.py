@@ -42,6 +42,8 @@ def by_surface(run: xr.Dataset) -> xr.Dataset:
         return run
     contacts, surfaces = ([str(name) for name in run[kind].values] for kind in ("contact", "surface"))
     members, found = groups(contacts, surfaces), {}
+    if len(members) == len(contacts):
+        return run
     for name, variable in run.data_vars.items():
         if "contact" not in variable.dims or not np.issubdtype(variable.dtype, np.number):
             continue

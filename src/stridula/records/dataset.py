@@ -65,8 +65,9 @@ def to_dataset(
     data: dict[str, Any] = {name: (*given, _attributes(name, system)) for name, given in over.items()}
     if len(coordinates["contact"][1]) == 1:
         del coordinates["contact"]
-    elif system.surface_names and shown is None:
-        coordinates["surface"] = ("contact", list(system.surface_names))
+    elif system.surface_names:
+        numbers = range(len(system.contacts)) if shown is None else shown
+        coordinates["surface"] = ("contact", [system.surface_names[number] for number in numbers])
     if system.has_two_tangents:
         coordinates["tangent"] = ("tangent", list(TANGENTS))
     for kind, variable in PROBES.items():

@@ -114,7 +114,7 @@ def _unmoved(connection: Connection) -> tuple[str, ...]:
 
 def _contact(contact: PointContact) -> dict[str, Any]:
     given = {"at": _value(contact.at), "gap": _value(contact.gap)}
-    for name in ("inclination", "name", "normal", "tangent", "surface_velocity", "surface"):
+    for name in ("inclination", "name", "normal", "tangent", "surface_velocity", "surface", "area"):
         if getattr(contact, name):
             given[name] = _value(getattr(contact, name))
     if contact.yields is not None:

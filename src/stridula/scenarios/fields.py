@@ -351,6 +351,33 @@ class NumberOrWord(_Kind):
 
 
 @dataclass(frozen=True)
+class QuantityOrWord(_Kind):
+    """A quantity, or a word in its place.
+
+    Attributes
+    ----------
+    one : Quantity
+        The quantity.
+    word : str
+        The word.
+    """
+
+    one: Quantity
+    word: str
+
+    def read(self, value: Any) -> float | str:
+        if value == self.word:
+            return self.word
+        try:
+            return self.one.read(value)
+        except ArgumentError as error:
+            raise _refused(f"{error.allowed} or {self.word!r}") from None
+
+    def json_schema(self) -> dict[str, Any]:
+        return {"anyOf": [*self.one.json_schema()["anyOf"], {"const": self.word}]}
+
+
+@dataclass(frozen=True)
 class Way(_Kind):
     """A direction: x, y, z, or three numbers."""
 
@@ -632,6 +659,7 @@ Length = Annotated[float, Quantity("m", above=0.0)]
 Distance = Annotated[float, Quantity("m", least=0.0)]
 Angle = Annotated[float, Quantity("rad")]
 Frequency = Annotated[float, Quantity("Hz", above=0.0)]
+FrequencyOrAll = Annotated[float | str, QuantityOrWord(Quantity("Hz", above=0.0), "all")]
 Time = Annotated[float, Quantity("s", above=0.0)]
 Velocity = Annotated[float, Quantity("m/s")]
 AnyAcceleration = Annotated[float, Quantity("m/s2")]

@@ -47,8 +47,8 @@ class Scenario:
         What else to record; the acceleration of the track's centre if None.
     contact_solve : GaussSeidel or None
         How several contacts are solved together; the default if None.
-    surface_rate : float or None
-        Maps of surfaces recorded per second [Hz]; all points at every sample if None.
+    surface_rate : float, str or None
+        What is recorded of surfaces, as for `simulate`: maps per second [Hz], or ``"all"`` points at every sample.
     """
 
     title: str
@@ -60,7 +60,7 @@ class Scenario:
     sample_rate: float
     probes: tuple[Probe, ...] | None
     contact_solve: GaussSeidel | None = None
-    surface_rate: float | None = None
+    surface_rate: float | str | None = None
 
     def simulate(self, **kwargs: Any) -> xr.Dataset:
         """March the system in time and return its record.

@@ -70,8 +70,8 @@ class Simulation(Table):
     """time step, a stated fraction of the scheme's limit if left out [s]"""
     sample_rate: is_.Frequency = 100e3
     """samples recorded per second [Hz]"""
-    surface_rate: is_.Frequency | None = None
-    """maps of surfaces recorded per second, in the place of all points at every sample [Hz]"""
+    surface_rate: is_.FrequencyOrAll | None = None
+    """maps of surfaces recorded per second and nothing else of their points [Hz], or all: each point is a contact"""
     probes: list[Probe] | None = None
     """what else to record, the acceleration of the track's centre if left out"""
     contact_solve: ContactSolve | None = None

@@ -17,6 +17,7 @@ from ..analysis.several_contacts import loads, mean_shares
 from ..analysis.signals import samples
 from ..analysis.stability import stability_of
 from ..checks import ArgumentError, brief, suggestion
+from ..records.by_point import by_point
 from ..records.plain import PlainRecord
 from ..records.variables import STATUS_WORDS
 from ..system import System
@@ -87,7 +88,7 @@ def _labelled(run: Run, *names: str) -> xr.Dataset:
 
 def _shares(run: Run) -> Values:
     """Return the shares of the time, of several contacts those of each weighing as it carries."""
-    known = _labelled(run, "status_share", "normal_force")
+    known = by_point(_labelled(run, "status_share", "normal_force"))
     if "contact" in known.dims:
         carried = loads(known["normal_force"].values, LIMITS.rare)
         found = mean_shares(known["status_share"].values, carried).tolist()

@@ -28,7 +28,7 @@ SAMPLE_RATE = 20e3
 # Samples per second recorded by `simulate` if nobody says otherwise.
 DEFAULT_RATE = 100e3
 # What a function may say of a simulation, beside its system.
-ARGUMENTS = ("duration", "scheme", "step", "sample_rate", "probes", "contact_solve")
+ARGUMENTS = ("duration", "scheme", "step", "sample_rate", "probes", "contact_solve", "surface_rate")
 SystemOf = Callable[..., Any]
 
 
@@ -172,6 +172,7 @@ def _made(function: SystemOf, values: Mapping[str, Any], given: Mapping[str, Any
         sample_rate=words["sample_rate"],
         probes=None if probes is None else tuple(probes),
         contact_solve=words.get("contact_solve"),
+        surface_rate=words.get("surface_rate"),
     )
 
 

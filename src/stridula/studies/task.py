@@ -92,6 +92,7 @@ class Task:
             "sample_rate": scenario.sample_rate,
             "probes": scenario.probes if self.probes else (),
             "contact_solve": scenario.contact_solve,
+            "surface_rate": scenario.surface_rate,
         }
 
     def _simulate(
