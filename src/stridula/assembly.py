@@ -727,12 +727,9 @@ def _rows_of(probe: Any, layout: _Layout, loads: list[_Load], direct: Array, con
             raise ArgumentError("probe", f"be of a mode below {modes}", probe, got=probe.mode)
         matrix[probe.derivative] = layout.blended(layout.full(probe.body, np.eye(1, modes, probe.mode)[0]))
         return ProbeRows(matrix, direct, contact)
-    along, across = probe.point.body.axes[:2]
-    world = dict(zip("xyz", np.eye(3), strict=True))
-    axis = np.pad({"axial": along, "transverse": across, **world}[probe.direction], (0, 3))[:3]
-    matrix[probe.derivative] = axis @ layout.trace(probe.point)
+    matrix[probe.derivative] = probe.along @ layout.trace(probe.point)
     if system.is_held(probe.point.body):
-        direct[len(loads) + probe.derivative] = axis[0]
+        direct[len(loads) + probe.derivative] = probe.along[0]
     return ProbeRows(matrix, direct, contact)
 
 

@@ -228,7 +228,7 @@ def _number_or_word(kind: declarations.NumberOrWord) -> _Kind:
 
 @read_as.register
 def _way(kind: declarations.Way) -> _Kind:
-    return Way()
+    return Way(kind)
 
 
 @read_as.register
@@ -352,17 +352,25 @@ class NumberOrWord(_Kind):
 
 @dataclass(frozen=True)
 class Way(_Kind):
-    """A direction: x, y, z, or three numbers."""
+    """A direction: a word, or three numbers.
+
+    Attributes
+    ----------
+    way : Way
+        As it is declared, with the words.
+    """
+
+    way: declarations.Way
 
     def read(self, value: Any) -> Any:
         try:
-            return declarations.Way().check("value", value)
+            return self.way.check("value", value)
         except ArgumentError:
-            raise _refused("be x, y, z or a list of three numbers, not all zero") from None
+            raise _refused(f"be {', '.join(self.way.words)} or a list of three numbers, not all zero") from None
 
     def json_schema(self) -> dict[str, Any]:
         row = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
-        return {"anyOf": [{"enum": list(declarations.Way.words)}, row]}
+        return {"anyOf": [{"enum": list(self.way.words)}, row]}
 
 
 @dataclass(frozen=True)
