@@ -578,14 +578,19 @@ def _contact(contact: PointContact, layout: _Layout, turning: tuple[TurningModes
             span = layout.spans[contact.track_body]
             circle = next(one for one in turning if one.span == span)
         return [
-            ContactRows(contact, fixed[:2], circle=circle),
+            ContactRows(contact, fixed[:2], *_path_spans(contact, layout), circle=circle),
             ContactRows(contact, second, is_second=True, circle=circle),
         ]
+    return [ContactRows(contact, fixed, *_path_spans(contact, layout))]
+
+
+def _path_spans(contact: PointContact, layout: _Layout) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Return the spans of modes that move a path along its normal and along its tangent, none without a path."""
     if contact.path_body is None:
-        return [ContactRows(contact, fixed)]
+        return (0, 0), (0, 0)
     first, end = layout.spans[contact.path_body]
     axial = first + len(contact.path_body.path().normal.multiples)
-    return [ContactRows(contact, fixed, (first, axial), (axial, end))]
+    return (first, axial), (axial, end)
 
 
 def _motion(system: System, imposed: Signal) -> Signal:

@@ -13,15 +13,14 @@ import stridula as st
 from stridula.connections import ends, unit
 from stridula.system import System
 
-SUPPORT = "support "
-
 
 @dataclass
 class IntoSpace:
     """What turns systems of the plane: bodies placed, all that acts on them along directions that are turned.
 
-    A point mass becomes a rigid body, which moves across the plane, too; a reduced body stays one, other bodies are
-    placed. `across` is the largest force across the plane over the largest normal force, of all runs.
+    A point mass becomes a rigid body, which moves across the plane, too; a reduced body stays one, tracks lie in
+    another plane, and other bodies are placed there. `across` is the largest force across the plane over the largest
+    normal force, of all runs.
     """
 
     rotation: np.ndarray
@@ -47,11 +46,7 @@ class IntoSpace:
         if pressed > 0.0:
             pulled = float(np.abs(run["tangential_force"].isel(tangent=1)).max())
             self.across = max(self.across, pulled / pressed)
-        run = run.isel(tangent=0, drop=True)
-        if any(isinstance(one, st.SupportForce) for one in probes or ()):
-            forces = run["displacement"].rename(displacement_probe="support_force_probe")
-            run = run.drop_dims("displacement_probe").assign(support_force=forces)
-        return run
+        return run.isel(tangent=0, drop=True)
 
     def sliding_stability(self, flat: System, **words: Any) -> xr.Dataset:
         """Return the small motions of a system of the plane in space."""
@@ -74,23 +69,21 @@ class IntoSpace:
             moved = None if body.translation is None else self.rotation[:, :2] @ body.translation
             return replace(body, points=rows, translation=moved)
         x, y = self.rotation[:, 0].tolist(), self.rotation[:, 1].tolist()
-        ends_of = {name: place for name, place in points.items() if name.startswith(SUPPORT)}
-        placed = st.ModalBody.placed(body, {name: points[name] for name in points if name not in ends_of}, x, y)
-        # The force on a support as what moves another point along y.
-        forces = {name: np.outer(y, body.support_force(end)) for name, end in ends_of.items()}
-        return replace(placed, points={**placed.points, **forces}) if forces else placed
+        if st.bodies.is_track(body):
+            return replace(body, plane=(x, y))
+        return st.ModalBody.placed(body, points, x, y)
 
     def _point(self, point: Any) -> Any:
-        return self._bodies[point.body].at(point.label)
+        body = self._bodies[point.body]
+        return body.at(point.position if body.has_positions else point.label)
 
     def _contact(self, contact: Any) -> Any:
-        track, directions = contact.track, {"normal": contact.frame[0], "tangent": contact.frame[1]}
+        tip = self._point(contact.tip)
         if contact.path_body is not None:
-            track = self._bodies[contact.path_body].at(repr(contact.at))
-        elif contact.touched_point is not None:
-            track = self._point(track)
-        turned = {name: self.turned(along) for name, along in directions.items()}
-        return replace(contact, tip=self._point(contact.tip), track=track, inclination=0.0, **turned)
+            return replace(contact, tip=tip, track=self._bodies[contact.path_body])
+        track = contact.track if contact.touched_point is None else self._point(contact.track)
+        normal, tangent = (self.turned(along) for along in contact.frame)
+        return replace(contact, tip=tip, track=track, inclination=0.0, normal=normal, tangent=tangent)
 
     def _drive(self, drive: Any) -> Any:
         if drive.push is not None:
@@ -113,7 +106,7 @@ class IntoSpace:
 
     def _probe(self, probe: Any) -> Any:
         if isinstance(probe, st.SupportForce):
-            return st.Displacement(self._bodies[probe.body].at(SUPPORT + probe.end), self.turned((0.0, 1.0)))
+            return replace(probe, body=self._bodies[probe.body])
         return replace(probe, point=self._point(probe.point), direction=self.turned(probe.along))
 
 
@@ -125,10 +118,4 @@ def _points(flat: System, probes: Sequence[Any]) -> dict[Any, dict[str, Any]]:
     points += [point for joint in flat.connections for point in ends(joint)]
     for point in points + [probe.point for probe in probes if hasattr(probe, "point")]:
         found[point.body][point.label] = point.position
-    for contact in flat.contacts:
-        if contact.path_body is not None:
-            found[contact.path_body][repr(contact.at)] = contact.at
-    for probe in probes:
-        if isinstance(probe, st.SupportForce):
-            found[probe.body][SUPPORT + probe.end] = probe.end
     return found

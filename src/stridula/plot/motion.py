@@ -154,8 +154,9 @@ def pair_of(system: System) -> tuple[FiniteElementBeam, ModalBeam | ModalPlate |
     slider: Any = system.slider
     track: Any = system.contacts[0].track
     several, touched = len(system.contacts) > 1, system.contacts[0].touched_point
-    if several or not isinstance(slider, FiniteElementBeam) or touched is not None:
+    if several or system.is_spatial or not isinstance(slider, FiniteElementBeam) or touched is not None:
         under = f"a point of {_a(touched.body)}" if touched is not None else _a(track)
+        under += " in space" if system.is_spatial else ""
         got = f"{len(system.contacts)} contacts" if several else f"{_a(slider)} on {under}"
         words = (
             "be a FiniteElementBeam on one ModalBeam, ModalPlate or RigidTrack, or have meshes in space, to be filmed"

@@ -238,6 +238,8 @@ def _whole(kind: declarations.Whole) -> _Kind:
 
 @read_as.register
 def _own(kind: declarations.Own) -> _Kind:
+    if kind.what == "plane":
+        return Numbers((2,))
     if kind.what != "damping":
         raise TypeError(f"no scenario can give {kind}")
     return RatioOrLaw(each=True)
