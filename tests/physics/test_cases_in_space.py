@@ -64,11 +64,11 @@ LOOSE = {
     "belt": 0.1,
     # A kick of 1e-7 m on 1 m, whose exponents are taken from differences: round-off of 1 m over them.
     "falling-friction": 0.03,
-    # Errors of fourth order fall to 1e-10 of the motion, at which the solve along two tangents is rounded.
+    # Its smallest error is 1.5e-13, of which rounding is a share.
     "order-sliding": 0.2,
     # Rows of free damped motion are their own round-off.
     "order-time": 1e-2,
-    # Every slip begins with an instability that rounding starts.
+    # Its order is taken from small differences of peaks.
     "lugre": 1e-2,
     # Round-off of the gap at rest, over the square of a step, kicks by 4e-8 of the normal force a motion of 1e-4 of it.
     "sliding-stability": 10.0,
@@ -96,6 +96,13 @@ def rows_in_the_plane(name: str):
     return BY_NAME[name].run().rows
 
 
+def share(name: str, row) -> float:
+    """Return the share of its tolerance by which a row may differ from that of the plane."""
+    # The formula of sliding stability is matched to round-off, which is its tolerance.
+    by_formula = name == "sliding-stability" and "in time" not in row.quantity
+    return 1.0 if by_formula else LOOSE.get(name, CLOSE)
+
+
 def words(rows) -> list[tuple[str, str]]:
     """Return what rows are of; some say a growth of zero, whose sign rounding makes."""
     return [(row.quantity.replace("growth -0 ", "growth 0 "), row.scheme) for row in rows]
@@ -108,10 +115,10 @@ def test_a_case_gives_in_space_what_it_gives_in_the_plane(name, seed):
     rows, space = rows_in_space(name, Rotation.random(random_state=number).as_matrix())
     assert space.runs > 0
     assert space.across < 1e-6
-    flat, loose = rows_in_the_plane(name), LOOSE.get(name, CLOSE)
+    flat = rows_in_the_plane(name)
     assert words(rows) == words(flat)
     for row, known in zip(rows, flat, strict=True):
-        size = max(abs(known.expected), abs(known.obtained))
+        size, loose = max(abs(known.expected), abs(known.obtained)), share(name, row)
         assert abs(row.obtained - known.obtained) <= 1e-9 * size + loose * row.tolerance, (row, known)
         assert abs(row.error) <= max(1.0, loose) * row.tolerance, row
 
