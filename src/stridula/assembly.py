@@ -578,14 +578,19 @@ def _contact(contact: PointContact, layout: _Layout, turning: tuple[TurningModes
             span = layout.spans[contact.track_body]
             circle = next(one for one in turning if one.span == span)
         return [
-            ContactRows(contact, fixed[:2], circle=circle),
+            ContactRows(contact, fixed[:2], *_path_spans(contact, layout), circle=circle),
             ContactRows(contact, second, is_second=True, circle=circle),
         ]
+    return [ContactRows(contact, fixed, *_path_spans(contact, layout))]
+
+
+def _path_spans(contact: PointContact, layout: _Layout) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Return the spans of modes that move a path along its normal and along its tangent, none without a path."""
     if contact.path_body is None:
-        return [ContactRows(contact, fixed)]
+        return (0, 0), (0, 0)
     first, end = layout.spans[contact.path_body]
     axial = first + len(contact.path_body.path().normal.multiples)
-    return [ContactRows(contact, fixed, (first, axial), (axial, end))]
+    return (first, axial), (axial, end)
 
 
 def _motion(system: System, imposed: Signal) -> Signal:
@@ -727,12 +732,9 @@ def _rows_of(probe: Any, layout: _Layout, loads: list[_Load], direct: Array, con
             raise ArgumentError("probe", f"be of a mode below {modes}", probe, got=probe.mode)
         matrix[probe.derivative] = layout.blended(layout.full(probe.body, np.eye(1, modes, probe.mode)[0]))
         return ProbeRows(matrix, direct, contact)
-    along, across = probe.point.body.axes[:2]
-    world = dict(zip("xyz", np.eye(3), strict=True))
-    axis = np.pad({"axial": along, "transverse": across, **world}[probe.direction], (0, 3))[:3]
-    matrix[probe.derivative] = axis @ layout.trace(probe.point)
+    matrix[probe.derivative] = probe.along @ layout.trace(probe.point)
     if system.is_held(probe.point.body):
-        direct[len(loads) + probe.derivative] = axis[0]
+        direct[len(loads) + probe.derivative] = probe.along[0]
     return ProbeRows(matrix, direct, contact)
 
 

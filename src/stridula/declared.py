@@ -8,7 +8,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Annotated, Any, ClassVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -123,17 +123,26 @@ class NumberOrWord:
 
 @dataclass(frozen=True)
 class Way:
-    """A direction: a word for one of the world's axes, or its three components, of any length."""
+    """A direction: a word for one of the world's axes, or its three components, of any length.
 
-    words: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    Attributes
+    ----------
+    words : tuple of str
+        The words, of which a description may have more.
+    """
+
+    words: tuple[str, ...] = ("x", "y", "z")
 
     def check(self, name: str, value: Any) -> str | tuple[float, ...]:
         """Return a word, or three components as a tuple, if it is a direction."""
         if isinstance(value, str):
             return choice(name, value, self.words)
+        allowed = f"be {', '.join(self.words)} or three numbers, not all zero"
+        if not isinstance(value, (Sequence, np.ndarray)):
+            raise ArgumentError(name, allowed, value)
         found = Each(Number()).check(name, value)
         if len(found) != 3 or not any(found):
-            raise ArgumentError(name, "be x, y, z or three numbers, not all zero", value)
+            raise ArgumentError(name, allowed, value)
         return found
 
 

@@ -645,12 +645,6 @@ BAD = {
         lambda: st.LuGre(0.4, 0.3, 0.1, 1e4, initial_state=(0.0, 1e-6, 0.0)),
         "initial_state must be one number, or two in space, got",
     ),
-    "beam": (
-        lambda: st.PointContact(
-            BODY.centre, st.ModalBeam(st.Material(2e11, 7800.0), st.Rectangle(0.01, 0.01), 1.0, cutoff=1e3), at=0.5
-        ),
-        "track must be a RigidTrack or a BodyPoint for a body in space",
-    ),
     "surface of a track": (
         lambda: st.PointContact(BODY.centre, st.RigidTrack(), surface_velocity=1.0),
         "surface_velocity must be 0 but against a point of a body",

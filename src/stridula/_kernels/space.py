@@ -14,7 +14,7 @@ from . import layout as at
 from .block_rows import COMPLIANCE, DISPLACEMENT
 from .bristles import next_bristles, slide_on_bristles
 from .contact import SLIDING, STICKING, velocity_at
-from .friction import STRICT
+from .friction import STRICT, set_valued, sliding_ratio
 from .lanes import choose, component, held, hold, lane, magnitude, spread, with_lane
 from .modes import OPTIONS, PASTED
 from .solves import carried_by, solve_one_run, strayed
@@ -26,6 +26,8 @@ TRIALS, ACROSS = 80, 1e-12
 LONGEST, SETTLED = 1.0, 1e-7
 # Steps of Newton's method for a direction.
 NEWTON = 12
+# Share across the last slip of what a slip loses in a step, up to which it turns round on its line.
+STRAIGHT = 1e-6
 # Relative determinant of the compliance of the tangents below which the slip alone tells a direction.
 SINGULAR = 1e-12
 
@@ -143,14 +145,17 @@ def solve_along(c, s, free, law, laws, number, before, let_go, step):
 
 
 @numba.njit(**STRICT)
-def carried_on_by(before, let_go):
+def carried_on_by(before, let_go, first, second):
     """Return the share of the last two slips in the velocity that friction is along, in units of a ninth of a slip.
 
-    Where contacts that come to rest together find no forces with it, friction is along the slip after some sweeps.
+    Where contacts that come to rest together find no forces with it, friction is along the slip after some sweeps. So
+    it is where a contact begins to slide against what it came from: it was at rest, and has no direction before.
     """
-    if let_go > 0.0:
+    moved, swerved = 6.0 * before[1][0] + before[2][0], 6.0 * before[1][1] + before[2][1]
+    begins = before[0] < SLIDING - 0.5 and first * moved + second * swerved <= 0.0
+    if let_go > 0.0 or begins:
         return 0.0, 0.0
-    return 6.0 * before[1][0] + before[2][0], 6.0 * before[1][1] + before[2][1]
+    return moved, swerved
 
 
 @numba.njit(**STRICT)
@@ -158,6 +163,26 @@ def slip_under(c, s, normal, tangential, slips, w):
     """Return the slip along both tangents under a normal force and one along a direction."""
     first = slips[0] + w[3] * normal - (c * w[4] + s * w[5]) * tangential
     return first, slips[1] + w[6] * normal - (c * w[7] + s * w[8]) * tangential
+
+
+@numba.njit(**STRICT)
+def turns_on_its_line(free, law, laws, number, last):
+    """Return whether friction along the last slip turns it round with nothing but rounding across.
+
+    The velocity passes zero then, near which every direction has none across it.
+    """
+    gap, slips, _, w = free
+    size = math.hypot(last[0], last[1])
+    if size == 0.0 or not set_valued(law):
+        return False
+    c, s, ratio = last[0] / size, last[1] / size, sliding_ratio(law, laws, number, 0.0)
+    clear = w[0] - ratio * (c * w[1] + s * w[2])
+    if clear <= 0.0:
+        return False
+    normal = -gap / clear
+    slip, swerve = slip_under(c, s, normal, ratio * normal, slips, w)
+    farther, across = c * slip + s * swerve, c * swerve - s * slip
+    return farther < 0.0 and abs(across) <= STRAIGHT * (size - farther)
 
 
 @numba.njit(**STRICT)
@@ -177,15 +202,22 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
     if not may_hold:
         mu, size = laws[number, 0], math.hypot(guess[0], guess[1])
         near = (guess[0] / size, guess[1] / size) if size > 0.0 else (first, second)
-        carried_on = carried_on_by(before, let_go)
+        carried_on = carried_on_by(before, let_go, first, second)
         c, s, found = sliding_direction(gap, slips, w, mu, carried_on, near)
         if found:
             normal = -gap / (w[0] - mu * (c * w[1] + s * w[2]))
             slip, swerve = slip_under(c, s, normal, mu * normal, slips, w)
-            if was < SLIDING - 0.5 or c * slip + s * swerve >= 0.0:
+            # Against the last slip it turns round within the step, which only the contact along a line knows.
+            turns = let_go == 0.0 and c * last[0] + s * last[1] < 0.0
+            if was < SLIDING - 0.5 or (c * slip + s * swerve >= 0.0 and not turns):
                 return normal, mu * normal * c, mu * normal * s, 2.0, 0.0
             first, second = c, s
     free = (gap, slips, strays, w)
+    if was > SLIDING - 0.5 and let_go == 0.0 and turns_on_its_line(free, law, laws, number, last):
+        size = math.hypot(last[0], last[1])
+        c, s = last[0] / size, last[1] / size
+        normal, tangential, status, jammed = solve_along(c, s, free, law, laws, number, before, let_go, step)
+        return normal, tangential * c, tangential * s, status, jammed
     c, s, normal, tangential, status, jammed = searched(
         first, second, may_hold, free, law, laws, number, before, let_go, step
     )
@@ -205,7 +237,7 @@ def searched(first, second, may_hold, free, law, laws, number, before, let_go, s
 
     Where a contact may be held and is along the first direction, it is held.
     """
-    carried_on, (_, slips, _, w) = carried_on_by(before, let_go), free
+    carried_on, (_, slips, _, w) = carried_on_by(before, let_go, first, second), free
     turn, low, high = 0.0, -math.inf, math.inf
     turn_before, across_before = math.nan, math.nan
     c, s, normal, tangential, status, jammed = first, second, 0.0, 0.0, 0.0, 0.0

@@ -62,8 +62,9 @@ def radiate(
     listener : tuple of float, or sequence of tuples, optional
         Where one listens, x, y, z [m]: x along the track from its left end, y across it in its surface, from the axis
         of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above the
-        middle of the track if left out. In space they are those of the world; the ears are then a metre above the
-        middle of what is heard, on the side of the first contact's tip.
+        middle of the track if left out. These are the axes of a track in space, too. Of a system in space they are
+        those of the world; the ears are then a metre above the middle of what is heard, on the side of the first
+        contact's tip.
     bodies : sequence of AxisymmetricBody or SolidBody, optional
         Which bodies of a system are heard; all that have a surface if left out.
     baffled : bool, optional

@@ -54,6 +54,9 @@ def pressing(run: xr.Dataset, panel: Panel) -> Pressing:
         If it is no record, has one sample, is not evenly sampled, diverged, holds NaN, or presses beyond the track.
     """
     start, interval, steps, (force, position) = sampled(run, "normal_force", "contact_position")
+    if position.ndim == 3:
+        # In space the track lies along the first tangent.
+        position = position[:, 0]
     _check_on_track(position, panel)
     before = np.concatenate([position[:, :1], position[:, :-1]], axis=1)
     return Pressing(start, interval, steps, force, (before + position) / 2.0)

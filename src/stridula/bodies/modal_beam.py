@@ -16,12 +16,13 @@ from .drawn_lines import places_between
 from .modes import Array, BodyPoint, Modes, hashed_once
 from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .paths import Path, along_one_angle
+from .planes import InPlane, checked_plane
 from .sections import Circle, Material, Rectangle, Section
 
 
 @hashed_once
 @dataclass(frozen=True)
-class ModalBeam:
+class ModalBeam(InPlane):
     """A straight beam or string along world x in its exact modes ``sin(k pi x / L)``, bending first, then axial ones.
 
     Euler-Bernoulli, simply supported in bending: ``w_k = (k pi/L)² sqrt(EI / rho S)``; clamped in traction:
@@ -50,6 +51,9 @@ class ModalBeam:
         What it is called in records; tells equal bodies apart.
     tension : float, optional
         Tension [N]; constant, it stiffens bending and leaves the axial modes as they are.
+    plane : sequence, optional
+        Unit vectors along it and towards the slider, [[x, y, z], [x, y, z]], of a beam in space; they stand for world x
+        and y above.
 
     Raises
     ------
@@ -59,7 +63,6 @@ class ModalBeam:
 
     kind: ClassVar[str] = "modal beam"
     point_names: ClassVar[tuple[str, ...]] = ("centre",)
-    is_spatial: ClassVar[bool] = False
     has_positions: ClassVar[bool] = True
     has_translation: ClassVar[bool] = True
     material: Material
@@ -71,6 +74,7 @@ class ModalBeam:
     cutoff: Frequency | None = None
     name: Name = ""
     tension: Tension = 0.0
+    plane: Annotated[Sequence[Sequence[float]], Own("plane")] | None = None
 
     @of_ordinary_size("material, section and length")
     def __post_init__(self) -> None:
@@ -78,6 +82,8 @@ class ModalBeam:
         instance("section", self.section, (Rectangle, Circle, Section))
         check_declared(self)
         object.__setattr__(self, "damping", checked_damping(self.damping))
+        if self.plane is not None:
+            object.__setattr__(self, "plane", checked_plane("plane", self.plane))
         if self.cutoff is not None:
             check_first_modes((self._bending(1), self._axial(1)), self.cutoff)
             if self.harmonics[0] < 1:
@@ -125,11 +131,6 @@ class ModalBeam:
         within("position", position, 0.0, self.length)
 
     @property
-    def axes(self) -> Array:
-        """Unit vectors of the axial and the transverse direction in the world frame, shape (2, 2)."""
-        return np.eye(2)
-
-    @property
     def total_mass(self) -> float:
         """Mass [kg]."""
         return self.material.density * self.section.area * self.length
@@ -157,20 +158,23 @@ class ModalBeam:
         return _modes(self)
 
     def trace(self, position: float, held_x: bool = False) -> Array:
-        """Return the rows that give the displacement (u, w) at abscissa `position` from the modes, shape (2, modes)."""
+        """Return the rows that give the displacement at abscissa `position` along the world's axes from the modes.
+
+        Without a plane that is (u, w), shape (2, modes), else the shape is (3, modes).
+        """
         self.check_position(position)
         bending, axial = self.harmonics
         rows = np.zeros((2, bending + axial))
         rows[1, :bending] = self.amplitude * np.sin(np.arange(1, bending + 1) * np.pi * position / self.length)
         rows[0, bending:] = self.amplitude * np.sin(np.arange(1, axial + 1) * np.pi * position / self.length)
-        return rows
+        return self.in_the_world(rows)
 
     def path(self) -> Path:
         """Return the line along which others slide: its axis."""
         return _path(self)
 
     def support_force(self, end: str) -> Array:
-        """Return the rows that give the force along y on the support of an end from the modes, shape (modes,).
+        """Return the rows that give the force along its normal on the support of an end from the modes, shape (modes,).
 
         ``T w' - EI w'''`` at the left end, its opposite at the right end. Of a mode that is ``w_k²`` times its inertia
         about the other end, ``rho S L / k pi`` of its amplitude.
@@ -218,4 +222,4 @@ def _modes(beam: ModalBeam) -> Modes:
     translation = np.zeros((2, angular.size))
     translation[1, : bending.size] = line * mean_bending
     translation[0, bending.size :] = line * mean_axial
-    return Modes(angular, damping_rates(beam.damping, angular), translation)
+    return Modes(angular, damping_rates(beam.damping, angular), beam.in_the_world(translation))

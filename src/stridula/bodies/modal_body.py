@@ -20,11 +20,9 @@ from .half_space import half_space_shapes, surface_frame
 from .matrix_input import check_finite, numbers, rows_of
 from .modes import Body, Modes
 from .named_points import NamedPoints
+from .planes import checked_plane
 from .sections import Material
 from .turning import Turning
-
-# Error of unit vectors at right angles that rounding may make.
-SQUARE = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,9 +140,7 @@ class ModalBody(NamedPoints):
         """
         if not hasattr(body, "trace") or body.is_spatial:
             raise ArgumentError("body", "be a body of the plane", body)
-        axes = np.array([numbers("x", x), numbers("y", y)])
-        if axes.shape != (2, 3) or not np.allclose(axes @ axes.T, np.eye(2), rtol=0.0, atol=SQUARE):
-            raise ArgumentError("x and y", "be unit vectors at right angles, three numbers each", (x, y))
+        axes = np.array(checked_plane("x and y", (x, y)))
         modes = body.modes()
         if modes.damping_matrix is not None:
             raise ArgumentError("body", "be without a damping matrix of its own", body, got="one with")

@@ -17,6 +17,7 @@ from .modes import Array, BodyPoint, Modes
 from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .paths import Path, Waves, along_one_angle
 from .plane_stress import PlaneStress, lowest, plane_stress, rigid
+from .planes import InPlane, checked_plane
 from .sections import Material
 
 # Sine or cosine that rounding leaves of a right angle.
@@ -58,7 +59,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class ModalPlate:
+class ModalPlate(InPlane):
     """A thin rectangular plate in its exact modes, those of bending first, each kind by rising frequency.
 
     Kirchhoff, simply supported along its edges: ``w = sin(m pi x / length) sin(n pi y / width)`` and
@@ -96,6 +97,9 @@ class ModalPlate:
     in_plane_modes : tuple of int, optional
         Most half-waves along the length and along the width of the modes in the plane, counted from 0; not both 0. A
         pair of them is a longitudinal mode and, where neither is 0, a shear mode.
+    plane : sequence, optional
+        Unit vectors along its line and along its normal, [[x, y, z], [x, y, z]], of a plate in space; they stand for
+        world x and y above.
 
     Raises
     ------
@@ -106,7 +110,6 @@ class ModalPlate:
 
     kind: ClassVar[str] = "modal plate"
     point_names: ClassVar[tuple[str, ...]] = ("centre",)
-    is_spatial: ClassVar[bool] = False
     has_positions: ClassVar[bool] = True
     has_translation: ClassVar[bool] = True
     material: Material
@@ -120,6 +123,7 @@ class ModalPlate:
     name: str = ""
     in_plane: bool = False
     in_plane_modes: tuple[int, int] = (6, 6)
+    plane: Sequence[Sequence[float]] | None = None
 
     @of_ordinary_size("material, thickness, length and width")
     def __post_init__(self) -> None:
@@ -133,6 +137,8 @@ class ModalPlate:
         if not any(self.in_plane_modes):
             raise ArgumentError("in_plane_modes", f"be {FROM_0}", self.in_plane_modes)
         object.__setattr__(self, "damping", checked_damping(self.damping))
+        if self.plane is not None:
+            object.__setattr__(self, "plane", checked_plane("plane", self.plane))
         instance("name", self.name, str)
         if self.cutoff is not None:
             check_first_modes((2.0 * math.pi * self._frequency(1, 1),), positive("cutoff", self.cutoff))
@@ -192,11 +198,6 @@ class ModalPlate:
         if not isinstance(position, tuple):
             return position
         return float(np.subtract(position, self.track_line.origin) @ np.array(self.track_line.tangent))
-
-    @property
-    def axes(self) -> Array:
-        """Unit vectors of the line and of the plate's normal in the world frame, shape (2, 2)."""
-        return np.eye(2)
 
     @property
     def rigidity(self) -> float:
@@ -300,15 +301,16 @@ class ModalPlate:
 
         Returns
         -------
-        ndarray, shape (2, modes)
-            Displacements along the line and along the normal for unit modes [kg^(-1/2)].
+        ndarray, shape (2, modes) or (3, modes)
+            Displacements along the line and along the normal, with a plane along world x, y and z, for unit modes
+            [kg^(-1/2)].
         """
         x, y = self._point(position)
         bending, in_plane = self.harmonics
         rows = np.zeros((2, bending + in_plane))
         rows[1, :bending] = self.shapes(x, y)
         rows[0, bending:] = np.array(self.track_line.tangent) @ self.in_plane_shapes(x, y)
-        return rows
+        return self.in_the_world(rows)
 
     def path(self) -> Path:
         """Return the line along which others slide.
@@ -446,7 +448,7 @@ def _modes(plate: ModalPlate) -> Modes:
     moved = sheet.amplitudes * [_mean_of_sine(along) * (across == 0), _mean_of_sine(across) * (along == 0)]
     translation[0, len(m) :] = math.sqrt(plate.total_mass) * (np.array(plate.track_line.tangent) @ moved)
     angular = 2.0 * np.pi * np.concatenate([plate._frequency(m, n), sheet.frequency])
-    return Modes(angular, damping_rates(plate.damping, angular), translation)
+    return Modes(angular, damping_rates(plate.damping, angular), plate.in_the_world(translation))
 
 
 def _mean_of_sine(half_waves: Array) -> Array:

@@ -62,7 +62,7 @@ class PointContact:
     tangent : sequence of float, optional
         World components of what lies along the first tangent in space; world x, or z where the normal is along x, if
         left out. What it has along the normal is taken off. The second tangent is the first times the normal. Left out
-        on a circle, whose direction is the first tangent.
+        on a circle, whose direction is the first tangent; on a beam or a plate, whose axes they are, so is the normal.
     surface_velocity : float or sequence of float, optional
         Velocity at which the surface of a touched point's body moves under the tip [m/s], as that of a disc that turns
         about its axis while its vibration is seen from where it stands: along the tangent, in space along both.
@@ -126,6 +126,8 @@ class PointContact:
                 raise ArgumentError(name, "be three numbers, not all zero", given)
             if not self.is_spatial:
                 raise ArgumentError(name, "be left out between bodies in the plane: inclination turns it", given)
+            if self.path_body is not None:
+                raise ArgumentError(name, "be left out on a beam or a plate, whose axes it has", given)
         self._check_surface()
         self._check_circle()
         self._check_turning()
@@ -134,8 +136,6 @@ class PointContact:
         if self.tangent is not None and np.linalg.norm(np.cross(*self.frame[:2])) < 0.5:
             raise ArgumentError("tangent", "not lie along the normal", self.tangent)
         if self.is_spatial:
-            if self.path_body is not None:
-                raise ArgumentError("track", "be a RigidTrack or a BodyPoint for a body in space", self.track)
             return
         for name, across in (
             ("track.lateral_velocity", self.rigid_track.lateral_velocity if self.rigid_track else 0.0),
@@ -207,8 +207,7 @@ class PointContact:
     @property
     def is_spatial(self) -> bool:
         """Whether a body in space touches, so that there are two tangents."""
-        touched = self.touched_point
-        return self.tip.body.is_spatial or (touched is not None and touched.body.is_spatial)
+        return self.tip.body.is_spatial or getattr(self.track_body, "is_spatial", False)
 
     @property
     def has_state_vector(self) -> bool:
@@ -251,6 +250,8 @@ class PointContact:
 
     @property
     def _normal_in_space(self) -> Array:
+        if self.path_body is not None:
+            return np.pad(self.path_body.axes[1], (0, 3))[:3]
         normal = np.append(self._plane_frame[0], 0.0) if self.normal is None else np.array(self.normal, dtype=float)
         return np.asarray(normal / np.linalg.norm(normal))
 
@@ -264,6 +265,8 @@ class PointContact:
             along = np.array(self.tangent, dtype=float)
         if self.circle is not None:
             along = self.circle.direction(self.at)
+        if self.path_body is not None:
+            along = np.pad(self.path_body.axes[0], (0, 3))[:3]
         tangent = along - (along @ normal) * normal
         size = np.linalg.norm(tangent)
         tangent = tangent / size if size > ALONG_AN_AXIS * np.linalg.norm(along) else normal

@@ -340,4 +340,6 @@ def assembled(system: System, probes: Sequence[Probe]) -> Assembly:
     if not is_track(system.contacts[0].track):
         kind = type(system.contacts[0].track).__name__
         raise ArgumentError("track", "be a ModalBeam or a ModalPlate to march without end", got=f"a {kind}")
+    if system.is_spatial:
+        raise ArgumentError("system", "lie in the plane to march without end", system, got="one in space")
     return assemble(system, probes)

@@ -167,8 +167,7 @@ class Asked:
     def arrays(self, system: System) -> Arrays:
         """Return a system as flat arrays."""
         instance("system", system, System)
-        default = (Acceleration(system.track.centre, "y"),) if is_track(system.track) else ()
-        probes = tuple(self.probes) if self.probes is not None else default
+        probes = _usual_probes(system) if self.probes is None else tuple(self.probes)
         for number, probe in enumerate(probes):
             instance(f"probes[{number}]", probe, Probe.__args__)
         return Arrays(system, probes, assemble(system, probes))
@@ -262,3 +261,10 @@ def _sampled(step: float, ratio: int, duration: float) -> Timing:
     if duration < 0.5 * interval:
         raise ArgumentError("duration", f"be at least half a sample interval of {at_least(interval)} s", duration)
     return Timing(step, ratio, max(1, round(duration / interval)))
+
+
+def _usual_probes(system: System) -> tuple[Probe, ...]:
+    """Return the probes of a run that asks for none: the acceleration in the middle of its track, along its normal."""
+    if not is_track(system.track):
+        return ()
+    return (Acceleration(system.track.centre, "transverse" if system.track.is_spatial else "y"),)

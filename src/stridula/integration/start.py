@@ -262,10 +262,11 @@ def rows_at(one: ContactRows, place: float) -> Array:
     """Return the rows of a contact along normal and tangent, those of a track's modes at an abscissa [m]."""
     if one.circle is not None:
         return one.round_at(place)
-    if one.contact.path_body is None:
+    track = one.contact.path_body
+    if track is None or one.is_second:
         return one.fixed
-    full, (low, high) = one.fixed.copy(), one.contact.path_body.ends
-    full[:, one.bending[0] : one.axial[1]] -= one.contact.path_body.trace(min(max(place, low), high))[::-1]
+    full, (low, high) = one.fixed.copy(), track.ends
+    full[:, one.bending[0] : one.axial[1]] -= (track.axes @ track.trace(min(max(place, low), high)))[::-1]
     return full
 
 

@@ -344,8 +344,7 @@ def _line(one: ContactRows, system: System, arrays: Assembly, shift: float = 0.0
     place(1, track, at)
     slope = np.zeros((2, nothing.size))
     slope[:, one.bending[0] : one.axial[1]] = track.path().traces(at)[1]
-    # A trace is along x, then along y: tangent and normal.
-    trace = points[1]
+    trace = track.axes @ points[1][: track.axes.shape[1]]
     normal, tangent = one.fixed[0] - trace[1], one.fixed[1] - trace[0]
     return ContactLine(normal, tangent, nothing, one.fixed[1], slope[1], slope[0], slope[0], points)
 
@@ -371,7 +370,7 @@ def _second(one: ContactRows, shift: float) -> tuple[Array, Array]:
 def _turned(line: ContactLine, way: Array, second: Array, second_slope: Array) -> ContactLine:
     """Return a contact in space with its tangent along the slip, from the rows of both tangents."""
     c, s = way.tolist()
-    line = replace(line, tangent_slope=c * line.tangent_slope + s * second_slope)
+    line = replace(line, tangent_slope=c * line.tangent_slope + s * second_slope, slip_slope=c * line.slip_slope)
     across = c * second - s * line.tangent
     size = np.linalg.norm(line.normal) + np.linalg.norm(line.tangent)
     if np.linalg.norm(across) < UNMOVED * size:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
+import numpy as np
+
+from ..arrays import Array
 from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam
 from ..bodies.modes import Body
 from ..checks import ArgumentError, choice, count, instance
+from ..declared import Way, check_declared
 
-DIRECTIONS = ("x", "y", "z", "axial", "transverse")
+DIRECTION = Way(("x", "y", "z", "axial", "transverse"))
 
 
 @dataclass(frozen=True)
@@ -19,13 +24,14 @@ class _Motion:
     derivative: ClassVar[int]
     of_slider: ClassVar[bool] = False
     point: BodyPoint
-    direction: str = "y"
+    direction: Annotated[str | Sequence[float], DIRECTION] = "y"
 
     def __post_init__(self) -> None:
         instance("point", self.point, BodyPoint)
-        choice("direction", self.direction, DIRECTIONS)
-        if self.direction == "z" and not self.point.body.is_spatial:
-            raise ArgumentError("direction", "be another than z on a body in the plane", self.direction)
+        check_declared(self)
+        if self.along[2] and not self.point.body.is_spatial:
+            words = "be another than z" if self.direction == "z" else "have nothing along z"
+            raise ArgumentError("direction", f"{words} on a body in the plane", self.direction)
 
     @property
     def body(self) -> Body:
@@ -33,9 +39,20 @@ class _Motion:
         return self.point.body
 
     @property
+    def along(self) -> Array:
+        """World components of its direction, a unit vector, shape (3,)."""
+        if not isinstance(self.direction, str):
+            return np.asarray(np.array(self.direction) / np.linalg.norm(self.direction))
+        first, second = (np.pad(axis, (0, 3))[:3] for axis in self.body.axes[:2])
+        own = {"axial": first, "transverse": second}
+        return np.asarray(own[self.direction] if self.direction in own else np.eye(3)["xyz".index(self.direction)])
+
+    @property
     def place(self) -> str:
         """Where it is on its body and along what, in words."""
-        return f"{_words(self.point)} {self.direction}"
+        is_word = isinstance(self.direction, str)
+        way = self.direction if is_word else f"({', '.join(f'{one:.6g}' for one in self.direction)})"
+        return f"{_words(self.point)} {way}"
 
     @property
     def keys(self) -> dict[str, Any]:
@@ -54,8 +71,8 @@ class Displacement(_Motion):
     ----------
     point : BodyPoint
         Where.
-    direction : {"y", "x", "z", "axial", "transverse"}, optional
-        World direction, or along or across the body's own axis.
+    direction : {"y", "x", "z", "axial", "transverse"} or sequence of float, optional
+        World direction, along or across the body's own axis, or world components (x, y, z), of any length.
     """
 
     quantity = "displacement"
@@ -69,8 +86,8 @@ class Velocity(_Motion):
     ----------
     point : BodyPoint
         Where.
-    direction : {"y", "x", "z", "axial", "transverse"}, optional
-        World direction, or along or across the body's own axis.
+    direction : {"y", "x", "z", "axial", "transverse"} or sequence of float, optional
+        World direction, along or across the body's own axis, or world components (x, y, z), of any length.
     """
 
     quantity = "velocity"
@@ -84,8 +101,8 @@ class Acceleration(_Motion):
     ----------
     point : BodyPoint
         Where.
-    direction : {"y", "x", "z", "axial", "transverse"}, optional
-        World direction, or along or across the body's own axis.
+    direction : {"y", "x", "z", "axial", "transverse"} or sequence of float, optional
+        World direction, along or across the body's own axis, or world components (x, y, z), of any length.
     """
 
     quantity = "acceleration"

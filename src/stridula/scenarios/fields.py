@@ -228,7 +228,7 @@ def _number_or_word(kind: declarations.NumberOrWord) -> _Kind:
 
 @read_as.register
 def _way(kind: declarations.Way) -> _Kind:
-    return Way()
+    return Way(kind)
 
 
 @read_as.register
@@ -238,6 +238,8 @@ def _whole(kind: declarations.Whole) -> _Kind:
 
 @read_as.register
 def _own(kind: declarations.Own) -> _Kind:
+    if kind.what == "plane":
+        return Numbers((2,))
     if kind.what != "damping":
         raise TypeError(f"no scenario can give {kind}")
     return RatioOrLaw(each=True)
@@ -379,17 +381,25 @@ class QuantityOrWord(_Kind):
 
 @dataclass(frozen=True)
 class Way(_Kind):
-    """A direction: x, y, z, or three numbers."""
+    """A direction: a word, or three numbers.
+
+    Attributes
+    ----------
+    way : Way
+        As it is declared, with the words.
+    """
+
+    way: declarations.Way
 
     def read(self, value: Any) -> Any:
         try:
-            return declarations.Way().check("value", value)
+            return self.way.check("value", value)
         except ArgumentError:
-            raise _refused("be x, y, z or a list of three numbers, not all zero") from None
+            raise _refused(f"be {', '.join(self.way.words)} or a list of three numbers, not all zero") from None
 
     def json_schema(self) -> dict[str, Any]:
         row = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
-        return {"anyOf": [{"enum": list(declarations.Way.words)}, row]}
+        return {"anyOf": [{"enum": list(self.way.words)}, row]}
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from ..integration import GaussSeidel
+from ..records.probes import DIRECTION
 from . import fields as is_
 from .fields import Table
 from .schema_bodies import Body, Material, Section, Slider, Track
@@ -22,8 +23,8 @@ class Motion(Table):
     """body: slider, track or its name; the track if left out, the slider on a rigid track"""
     point: is_.Point | None = None
     """where: tip, root, centre, the name of a point or a position [m]; centre or tip if left out"""
-    direction: Literal["x", "y", "z", "axial", "transverse"] = "y"
-    """x, y, z in space, axial or transverse"""
+    direction: Annotated[Any, is_.Way(DIRECTION)] = "y"
+    """x, y, z in space, axial, transverse, or world components [x, y, z]"""
 
 
 class Reaction(Table):

@@ -68,6 +68,8 @@ class Plate(Table):
     """keep the modes up to this frequency [Hz]"""
     line: Line | None = None
     """where bodies slide on it, along its length in the middle of its width if left out"""
+    plane: is_.Rows | None = None
+    """unit vectors along its line and along its normal, [[x, y, z], [x, y, z]], of a plate in space"""
     name: str = ""
     """what it is called in records, the table's own name if left out"""
 

@@ -1,0 +1,42 @@
+"""Bodies of the plane that may be put into another plane of space."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..checks import ArgumentError
+from .matrix_input import numbers
+
+# Error of unit vectors at right angles that rounding may make.
+SQUARE = 1e-12
+
+
+def checked_plane(name: str, given: Any) -> tuple[tuple[float, ...], ...]:
+    """Return what in space is x and y of a plane, two unit vectors at right angles."""
+    axes = numbers(name, given)
+    if axes.shape != (2, 3) or not np.allclose(axes @ axes.T, np.eye(2), rtol=0.0, atol=SQUARE):
+        raise ArgumentError(name, "be unit vectors at right angles, three numbers each", given)
+    return tuple(tuple(axis) for axis in axes.tolist())
+
+
+class InPlane:
+    """What tracks share that lie in a plane of their own, or in that of world x and y."""
+
+    plane: Any
+
+    @property
+    def is_spatial(self) -> bool:
+        """Whether its plane is given; it takes part in systems in space without, too, rigid along world z."""
+        return self.plane is not None
+
+    @property
+    def axes(self) -> Array:
+        """Unit vectors along it and along its normal in the world frame, shape (2, 2) or (2, 3)."""
+        return np.eye(2) if self.plane is None else np.array(self.plane)
+
+    def in_the_world(self, rows: Array) -> Array:
+        """Return rows along world x and y, in space z, from those along it and along its normal, shape (2, modes)."""
+        return rows if self.plane is None else np.asarray(self.axes.T @ rows)
