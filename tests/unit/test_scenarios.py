@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ from hypothesis import strategies as some
 
 import stridula as st
 from stridula.records.packed import packed, unpacked
-from stridula.records.provenance import scenario_toml
+from stridula.records.provenance import scenario_toml, toml
 from stridula.scenarios.quantities import quantity
 
 CASES = ["axial-sliding", "judder", "squeal", "stable-sliding", "strong-pressure", "weak-pressure"]
@@ -1048,3 +1049,9 @@ def test_entries_of_a_list_are_keys_where_it_is_short(tmp_path):
     path.write_text(SHAKEN.replace("time = [0, 0.01, 0.02], value = [0, 1, 0]", f"time = [{times}], value = [{times}]"))
     with pytest.raises(st.ScenarioError, match="key must be one of the scenario's"):
         st.load_scenario(path, {"track.normal_history.value.1": 0.5})
+
+
+def test_packed_arrays_are_written_beside_texts_that_look_alike():
+    array = packed(np.arange(100.0))
+    tables = {"a": {"matrix": array, "rows": [array, 'float64 3 "quoted"']}, "title": "float64 2x2 a\\b"}
+    assert tomllib.loads(toml(tables)) == tables

@@ -26,6 +26,9 @@ from .probes import Probe
 
 # Bytes of the surface of a body that a record keeps for films, at most.
 LARGEST_DRAWN = 20_000_000
+# A packed array, and what stands for it while the rest is written, of a character that no text of a scenario has.
+_PACKED, ASIDE = re.compile(r"float\d\d [\dx]* [\w+/=]*", re.ASCII), "\ue000packed array "
+_PUT_ASIDE = re.compile(f'"{ASIDE}(\\d+)"')
 # A list as tomli_w writes it, one number on a line; texts are on one line each and never match.
 _LIST_OF_NUMBERS = re.compile(r"\[\n((?:\s*[-+.\dinfaeE]+,\n)+)\s*\]")
 
@@ -45,7 +48,22 @@ def scenario_toml(system: System, probes: Sequence[Probe], simulation: dict[str,
 
 def toml(tables: Mapping[str, Any]) -> str:
     """Return tables as TOML, lists of numbers on one line."""
-    return _LIST_OF_NUMBERS.sub(_on_one_line, tomli_w.dumps(tables))
+    # Packed arrays need no character escaped, which tomli_w looks for one by one.
+    arrays: list[str] = []
+    text = _LIST_OF_NUMBERS.sub(_on_one_line, tomli_w.dumps(_without_arrays(tables, arrays)))
+    return _PUT_ASIDE.sub(lambda found: f'"{arrays[int(found[1])]}"', text)
+
+
+def _without_arrays(value: Any, arrays: list[str]) -> Any:
+    """Return tables with the number of each packed array in its place."""
+    if isinstance(value, Mapping):
+        return {key: _without_arrays(one, arrays) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_without_arrays(one, arrays) for one in value]
+    if not isinstance(value, str) or not _PACKED.fullmatch(value):
+        return value
+    arrays.append(value)
+    return f"{ASIDE}{len(arrays) - 1}"
 
 
 def _on_one_line(found: re.Match[str]) -> str:
