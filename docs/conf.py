@@ -119,6 +119,7 @@ HOMES = {
     "connections": "Connections",
     "acoustics.levels": "Sound levels",
     "acoustics.sensation": "Psychoacoustics",
+    "acoustics.listening": "Sound in notebooks",
     "acoustics.wav": "Sound files",
     "drives": "Drives",
     "histories": "Histories of drives",
