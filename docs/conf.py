@@ -131,6 +131,7 @@ HOMES = {
     "records.compare": "Comparison of records",
     "integration": "Integration in time",
     "analysis": "Regimes",
+    "analysis.record_card": "Cards of records",
     "analysis.stability": "Linear stability",
     "acoustics": "Radiated sound",
     "scenarios": "Scenarios",

@@ -85,6 +85,7 @@ _HOME = {
     "acoustics.wav": ("SoundFile", "read_wav", "write_wav"),
     "analysis.stability": ("sliding_stability",),
     "analysis": ("regime",),
+    "analysis.record_card": ("RecordCard", "card"),
     "acoustics": ("Air", "radiate", "radiation_damping", "radiation_efficiency"),
     "studies": (
         "CalibrationProgress",
