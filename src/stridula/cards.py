@@ -57,7 +57,8 @@ def card(title: str, facts: Mapping[str, str | Sequence[str]], picture: str = ""
         A drawing.
     """
     rows = "".join(_row(name, (words,) if isinstance(words, str) else words) for name, words in facts.items() if words)
-    table = f'<table style="border-collapse: collapse; margin: 0"><tbody>{rows}</tbody></table>'
+    look = "border-collapse: collapse; margin: 0; color: inherit; font: inherit"
+    table = f'<table style="{look}"><tbody>{rows}</tbody></table>'
     beside = f'<div style="flex: none">{picture}</div>' if picture else ""
     inside = f'<div style="display: flex; gap: 1.5em; align-items: center; flex-wrap: wrap">{beside}{table}</div>'
     return f'<div style="color: inherit"><strong>{escape(title)}</strong>{inside}</div>'
@@ -172,6 +173,6 @@ def spoken(number: float, unit: str) -> str:
 
 
 def band(frequencies: Array) -> str:
-    """Return from where to where frequencies go, in words [Hz]."""
-    low, high = float(frequencies.min()), float(frequencies.max())
-    return f"{low:.4g} Hz" if low == high else f"{low:.4g} to {high:.4g} Hz"
+    """Return from where to where frequencies [Hz] go, in words."""
+    low, high = (spoken(float(one), "Hz") for one in (frequencies.min(), frequencies.max()))
+    return f"at {low}" if low == high else f"from {low} to {high}"

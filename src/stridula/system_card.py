@@ -15,6 +15,8 @@ from .lines import outlines_of
 
 # Share of the extent of the bodies that a rigid track is drawn long to either side of its tip.
 REACH = 0.25
+# Gaps that rounding leaves [m].
+CLOSED = 1e-12
 
 
 def card_of(system: Any) -> str:
@@ -24,7 +26,7 @@ def card_of(system: Any) -> str:
         "bodies": [f"{system.body_name(body)}: {_body_words(body)}" for body in system.bodies],
         "contacts": [f"{len(system.contacts)} in all", *contacts] if len(contacts) > 1 else contacts,
         "connections": [connection_words(one, system) for one in system.connections],
-        "drives": [str(drive) for drive in system.drives],
+        "drives": [_drive_words(drive, system) for drive in system.drives],
     }
     strokes = _in_space(system) if system.is_spatial else _in_the_plane(system)
     return card("System", facts, drawing(strokes, "outline of the system"))
@@ -32,7 +34,7 @@ def card_of(system: Any) -> str:
 
 def _body_words(body: Any) -> str:
     modes = modes_words(body)
-    parts = [body.kind, body.dimensions, body.posture, mass_words(body), f"modes {modes}" if modes else ""]
+    parts = [body.kind, body.dimensions, body.posture, mass_words(body), f"modes: {modes}" if modes else ""]
     return ", ".join(part for part in parts if part)
 
 
@@ -55,8 +57,12 @@ def _touched(contact: Any, system: Any) -> str:
     """Return what touches what, where, and under which law."""
     other = "a rigid track" if contact.track_body is None else system.body_name(contact.track_body)
     where = f" at {contact.at:.4g} m" if contact.path_body is not None or contact.circle is not None else ""
-    gap = f", gap {contact.gap:.3g} m" if contact.gap else ""
-    return f"{system.body_name(contact.tip.body)} on {other}{where}, {contact.friction}{gap}"
+    gap = f", gap {contact.gap:.3g} m" if abs(contact.gap) > CLOSED else ""
+    return f"{system.body_name(contact.tip.body)} on {other}{where}, friction {contact.friction}{gap}"
+
+
+def _drive_words(drive: Any, system: Any) -> str:
+    return str(drive) if drive.acted_on is None else f"{system.body_name(drive.acted_on)}: {drive}"
 
 
 def connection_words(connection: Any, system: Any) -> str:

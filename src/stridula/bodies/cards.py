@@ -42,6 +42,7 @@ def facts_of(body: Any) -> dict[str, str | Sequence[str]]:
         "size": body.dimensions,
         "posture": body.posture,
         "supports": _supports(body),
+        "tension": spoken(body.tension, "N") if getattr(body, "tension", 0.0) else "",
         "mass": mass_words(body),
         "modes": modes_words(body),
         "damping": _damping(body),
@@ -91,11 +92,11 @@ def modes_words(body: Any) -> str:
     """Return how many modes a body has and from where to where they go, in words, if that is known."""
     if not getattr(body, "has_modes_at_hand", True):
         cutoff = getattr(body, "cutoff", None)
-        return f"found on first use{'' if cutoff is None else f', up to {cutoff:.4g} Hz'}"
+        return "found on first use" + ("" if cutoff is None else f", up to {spoken(cutoff, 'Hz')}")
     modes = body.modes()
     elastic = modes.frequency[~modes.massless & (modes.angular_frequency > 0.0)]
     rigid, residual = int((modes.angular_frequency == 0.0).sum()), int(modes.massless.sum())
-    parts = [f"{elastic.size}, {band(elastic)}"] if elastic.size else []
+    parts = [f"{elastic.size} {band(elastic)}"] if elastic.size else []
     parts += [f"{rigid} rigid"] if rigid else []
     parts += [f"{residual} residual shapes"] if residual else []
     return "; ".join(parts)
