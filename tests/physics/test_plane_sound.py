@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 import stridula as st
+from stridula.acoustics.redriven import redriven
 
 from .cases import STEEL
 
@@ -87,6 +88,43 @@ def test_normal_forces_and_drives_move_a_leaning_rod_too():
     assert np.abs(sound - rubbed)[late].max() < 2e-3 * np.abs(rubbed[late]).max()
 
 
+SLIDER = st.FiniteElementBeam(STEEL, st.Rectangle(0.02, 0.008), 0.3, np.radians(30.0), elements=6, damping=0.02)
+BENCH = st.ModalBeam(STEEL, st.Rectangle(0.02, 0.008), 0.5, bending_modes=12, axial_modes=3, damping=0.01)
+
+
+@pytest.mark.parametrize(
+    ("joined", "most"),
+    [
+        (lambda: [], 0.01),
+        (lambda: [st.Spring(SLIDER.root, stiffness=2e5, direction="y")], 0.01),
+        # Damping that couples the modes of joined bodies is left out. Without the forces on the track it is 13 %.
+        (lambda: [st.Spring(SLIDER.at(0.1), BENCH.at(0.35), stiffness=2e6, direction="y")], 0.04),
+    ],
+    ids=["alone", "held by a spring", "joined to its track"],
+)
+def test_the_slider_moves_again_as_it_did_in_the_march(joined, most):
+    """At one sample a step, below 10 kHz; the probe is a second difference."""
+    contact = st.PointContact(SLIDER.tip, BENCH, at=0.2, friction=st.Coulomb(0.4))
+    system = st.System(contact, [st.Force(SLIDER.root, x=6.0, y=-20.0)], joined())
+    point, step = SLIDER.at(0.17), 5e-6
+    run = st.simulate(system, 0.02, step=step, sample_rate=1.0 / step, probes=[st.Acceleration(point, "x")])
+    assert (run.normal_force > 0.0).any()
+    probe = run.acceleration.values[:, 0]
+
+    def error(record):
+        moved = redriven(record, system, [SLIDER])
+        own = moved.accelerations[slice(*moved.spans["slider"])]
+        times = moved.first + moved.interval * np.arange(own.shape[1])
+        found = np.interp(run.time.values, times, SLIDER.trace(0.17)[0] @ own)
+        spectra = [np.fft.rfft(values * np.hanning(values.size)) for values in (found, probe)]
+        one, other = (part[np.fft.rfftfreq(probe.size, step) < 10e3] for part in spectra)
+        return np.linalg.norm(one - other) / np.linalg.norm(other)
+
+    assert error(run) < most
+    # Negative control: the other sense of friction.
+    assert error(run.assign(tangential_force=-run.tangential_force)) > 0.1
+
+
 def on_the_beam(contacts=1) -> st.System:
     rods = [
         st.FiniteElementBeam(STEEL, st.Rectangle(0.01, 0.004), 0.05, np.radians(20.0), 4, 0.02, name=f"rod {k}")
@@ -156,6 +194,12 @@ def test_two_ears_above_the_track_by_default_and_above_the_rod_without_one():
     rod = st.radiate(record(0.0, pulse()), on_the_ground(ROD))
     assert rod.z.values == pytest.approx([1.02, 1.02])
     assert rod.x.values == pytest.approx([-0.09, 0.09])
+
+
+def test_beams_that_nothing_pushes_are_silent():
+    quiet = st.radiate(record(0.0, 0.0), on_the_ground(ROD), PLACE)
+    assert not quiet.values.any()
+    assert "silence: nothing pushes the beams" in quiet.attrs["notes"]
 
 
 def test_bodies_without_a_surface_are_said():

@@ -188,11 +188,11 @@ def _of_beams(
     bandwidth, shift = bandwidth_of(ratio, recorded), (moved.first - moved.start) / moved.interval
     pressure = np.zeros((len(seen), moved.samples))
     distances: list[Array] = []
-    notes: list[str] = []
+    notes = ["silence: nothing pushes the beams"] if moved.pushed is None else []
     images = [seen] if wall is None else [seen, seen * [1.0, 1.0, -1.0] + [0.0, 0.0, 2.0 * wall]]
     for body in beams:
         first, last = moved.spans[system.body_name(body)]
-        numbers = first + np.flatnonzero(~moved.left_out[first:last] & ~body.modes(system.is_held(body)).massless)
+        numbers = first + np.flatnonzero(moved.accelerations[first:last].any(axis=1))
         travel, reach = _travel(run, system, body)
         beam = slim_beam(body, system.is_held(body), numbers - first, outlines[body].place + np.array([travel, 0.0]))
         beam.check(seen)

@@ -99,6 +99,9 @@ def redriven(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = Non
     rows, signals = _of_contacts(flat, normal, tangential)
     if any(one.circle is not None for one in flat.contacts):
         rows, signals = _gone_round(flat, rows, signals, _places(run, system))
+    if bodies is not None and flat.coupled:
+        own = _on_paths(flat, system, _places(_in_order(points, system), system), normal, tangential)
+        rows, signals = np.concatenate([rows, np.eye(len(own))]), np.concatenate([signals, own])
     loads = _of_drives(flat, start, interval, min(steps, MOST_STEPS), samples)
     if system.initial_equilibrium is not None:
         # It has stood so for long.
@@ -145,7 +148,7 @@ def _places(run: xr.Dataset, system: System) -> Array:
     """Return abscissas of the contacts of a system [m], shape (contacts, samples), zero of the points of surfaces."""
     *_, (places,) = sampled(run, "contact_position")
     if len(places) == len(system.contacts):
-        return places[:, 0]
+        return places[:, 0] if places.ndim == 3 else places
     found = np.zeros((len(system.contacts), places.shape[-1]))
     for name, values in zip(run["contact"].values.tolist(), places[:, 0], strict=True):
         if name in system.contact_names:
@@ -197,6 +200,22 @@ def _gone_round(flat: Assembly, rows: Array, signals: Array, places: Array) -> t
         row[one.circle.pairs] = 0.0
     pushed = np.flatnonzero(own.any(axis=1))
     return np.concatenate([rows, np.eye(rows.shape[1])[pushed]]), np.concatenate([signals, own[pushed]])
+
+
+def _on_paths(flat: Assembly, system: System, places: Array, normal: Array, tangential: Array) -> Array:
+    """Return the forces on the modes of tracks that springs couple to others [N kg^(-1/2)], shape (modes, samples)."""
+    found = np.zeros((flat.mode_count, normal.shape[1]))
+    for contact, place, pressed, rubbed in zip(system.contacts, places, normal, tangential, strict=True):
+        body = contact.path_body
+        if body is None:
+            continue
+        first, last = flat.spans[system.body_name(body)]
+        if first < last:
+            path, middle = body.path(), place - 0.5 * np.diff(place, prepend=place[:1])
+            axial = first + len(path.normal.multiples)
+            found[first:axial] -= path.normal.along(path, middle) * pressed
+            found[axial:last] += path.tangential.along(path, middle) * rubbed
+    return found
 
 
 def _moved(flat: Assembly, forces: Array, times: Array, interval: float) -> tuple[Array, Array]:
