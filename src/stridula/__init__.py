@@ -81,9 +81,11 @@ _HOME = {
     ),
     "acoustics.levels": ("equivalent_level", "sound_level", "third_octave_levels"),
     "acoustics.sensation": ("loudness", "loudness_over_time", "roughness", "sharpness"),
+    "acoustics.listening": ("PlayableSound", "listen"),
     "acoustics.wav": ("SoundFile", "read_wav", "write_wav"),
     "analysis.stability": ("sliding_stability",),
     "analysis": ("regime",),
+    "analysis.record_card": ("RecordCard", "card"),
     "acoustics": ("Air", "radiate", "radiation_damping", "radiation_efficiency"),
     "studies": (
         "CalibrationProgress",

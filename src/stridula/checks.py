@@ -212,6 +212,11 @@ def listed(words: Iterable[str], joint: str = ", ", longest: int = LONGEST_LIST)
     return joint.join(shown) + (f" and {others} other{'s' if others > 1 else ''}" if others else "")
 
 
+def counted(number: int, thing: str) -> str:
+    """Return a number of things, such as ``1 mode`` and ``2 modes``."""
+    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
+
+
 def _article(word: str) -> str:
     return "an" if word[0] in "AEIOaeio" else "a"
 

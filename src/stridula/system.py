@@ -13,6 +13,7 @@ from .connections import CONNECTIONS, Connection, ends, unit
 from .contact import PointContact, SurfaceContact, SurfacePoints
 from .contact.surface_points import surfaces_among
 from .drives import DRIVES, Drive, ImposedVelocity, InitialEquilibrium
+from .system_card import card_of, connection_words
 
 T = TypeVar("T")
 PLACES = (PointContact, SurfaceContact)
@@ -212,11 +213,15 @@ class System:
                         f"got direction {connection.direction!r}",
                     )
 
+    def _repr_html_(self) -> str:
+        """Return a card with its bodies where they are and what it is made of, without a long search for modes."""
+        return card_of(self)
+
     def __str__(self) -> str:
         lines = [_body_line(self.body_name(body), body) for body in self.bodies]
         names = self.contact_names if len(self.contacts) > 1 else (self.contacts[0].name or "contact",)
         lines += [_contact_line(name, contact) for name, contact in zip(names, self.contacts, strict=True)]
-        lines += [f"joined   {_connection_words(connection, self)}" for connection in self.connections]
+        lines += [f"joined   {connection_words(connection, self)}" for connection in self.connections]
         return "\n".join(lines + [f"drive    {drive}" for drive in self.drives])
 
 
@@ -249,8 +254,3 @@ def _contact_line(name: str, contact: PointContact) -> str:
         kind = f" of {high - low:.4g} m"
     lean = f", inclined {math.degrees(contact.inclination):.4g} deg" if contact.inclination else ""
     return f"{name:<8} at {contact.at:.4g} m{kind}, gap {contact.gap:.3g} m, friction {contact.friction}{lean}"
-
-
-def _connection_words(connection: Connection, system: System) -> str:
-    names = [system.body_name(point.body) for point in ends(connection)]
-    return f"{connection} from {names[0]} to {names[1] if len(names) > 1 else 'the ground'}"

@@ -11,10 +11,10 @@ from PIL import Image
 
 import stridula as st
 from stridula import plot
+from stridula.lines import lines_of
 from stridula.plot import reels
 from stridula.plot.colours import STATUS_COLOURS
 from stridula.plot.films import Picture
-from stridula.plot.lines import lines_of
 from stridula.plot.motion import Timing, motion_of
 from stridula.plot.plane_motion import plane_motion
 from stridula.records.variables import STATUS_WORDS

@@ -249,7 +249,7 @@ def test_contacts_add_and_doubled_forces_double():
 
 def test_modes_in_parts_sound_as_at_once(monkeypatch):
     whole = st.radiate(record(800), BEAM, (0.2, 0.1, 0.5)).values
-    monkeypatch.setattr(sys.modules["stridula.acoustics.radiate"], "MEMORY", 8 * 3 * 800 * 2)
+    monkeypatch.setattr(sys.modules["stridula.acoustics.track_sound"], "MEMORY", 8 * 3 * 800 * 2)
     parts = st.radiate(record(800), BEAM, (0.2, 0.1, 0.5)).values
     np.testing.assert_allclose(parts, whole, atol=1e-12 * np.abs(whole).max())
 

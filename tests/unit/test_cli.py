@@ -17,8 +17,8 @@ import pytest
 import scipy.io
 
 import stridula as st
+from stridula.analysis.record_card import facts_of as card
 from stridula.cli import bars, running
-from stridula.cli.card import card
 from stridula.cli.doubts import doubts
 from stridula.plot.colours import REGIME_COLOURS
 from stridula.studies.measures import MEASURES, Column, Measure
@@ -484,7 +484,7 @@ def test_the_card_begins_with_what_is_heard():
 def test_the_card_says_at_which_frequency(monkeypatch, regime, frequency, words):
     record = st.load_scenario("squeal", {"duration": "2 ms"}).simulate()
     found = {"regime": regime, "frequency": frequency, "confidence": 1.0}
-    monkeypatch.setattr("stridula.cli.card.regime_of", lambda run: found)
+    monkeypatch.setattr("stridula.analysis.record_card.regime_of", lambda run: found)
     assert card(record)["regime"] == f"{words} (confidence 1.00)"
 
 

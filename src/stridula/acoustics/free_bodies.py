@@ -10,12 +10,12 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from ..assembly import assemble
 from ..bodies.body_surfaces import BodySurface
 from ..checks import ArgumentError, at_least, instance, listed
 from ..system import System
 from .air import Air
 from .convolution import Convolution
+from .delays import Response
 from .free_responses import LEFT, Sent, free_responses
 from .listeners import HEIGHT, SPACING, listeners_of
 from .redriven import Moved, redriven
@@ -29,10 +29,9 @@ SAID = 0.05
 NEAREST = 1e-3
 
 
-def bodies_heard(system: System) -> tuple[list[Any], list[str]]:
-    """Return the bodies of a system that have a surface, and the names of those that have none."""
-    heard = [body for body in system.bodies if getattr(body, "has_surface", False)]
-    return heard, [system.body_name(body) for body in system.bodies if body not in heard]
+def bodies_heard(system: System) -> list[Any]:
+    """Return the bodies of a system that have a surface in space."""
+    return [body for body in system.bodies if getattr(body, "has_surface", False)]
 
 
 def free_sound(
@@ -52,7 +51,7 @@ def free_sound(
     """
     air = Air() if air is None else air
     instance("air", air, Air)
-    heard, silent = _chosen(system, bodies)
+    heard, silent = chosen(system, bodies, bodies_heard(system))
     surfaces = [body.surface() for body in heard]
     places = listeners_of(_ears(system, surfaces) if listener is None else listener)
     distances = np.array([_distances(surface, places) for surface in surfaces])
@@ -62,12 +61,11 @@ def free_sound(
     bandwidth = min(bandwidth_of(ratio, recorded), HIGHEST)
     shift = (moved.first - moved.start) / moved.interval
     pressure, notes, errors = np.zeros((len(places), moved.samples)), [], {}
-    spans = assemble(system).spans
     for body, surface, away in zip(heard, surfaces, distances, strict=True):
-        first, _ = spans[system.body_name(body)]
+        first, _ = moved.spans[system.body_name(body)]
         modes = first + np.flatnonzero(~body.modes().massless)
         sent = free_responses(surface, places, away, air, moved.interval, shift, bandwidth)
-        pressure += _convolved(sent, moved, modes)
+        pressure += convolved(sent.responses, moved, modes)
         said, worst = _doubts(system.body_name(body), body.modes().frequency[: modes.size], sent)
         notes += said
         errors[system.body_name(body)] = worst
@@ -79,7 +77,7 @@ def free_sound(
         notes.append("silence: nothing pushes")
     elif (arrival + moved.pushed > times[-1]).any():
         notes.append("silence: the sound does not arrive within the record")
-    notes += _lacks(system, heard, silent, moved)
+    notes += lacks(system, heard, silent, moved)
     attributes = {
         "bandwidth": bandwidth,
         "modes": int(sum(surface.shapes.shape[1] for surface in surfaces)),
@@ -95,8 +93,15 @@ def free_sound(
     return sounding, moved.start + times, places, attributes
 
 
-def _chosen(system: System, bodies: Sequence[Any] | None) -> tuple[list[Any], list[str]]:
-    heard, silent = bodies_heard(system)
+def chosen(system: System, bodies: Sequence[Any] | None, heard: list[Any]) -> tuple[list[Any], list[str]]:
+    """Return those of the bodies heard that are wanted, and the names of others that are silent where all are wanted.
+
+    Raises
+    ------
+    ValueError
+        If there are none, or one that is wanted cannot be heard.
+    """
+    silent = [system.body_name(body) for body in system.bodies if body not in heard]
     if bodies is None:
         if not heard:
             raise ArgumentError("system", "have a body with a surface to be heard", got=f"none of {listed(silent)}")
@@ -140,10 +145,10 @@ def _distances(surface: BodySurface, places: Array) -> Array:
     return np.array(found)
 
 
-def _convolved(sent: Sent, moved: Moved, modes: Array) -> Array:
+def convolved(responses: Sequence[Response], moved: Moved, modes: Array) -> Array:
     """Return the pressures at the samples of the record, shape (listeners, samples)."""
     acceleration = moved.accelerations[modes]
-    sound = Convolution(sent.responses, acceleration.shape[1])
+    sound = Convolution(responses, acceleration.shape[1])
     sound.add(acceleration, slice(None))
     return sound.signals()[:, : moved.samples]
 
@@ -161,7 +166,7 @@ def _doubts(name: str, frequency: Array, sent: Sent) -> tuple[list[str], float]:
     return notes, worst
 
 
-def _lacks(system: System, heard: Sequence[Any], silent: Sequence[str], moved: Moved) -> list[str]:
+def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], moved: Moved) -> list[str]:
     """Return what is left out, in words."""
     notes = []
     if silent:

@@ -39,7 +39,7 @@ def check_heard(system: Any, surface_rate: float | str | None = None) -> None:
     surface_rate : float or str, optional
         What is to be recorded of its surfaces, as for `simulate`: maps alone have no sound.
     """
-    if not bodies_heard(system)[0]:
+    if not bodies_heard(system):
         panel_of(track_of(system))
     elif surface_rate is not None and not isinstance(surface_rate, str):
         raise ArgumentError("surface_rate", "be left out, or all, to be heard", surface_rate)
@@ -66,7 +66,7 @@ def heard(record: xr.Dataset, system: Any, places: Any = None, baffled: bool = T
     ValueError
         If there is no such track, or the record cannot be heard.
     """
-    if bodies_heard(system)[0]:
+    if bodies_heard(system):
         return radiate(record, system, places)
     track = track_of(system)
     on_it = [number for number, contact in enumerate(system.contacts) if contact.track == track]

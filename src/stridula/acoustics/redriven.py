@@ -11,7 +11,9 @@ Modes that springs couple are taken together, as the modes that they have with t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy.linalg
@@ -48,6 +50,8 @@ class Moved:
         Modes too fast for the samples.
     pushed : float or None
         When the first force acts [s from the start], None if none does.
+    spans : dict
+        First mode of each body and the one after its last, by the body's name.
     """
 
     start: float
@@ -57,6 +61,7 @@ class Moved:
     accelerations: Array
     left_out: Array
     pushed: float | None
+    spans: dict[str, tuple[int, int]]
 
 
 @dataclass(frozen=True)
@@ -65,8 +70,10 @@ class _Modes:
     damping_rate: Array
 
 
-def redriven(run: xr.Dataset, system: System) -> Moved:
+def redriven(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = None) -> Moved:
     """Return how the modes of a system move under the forces of a record, at rest before it.
+
+    Those of some bodies only, if these are given, and of all whose modes springs couple to theirs.
 
     Raises
     ------
@@ -82,6 +89,8 @@ def redriven(run: xr.Dataset, system: System) -> Moved:
         _in_order(points, system), "normal_force", "tangential_force"
     )
     flat, samples = assemble(system), normal.shape[1]
+    if bodies is not None:
+        flat = _only(flat, [system.body_name(body) for body in bodies])
     if len(normal) != len(system.contacts):
         words = f"be a record of this system, of {len(system.contacts)} contacts"
         raise ArgumentError("run", words, run, got=f"one of {len(normal)}")
@@ -90,6 +99,9 @@ def redriven(run: xr.Dataset, system: System) -> Moved:
     rows, signals = _of_contacts(flat, normal, tangential)
     if any(one.circle is not None for one in flat.contacts):
         rows, signals = _gone_round(flat, rows, signals, _places(run, system))
+    if bodies is not None and flat.coupled:
+        own = _on_paths(flat, system, _places(_in_order(points, system), system), normal, tangential)
+        rows, signals = np.concatenate([rows, np.eye(len(own))]), np.concatenate([signals, own])
     loads = _of_drives(flat, start, interval, min(steps, MOST_STEPS), samples)
     if system.initial_equilibrium is not None:
         # It has stood so for long.
@@ -100,7 +112,28 @@ def redriven(run: xr.Dataset, system: System) -> Moved:
     pushes = np.flatnonzero(signals.any(axis=0))
     found, left_out = _moved(flat, forces, times, interval)
     pushed = 0.0 if loads.any() else (float(pushes[0]) * interval if pushes.size else None)
-    return Moved(start, interval, samples, first, found, left_out, pushed)
+    return Moved(start, interval, samples, first, found, left_out, pushed, flat.spans)
+
+
+def _only(flat: Assembly, names: Sequence[str]) -> Assembly:
+    """Return a system in the plane with the modes of some of its bodies."""
+    kept = np.zeros(flat.mode_count, dtype=bool)
+    for name in names:
+        kept[slice(*flat.spans[name])] = True
+    coupled = flat.coupled if kept[: flat.coupled].any() else 0
+    kept[:coupled] = True
+    place = np.concatenate([[0], np.cumsum(kept)])
+    return replace(
+        flat,
+        angular_frequency=flat.angular_frequency[kept],
+        damping_rate=flat.damping_rate[kept],
+        massless=flat.massless[kept],
+        stiffness=flat.stiffness[:coupled, :coupled],
+        dissipation=flat.dissipation[:coupled, :coupled],
+        contacts=[replace(one, fixed=one.fixed[:, kept]) for one in flat.contacts],
+        loads=flat.loads[:, kept],
+        spans={name: (int(place[first]), int(place[last])) for name, (first, last) in flat.spans.items()},
+    )
 
 
 def _in_order(points: xr.Dataset, system: System) -> xr.Dataset:
@@ -115,7 +148,7 @@ def _places(run: xr.Dataset, system: System) -> Array:
     """Return abscissas of the contacts of a system [m], shape (contacts, samples), zero of the points of surfaces."""
     *_, (places,) = sampled(run, "contact_position")
     if len(places) == len(system.contacts):
-        return places[:, 0]
+        return places[:, 0] if places.ndim == 3 else places
     found = np.zeros((len(system.contacts), places.shape[-1]))
     for name, values in zip(run["contact"].values.tolist(), places[:, 0], strict=True):
         if name in system.contact_names:
@@ -167,6 +200,22 @@ def _gone_round(flat: Assembly, rows: Array, signals: Array, places: Array) -> t
         row[one.circle.pairs] = 0.0
     pushed = np.flatnonzero(own.any(axis=1))
     return np.concatenate([rows, np.eye(rows.shape[1])[pushed]]), np.concatenate([signals, own[pushed]])
+
+
+def _on_paths(flat: Assembly, system: System, places: Array, normal: Array, tangential: Array) -> Array:
+    """Return the forces on the modes of tracks that springs couple to others [N kg^(-1/2)], shape (modes, samples)."""
+    found = np.zeros((flat.mode_count, normal.shape[1]))
+    for contact, place, pressed, rubbed in zip(system.contacts, places, normal, tangential, strict=True):
+        body = contact.path_body
+        if body is None:
+            continue
+        first, last = flat.spans[system.body_name(body)]
+        if first < last:
+            path, middle = body.path(), place - 0.5 * np.diff(place, prepend=place[:1])
+            axial = first + len(path.normal.multiples)
+            found[first:axial] -= path.normal.along(path, middle) * pressed
+            found[axial:last] += path.tangential.along(path, middle) * rubbed
+    return found
 
 
 def _moved(flat: Assembly, forces: Array, times: Array, interval: float) -> tuple[Array, Array]:

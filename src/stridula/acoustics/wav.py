@@ -21,8 +21,8 @@ SUBTYPES = ("PCM_24", "FLOAT")
 NORMALISED = "normalised"
 # Peak of a normalised file below full scale [dB]: what players make between the samples may rise above them.
 HEADROOM = 1.0
-# Full scale of 24 bits, one step beyond the largest value.
-STEPS = 2**23
+# Full scale of integers, one step beyond the largest value.
+STEPS = {"PCM_16": 2**15, "PCM_24": 2**23}
 SCALE = re.compile(r"stridula: full_scale_pascal=(\S+) start_second=(\S+)")
 
 
@@ -105,31 +105,58 @@ def write_wav(
     OSError
         If the file cannot be written.
     """
+    check_writable(path)
+    choice("subtype", subtype, SUBTYPES)
+    content, written = wav_of(str(path), pressure, sample_rate, full_scale, subtype)
+    write(path, content)
+    return written
+
+
+def wav_of(
+    name: str, pressure: xr.DataArray, sample_rate: int, full_scale: float | str, subtype: str
+) -> tuple[memoryview, SoundFile]:
+    """Return a sound as the content of a WAV file and what stands in it; arguments are as in `write_wav`.
+
+    Parameters
+    ----------
+    name : str
+        What the sound is called in words.
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        Sound pressure [Pa].
+    sample_rate : int
+        Sample rate of the file [Hz].
+    full_scale : float or "normalised"
+        Pressure of full scale [Pa].
+    subtype : {"PCM_16", "PCM_24", "FLOAT"}
+        Integers or floats.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range, or the pressure would be clipped at this full scale.
+    """
     if sample_rate not in RATES:
         raise ArgumentError("sample_rate", f"be one of {', '.join(map(str, RATES))} Hz", sample_rate)
-    choice("subtype", subtype, SUBTYPES)
     scale = full_scale if isinstance(full_scale, str) else positive("full_scale", full_scale)
     if isinstance(scale, str):
         choice("full_scale", scale, (NORMALISED,))
     values, rate = channels(pressure)
-    check_writable(path)
     sound = resampled(values, rate, float(sample_rate))
     peak = float(np.abs(sound).max())
     if isinstance(scale, str):
         scale = normalised_scale(peak)
-    largest = scale * (1.0 - 1.0 / STEPS)
-    if subtype == "PCM_24" and peak > largest:
-        least = at_least(peak / (1.0 - 1.0 / STEPS))
+    share = 1.0 - 1.0 / STEPS.get(subtype, np.inf)
+    if subtype in STEPS and peak > scale * share:
+        least = at_least(peak / share)
         raise ArgumentError(
             "full_scale",
             f"be at least {least} Pa for a peak of {peak:.6g} Pa",
             scale,
             got=f"{scale!r} Pa: it would be clipped",
         )
-    comment = scale_comment(scale, float(pressure["time"][0]))
-    write(path, encoded(sound / scale, sample_rate, subtype, comment))
+    content = encoded(sound / scale, sample_rate, subtype, scale_comment(scale, float(pressure["time"][0])))
     duration = sound.shape[0] / sample_rate
-    return SoundFile(str(path), sound.shape[1], sample_rate, duration, peak, scale, full_scale == NORMALISED)
+    return content, SoundFile(name, sound.shape[1], sample_rate, duration, peak, scale, full_scale == NORMALISED)
 
 
 def normalised_scale(peak: float) -> float:
@@ -150,8 +177,9 @@ def encoded(samples: Array, rate: int, subtype: str, comment: str) -> memoryview
     options = {"samplerate": rate, "channels": samples.shape[1], "format": "WAV", "subtype": subtype}
     with soundfile.SoundFile(content, "w", **options) as file:
         file.comment = comment
-        # Whole numbers of our own rounding: 24 bits lie in the upper three bytes.
-        file.write(np.rint(samples * STEPS).astype(np.int32) * 256 if subtype == "PCM_24" else samples)
+        # Whole numbers of our own rounding, which lie in the upper bytes.
+        steps = STEPS.get(subtype)
+        file.write(np.rint(samples * steps).astype(np.int32) * (2**31 // steps) if steps else samples)
     return content.getbuffer()
 
 

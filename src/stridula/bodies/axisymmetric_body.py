@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from weakref import WeakSet
 
 import numpy as np
 
@@ -15,9 +16,10 @@ from ..checks import ArgumentError, at_least, brief, choice, finite, instance, l
 from ..declared import CountFrom0, Each, Frequency, Number, Own, check_declared
 from ..histories import HISTORIES, Constant, History
 from .body_surfaces import HIGHEST, RingSurface, largest_part
+from .cards import HasCard
 from .circular_path import CircularPath
 from .damping import DampingLaw, checked_damping, damping_rates
-from .drawn_surfaces import DrawnRings
+from .drawn_surfaces import DrawnRings, DrawnSurface
 from .long_searches import search_told
 from .modes import BodyPoint, Modes, hashed_once
 from .ordinary import NotOrdinary, of_ordinary_size
@@ -97,7 +99,7 @@ class Held:
 
 @hashed_once
 @dataclass(frozen=True)
-class AxisymmetricBody:
+class AxisymmetricBody(HasCard):
     """A body of revolution, at rest or turning about its axis, by Fourier finite elements on its profile.
 
     Round the axis its displacement goes as ``u_r = U cos n theta``, ``u_theta = V sin n theta``,
@@ -291,7 +293,7 @@ class AxisymmetricBody:
     def drawn(self) -> DrawnRings:
         """Its surface as it is drawn: the outline of its profile and how modes move it."""
         solution, mesh = _solution(self), self.mesh
-        used, sides = np.unique(mesh.outline, return_inverse=True)
+        used, sides = _outline(mesh)
         shapes = []
         for r, z in mesh.nodes[used].tolist():
             points, values = solution.elements.shape_functions(r, z)
@@ -299,13 +301,27 @@ class AxisymmetricBody:
         orders, _, phases = solution.numbers.T
         return DrawnRings(
             mesh.nodes[used],
-            sides.reshape(-1, 2),
+            sides,
             np.array(shapes),
             orders,
             phases,
             np.asarray(self.frame),
             np.array(self.origin),
         )
+
+    @property
+    def drawn_at_rest(self) -> DrawnSurface:
+        """Its surface as it is drawn, without modes, which need not be known."""
+        used, sides = _outline(self.mesh)
+        still, no_modes = np.zeros((used.size, 3, 0)), np.zeros(0, dtype=int)
+        return DrawnRings(
+            self.mesh.nodes[used], sides, still, no_modes, no_modes, self.frame, np.array(self.origin)
+        ).at_rest
+
+    @property
+    def has_modes_at_hand(self) -> bool:
+        """Whether its modes are known already."""
+        return self in _SOLVED
 
     def turning_velocity(self, position: Any) -> Array:
         """Return the velocity of the material at a point (r, theta, z) by turning alone [m/s], shape (3,)."""
@@ -452,6 +468,16 @@ def _families(body: AxisymmetricBody) -> list[Family]:
     return found
 
 
+# Bodies whose modes are known.
+_SOLVED: WeakSet[AxisymmetricBody] = WeakSet()
+
+
+def _outline(mesh: ProfileMesh) -> tuple[Array, Array]:
+    """Return the nodes of an outline, and the sides between them by their numbers among these, shape (sides, 2)."""
+    used, sides = np.unique(mesh.outline, return_inverse=True)
+    return used, sides.reshape(-1, 2)
+
+
 @lru_cache(maxsize=16)
 def _solution(body: AxisymmetricBody) -> _Solution:
     # How it is damped and stands has no share in its shapes.
@@ -483,6 +509,7 @@ def _solution(body: AxisymmetricBody) -> _Solution:
     solution = _Solution(elements, modes, np.array(numbers), np.array(columns), shapes)
     for array in (modes.angular_frequency, modes.translation, solution.numbers, shapes):
         array.flags.writeable = False
+    _SOLVED.add(body)
     return solution
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -39,6 +39,11 @@ class DrawnSurface:
     def swept(self) -> DrawnSurface:
         """Itself: it is all polygons."""
         return self
+
+    @property
+    def at_rest(self) -> DrawnSurface:
+        """Itself without modes."""
+        return replace(self, shapes=self.shapes[..., :0])
 
     @property
     def normals(self) -> Array:
@@ -100,6 +105,12 @@ class DrawnRings:
     phases: Array
     frame: Array
     origin: Array
+
+    @property
+    def at_rest(self) -> DrawnSurface:
+        """Its polygons without modes."""
+        still = np.zeros(1, dtype=int)
+        return replace(self, shapes=np.zeros((len(self.place), 3, 1)), orders=still, phases=still).swept.at_rest
 
     @property
     def swept(self) -> DrawnSurface:

@@ -13,6 +13,7 @@ import scipy.linalg
 from ..arrays import Array
 from ..checks import ArgumentError, instance, within
 from ..declared import Angle, Choice, Count, Frequency, Length, Name, Own, check_declared
+from .cards import HasCard
 from .damping import DampingLaw, checked_damping, damping_rates
 from .drawn_lines import places_between
 from .finite_elements import (
@@ -37,7 +38,7 @@ MANY_POINTS = 16
 
 @hashed_once
 @dataclass(frozen=True)
-class FiniteElementBeam:
+class FiniteElementBeam(HasCard):
     """A straight beam of Hermite cubic and bar elements, inclined to the normal of the track.
 
     Its axis runs from its tip E to its root A along ``e1 = (sin a, cos a)``; its transverse direction is
@@ -120,6 +121,11 @@ class FiniteElementBeam:
     def drawn_places(self) -> Array:
         """Distances from the tip at which it is drawn [m], those of its nodes and of the middles between them."""
         return places_between(self.ends, 2 * self.elements)
+
+    @property
+    def has_modes_at_hand(self) -> bool:
+        """Whether its modes are known already, or are found at once."""
+        return self.elements <= FEW_ELEMENTS
 
     @property
     def posture(self) -> str:

@@ -15,7 +15,7 @@ from ..checks import ArgumentError, choice, count, instance, listed
 from ..histories import Constant, History
 from .body_surfaces import PointSurface, RingSurface, check_surface
 from .circular_path import CircularPath
-from .drawn_surfaces import Drawn, drawn_of, drawn_table
+from .drawn_surfaces import Drawn, DrawnSurface, drawn_of, drawn_table
 from .half_space import half_space_shapes, surface_frame
 from .matrix_input import check_finite, numbers, rows_of
 from .modes import Body, Modes
@@ -274,6 +274,11 @@ class ModalBody(NamedPoints):
     def is_drawn(self) -> bool:
         """Whether its surface is known as it is drawn."""
         return self.drawn is not None
+
+    @property
+    def drawn_at_rest(self) -> DrawnSurface | None:
+        """Its surface as it is drawn, without modes; None if it is not known."""
+        return None if self.drawn is None else self.drawn.at_rest
 
     def place(self, position: str) -> Array | None:
         """Return where in the world a point is at rest [m], shape (3,), None if it is not known."""

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import ClassVar
 
 from ..checks import choice
+from .cards import HasCard
 from .modes import Body, BodyPoint
 
 
-class NamedPoints:
+class NamedPoints(HasCard):
     """What bodies of named points share; the names are those of `point_names`."""
 
     has_positions: ClassVar[bool] = False

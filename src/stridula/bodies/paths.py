@@ -46,6 +46,11 @@ class Waves:
             return (self.amplitude * np.cos(angles)).sum(axis=1), (-self.amplitude * rates * np.sin(angles)).sum(axis=1)
         return (self.amplitude * np.sin(angles)).sum(axis=1), (self.amplitude * rates * np.cos(angles)).sum(axis=1)
 
+    def along(self, path: Path, abscissas: Array) -> Array:
+        """Return the trace of each mode at many abscissas [m], shape (modes, abscissas)."""
+        angles = self.rates(path.rate)[..., None] * abscissas + self.rates(path.phase)[..., None]
+        return np.asarray((self.amplitude[..., None] * (np.cos if self.cosines else np.sin)(angles)).sum(axis=1))
+
 
 @dataclass(frozen=True)
 class Path:

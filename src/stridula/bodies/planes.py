@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError
+from .cards import HasCard
 from .matrix_input import numbers
 
 # Error of unit vectors at right angles that rounding may make.
@@ -22,7 +23,7 @@ def checked_plane(name: str, given: Any) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(axis) for axis in axes.tolist())
 
 
-class InPlane:
+class InPlane(HasCard):
     """What tracks share that lie in a plane of their own, or in that of world x and y."""
 
     plane: Any

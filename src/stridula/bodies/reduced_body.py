@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import ArgumentError, instance, positive
+from .cards import FEW
 from .damping import DampingLaw, Rayleigh, checked_damping
 from .long_searches import search_told
 from .matrix_arguments import from_container, from_matrices
@@ -295,6 +296,11 @@ class ReducedBody(NamedPoints):
     def point_names(self) -> tuple[str, ...]:
         """Names of its points."""
         return tuple(self.points)
+
+    @property
+    def has_modes_at_hand(self) -> bool:
+        """Whether its modes are known already, or are found at once."""
+        return "_reduction" in vars(self) or self.mass.shape[0] <= FEW
 
     @property
     def total_mass(self) -> float:

@@ -19,6 +19,7 @@ from ..arrays import Array
 from ..checks import ArgumentError, at_most, choice, count, instance, listed, positive
 from ..declared import Frequency, Own
 from .body_surfaces import HIGHEST, PointSurface, largest_part
+from .cards import FEW
 from .damping import DampingLaw, checked_damping
 from .drawn_surfaces import DrawnSurface, surface_of_mesh
 from .factorisation import dissection
@@ -242,6 +243,16 @@ class SolidBody(NamedPoints):
         return f"{sides} m, {len(self.mesh.elements)} {self.mesh.element_kind.words}"
 
     @property
+    def has_modes_at_hand(self) -> bool:
+        """Whether its modes are known already, or are found at once."""
+        return "_reduction" in vars(self) or 3 * len(self.mesh.nodes) <= FEW
+
+    @property
+    def has_mass_at_hand(self) -> bool:
+        """Whether its mass is found at once: it comes with the modes."""
+        return self.has_modes_at_hand
+
+    @property
     def total_mass(self) -> float:
         """Mass [kg]."""
         return float(self._reduction.mass.sum())
@@ -288,6 +299,11 @@ class SolidBody(NamedPoints):
     def drawn(self) -> DrawnSurface:
         """Its surface as it is drawn: the faces of elements that no other one shares, and how modes move them."""
         return surface_of_mesh(self.mesh, self.shapes)
+
+    @property
+    def drawn_at_rest(self) -> DrawnSurface:
+        """Its surface as it is drawn, without modes, which need not be known."""
+        return surface_of_mesh(self.mesh, np.zeros((3 * len(self.mesh.nodes), 0)))
 
     def modal_coordinates(self, vector: Any) -> Array:
         """Return ``Phi^T M x`` of displacements or velocities x of all nodes, shape (nodes, 3), as shape (modes,).

@@ -2,222 +2,24 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
-from typing import Any
-
-import numpy as np
 import xarray as xr
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from ..analysis import bowed_motion, bursts, dominant_frequency, regime_of
-from ..analysis.phases import inside
-from ..analysis.regimes import LIMITS
-from ..analysis.several_contacts import loads, mean_shares
-from ..arrays import Array
-from ..records.by_point import by_point
-from ..records.by_surface import groups
-from ..records.variables import ENERGY, STATUS_WORDS
+from ..analysis.record_card import facts_of
 from ..system import System
-from .counts import counted
-
-# Ends that are worth a line.
-ENDINGS = {
-    "off the track": "the tip ran off the end of its track",
-    "not finite": "failed: the state is no longer finite",
-    "contact unsolved": "failed: the contact forces were not found",
-    "energy created": "failed: energy came from nowhere",
-    "interrupted": "interrupted",
-}
-# Regimes that are cycles of one frequency.
-CYCLES = ("squeal", "stick-slip")
-# Relative changes of a force below are rounding, not vibration.
-STEADY = 1e-9
 
 
 def print_card(
     record: xr.Dataset, title: str, files: list[str], doubtful: list[str], system: System | None = None
 ) -> None:
-    """Print what came of a run, of a bowed string the motion that it is in, and which of its values are doubtful."""
+    """Print the result of a run, of a bowed string the motion that it is in, and which of its values are doubtful."""
     table = Table(title=escape(title), show_header=False, title_justify="left")
-    lines = card(record)
-    # Beside the regime, which comes first.
-    shown = {name: lines.pop(name) for name in ("ended", "regime") if name in lines}
-    for name, words in (shown | _strings(record, system) | lines).items():
+    for name, words in facts_of(record, system).items():
         table.add_row(name, escape(words))
     if doubtful:
         table.add_row("doubtful", escape("\n".join(doubtful)))
     if files:
         table.add_row("written", escape("\n".join(files)))
     Console().print(table)
-
-
-def card(record: xr.Dataset) -> dict[str, str]:
-    """Return what came of a run, in words: how it ended if not as asked, then what is heard, then the numbers of it."""
-    lines = _ending(record)
-    if record.sizes["time"]:
-        lines |= _contact(record) | _energy(record)
-    return lines | _computation(record)
-
-
-def _ending(record: xr.Dataset) -> dict[str, str]:
-    """Return how a run ended that did not finish, and when."""
-    ended = record.attrs["ended"]
-    if ended not in ENDINGS:
-        return {}
-    end = float(record["time"][-1]) if record.sizes["time"] else 0.0
-    return {"ended": f"{ENDINGS[ended]} at t = {end:.6g} s"}
-
-
-def _computation(record: xr.Dataset) -> dict[str, str]:
-    """Return how much was computed, and how."""
-    simulated = record.sizes["time"] * record.attrs["sample_interval"]
-    wall_time, compile_time = record.attrs["wall_time"], record.attrs.get("compile_time", 0.0)
-    compiled = f", after {compile_time:.2g} s of compiling" if compile_time else ""
-    modes = counted(int(record.attrs["modes"]), "mode")
-    return {
-        "simulated": f"{simulated:.6g} s{_since(record)}",
-        "computed in": f"{wall_time:.3g} s, {simulated / max(wall_time, 1e-9):.2f} x real time{compiled}",
-        "step": f"{record.attrs['step']:.4g} s, {record.attrs['scheme']}, {modes}",
-    }
-
-
-def _since(record: xr.Dataset) -> str:
-    """Return from where to where a record reaches that continues another one."""
-    interval = record.attrs["sample_interval"]
-    if not record.sizes["time"] or record["time"][0] < 1.5 * interval:
-        return ""
-    first, last = float(record["time"][0]) - interval, float(record["time"][-1])
-    return f", from t = {first:.6g} s to {last:.6g} s"
-
-
-def _strings(record: xr.Dataset, system: System | None) -> dict[str, str]:
-    """Return the motion of the string that all contacts of a run touch, if they do."""
-    first = system.contacts[0] if system else None
-    stretched = [body for body in (first.tip.body, first.track_body) if getattr(body, "tension", 0.0)] if first else []
-    if system is None or len(stretched) != 1 or record.sizes["time"] < 2:
-        return {}
-    string: Any = stretched[0]
-    if not all(string in (contact.tip.body, contact.track_body) for contact in system.contacts):
-        return {}
-    fundamental = float(string.modes().frequency[0])
-    found = bowed_motion(record, fundamental)
-    rate, frequency = float(found["slips_per_period"]), float(found["frequency"])
-    words = f"{found['motion'].item()}{'' if math.isnan(frequency) else f' at {frequency:.4g} Hz'}"
-    slips = "" if math.isnan(rate) else f", {rate:.3g} slips in a period of {fundamental:.4g} Hz"
-    return {"bowed string": f"{words}{slips}, slips for {100.0 * float(found['slip_share']):.1f} % of the time"}
-
-
-def _contact(record: xr.Dataset) -> dict[str, str]:
-    """Return what came of the contact; of several, of all together and of each one or each surface on its own line."""
-    if "contact" in by_point(record).dims:
-        lines = {"regime": _regime(record)}
-        for name, part in _parts(record):
-            alone = _one_contact(part) if "contact" not in part.dims else _surface(part)
-            lines[name] = "; ".join(words for words in alone.values() if words[:4] != "none")
-        unsolved = int(record["unsolved_steps"].sum())
-        words = f"{counted(unsolved, 'step')} with contact forces out of tolerance"
-        return lines | ({"unsolved": words} if unsolved else {})
-    return _one_contact(record)
-
-
-def _parts(record: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
-    """Yield the record of each contact, those of the points of a surface as one, and what it is called."""
-    points = by_point(record)
-    names = [str(name) for name in points["contact"].values]
-    surfaces = [str(name) for name in points["surface"].values] if "surface" in points.coords else []
-    for members in groups(names, surfaces):
-        if len(members) > 1:
-            yield surfaces[members[0]], points.isel(contact=members)
-        else:
-            yield names[members[0]], record.sel(contact=names[members[0]])
-
-
-def _surface(record: xr.Dataset) -> dict[str, str]:
-    """Return what came of the points of a surface together."""
-    carried = loads(record["normal_force"].values, LIMITS.rare)
-    return {
-        "points": counted(carried.size, "point"),
-        "regime": _regime(record),
-        "normal force": _force(record["normal_force"].values.sum(axis=1)),
-        "status": _status(mean_shares(record["status_share"].values, carried)),
-    }
-
-
-def _status(shares: Array) -> str:
-    """Return the shares of the time in each status."""
-    return ", ".join(f"{word} {100 * max(share, 0.0):.1f} %" for word, share in zip(STATUS_WORDS, shares, strict=True))
-
-
-def _one_contact(record: xr.Dataset) -> dict[str, str]:
-    shares = record["status_share"].mean("time").values
-    force, place = record["normal_force"].values, record["contact_position"].values
-    jammed = int(record["jammed_steps"].sum())
-    lines = {
-        "regime": _regime(record),
-        "normal force": _force(force),
-        "dominant frequency": _frequency(record),
-        "status": _status(shares),
-        "tip": f"from {_place(place[0])} to {_place(place[-1])} along the track",
-    }
-    return lines | ({"jammed": f"{counted(jammed, 'step')} in which sliding would have jammed"} if jammed else {})
-
-
-def _place(place: Array) -> str:
-    """Return an abscissa, or in space a pair of them [m]."""
-    return f"{place:.4g} m" if np.ndim(place) == 0 else f"({', '.join(f'{one:.4g}' for one in place)}) m"
-
-
-def _force(force: Array) -> str:
-    """Return mean, fluctuation and peak of a force [N]."""
-    if _is_steady(force, force):
-        return f"{force.mean():.4g} N, constant"
-    return f"mean {force.mean():.4g} N, fluctuation {force.std():.4g} N rms, peak {force.max():.4g} N"
-
-
-def _is_steady(heard: Array, force: Array) -> bool:
-    """Return whether a part of a force varies by no more than rounding."""
-    return bool(np.ptp(heard) <= STEADY * np.abs(force).max())
-
-
-def _frequency(record: xr.Dataset) -> str:
-    """Return the dominant frequency of the normal force, between the stops where there are any."""
-    force = record["normal_force"].values
-    if force.size < 2:
-        return "none"
-    between = bursts(record)
-    # The first sample is where the load comes on.
-    heard = force[inside(record, between)] if len(between) else force[1:]
-    if _is_steady(heard, force):
-        return "none, the normal force is constant"
-    frequency = dominant_frequency(record["normal_force"], between if len(between) else None)
-    where = " of the normal force" + (" between the stops" if len(between) else "")
-    return "none" if math.isnan(frequency) else f"{frequency:.4g} Hz{where}"
-
-
-def _regime(record: xr.Dataset) -> str:
-    """Return the regime with its tone; it takes at least 2 samples."""
-    if record.sizes["time"] < 2:
-        return "none"
-    found = regime_of(record)
-    tone = _tone(str(found["regime"]), float(found["frequency"]), record.attrs["sample_interval"])
-    return f"{found['regime']}{tone} (confidence {found['confidence']:.2f})"
-
-
-def _tone(regime: str, frequency: float, interval: float) -> str:
-    """Return at which frequency [Hz] a regime is heard, in words; nothing where no tone is."""
-    if math.isnan(frequency):
-        return ""
-    # Samples hide a cycle that is faster than half their rate.
-    hertz = f"{frequency:{'.4g' if frequency < 1e4 else '.0f'}} Hz{' or more' if frequency * interval >= 0.5 else ''}"
-    return f" at {hertz}" if regime in CYCLES else f", loudest at {hertz}"
-
-
-def _energy(record: xr.Dataset) -> dict[str, str]:
-    largest = {variable.name: float(np.abs(record[variable.name]).max()) for variable in ENERGY}
-    residual = largest.pop("ledger_residual")
-    term = max(largest, key=largest.__getitem__)
-    share = residual / largest[term] if largest[term] else 0.0
-    return {"energy ledger": f"residual {share:.1e} of the largest term, {term}"}

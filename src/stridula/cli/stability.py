@@ -11,11 +11,10 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..analysis.stability import sliding_stability
-from ..checks import ArgumentError
+from ..checks import ArgumentError, counted
 from ..scenarios.load import load_scenario
 from ..scenarios.quantities import quantity
 from .consoles import wide_console
-from .counts import counted
 
 # Modes shown where none grows.
 FEWEST = 5

@@ -12,14 +12,13 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
-from ..checks import ArgumentError
+from ..checks import ArgumentError, counted
 from ..disk import check_writable, write
 from ..scenarios.read import read_tables
 from ..studies.fates import CHANGES, JOINS, LIVES, VIBRATES
 from ..studies.surveys import squeal_survey
 from ..studies.tables import survey_table
 from .consoles import wide_console
-from .counts import counted
 from .outputs import check_outputs
 from .points import Points
 from .sweeping import check_two_keys, closing, computing

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 
 from ..checks import instance, positive
 from ..integration.schemes import Scheme
+from ..lines import lines_of
 from ..records.variables import STATUS_WORDS
 from ..system import System
-from .lines import lines_of
 from .motion import SAMPLE_RATE, Timing, motion_of
 from .plane_motion import PlaneMotion, plane_motion
 from .plane_scenes import PlaneScene

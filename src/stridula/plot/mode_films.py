@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from ..arrays import Array
 from ..assembly import assemble
 from ..checks import ArgumentError, count, instance
+from ..lines import lines_of
 from ..system import System
-from .lines import lines_of
 from .motion import ModalMotion
 from .plane_motion import extent_of as flat_extent_of
 from .plane_motion import surfaces_slid_on

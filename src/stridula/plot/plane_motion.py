@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
+from ..lines import Line, Touch, lines_of
 from ..system import System
-from .lines import Line, Touch, lines_of
 from .motion import Motion
 
 # Length of a rigid track on both sides of what is seen of it, as a share of the bodies' extent.

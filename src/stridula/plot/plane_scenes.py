@@ -12,8 +12,8 @@ from matplotlib.ticker import EngFormatter
 
 from ..arrays import Array
 from ..checks import STATUS_WORDS
+from ..lines import Line, Touch
 from .colours import LINE, STATUS_COLOURS
-from .lines import Line, Touch
 from .plane_motion import Surface, extent_of
 
 # Thickness of the bodies' lines [points], and diameters of marks of one contact and of several.

@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
-from ..bodies import BodyPoint
-from ..checks import ArgumentError
-from ..connections import ends
-from ..contact import PointContact
-from ..system import System
+from .arrays import Array
+from .bodies import BodyPoint
+from .checks import ArgumentError
+from .connections import ends
+from .contact import PointContact
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +81,41 @@ class _Joint:
     away: Array
 
 
-def lines_of(system: System) -> tuple[list[Line], list[Touch]]:
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """A body in the plane at rest, without its modes.
+
+    Attributes
+    ----------
+    body : object
+        The body.
+    place : ndarray, shape (2,)
+        Where the abscissa 0 of a line is, or a point of a body that has no line [m].
+    ends : ndarray, shape (points, 2)
+        World places of both ends of a line, or of the point [m].
+    """
+
+    body: Any
+    place: Array
+    ends: Array
+
+
+def outlines_of(system: Any) -> tuple[list[Outline], Array]:
+    """Return where the lines and the points of a system in the plane are, and its tips [m], shape (contacts, 2).
+
+    As `lines_of` has them, without looking for modes.
+    """
+    origins = _origins(list(_joints(system)))
+    outlines = []
+    for thing, origin in origins.items():
+        is_line = hasattr(thing, "drawn_places")
+        ends = origin + np.outer(thing.ends, thing.axes[0]) if is_line else origin[None]
+        outlines.append(Outline(thing if is_line else thing.body, origin, ends))
+    tips = [origins[_thing(contact.tip)] + _offset(contact.tip) for contact in system.contacts]
+    return outlines, np.array(tips)
+
+
+def lines_of(system: Any) -> tuple[list[Line], list[Touch]]:
     """Return the lines and the points of a system in the plane, and where they touch.
 
     The track of the first contact is where it says itself, along x, all others are where contacts and connections have
@@ -119,7 +152,7 @@ def _touched(contact: PointContact) -> BodyPoint | None:
     return contact.touched_point if contact.path_body is None else BodyPoint(contact.path_body, contact.at)
 
 
-def _joints(system: System) -> Iterator[_Joint]:
+def _joints(system: Any) -> Iterator[_Joint]:
     for contact in system.contacts:
         normal, tangent = contact.frame
         along = 0.0 if contact.rigid_track is None else contact.at
@@ -168,7 +201,7 @@ def _origins(joints: list[_Joint]) -> dict[Any, Array]:
     return found
 
 
-def _line(thing: Any, origin: Array, points: list[BodyPoint], system: System) -> Line:
+def _line(thing: Any, origin: Array, points: list[BodyPoint], system: Any) -> Line:
     """Return what is drawn of a body, or a point alone, with its points that touch or are joined."""
     is_line = hasattr(thing, "drawn_places")
     body = thing if is_line else thing.body

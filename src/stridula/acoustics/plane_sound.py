@@ -1,0 +1,243 @@
+"""The sound of a system in the plane: its tracks, and its slim beams as lines of dipoles.
+
+A wall that tracks are flush with reflects what beams before it send: a listener hears them, and what a listener in the
+image behind the wall would hear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..arrays import Array
+from ..checks import ArgumentError, instance, listed
+from ..lines import Outline, outlines_of
+from ..records.by_point import by_point
+from ..records.checked import record
+from ..system import System
+from .air import Air
+from .free_bodies import chosen, convolved, lacks
+from .listeners import HEIGHT, SPACING, check_in_front, ears, listeners_of
+from .panels import panel_of
+from .recorded import sampled
+from .redriven import redriven
+from .resampling import bandwidth_of, ratio_of, resample
+from .slim_beams import SlimBeam, slim_beam
+from .track_sound import slim_below, track_sound
+
+# Tracks whose heights differ by less lie in one plane [m].
+LEVEL = 1e-9
+# Beams that slide farther than this are said to be heard where they are on average [m].
+FAR = 0.01
+
+
+@dataclass(frozen=True)
+class _Axes:
+    """Where abscissas along a track are in the coordinates of its listeners: from an origin along a tangent."""
+
+    origin: Array
+    tangent: Array
+
+    def along_and_across(self, places: Array) -> Array:
+        """Return abscissa, distance across to the left and height of listeners, shape (listeners, 3)."""
+        away = places[:, :2] - self.origin
+        left = np.array([-self.tangent[1], self.tangent[0]])
+        return np.column_stack([away @ self.tangent, away @ left, places[:, 2]])
+
+    def listeners(self, places: Array) -> Array:
+        """Return listeners of an abscissa, a distance across and a height, shape (listeners, 3)."""
+        left = np.array([-self.tangent[1], self.tangent[0]])
+        flat = self.origin + np.outer(places[:, 0], self.tangent) + np.outer(places[:, 1], left)
+        return np.column_stack([flat, places[:, 2]])
+
+
+def plane_sound(
+    run: xr.Dataset,
+    system: System,
+    listener: Any = None,
+    bodies: Sequence[Any] | None = None,
+    baffled: bool | None = None,
+    air: Air | None = None,
+    sample_rate: float | None = None,
+) -> tuple[Array, Array, Array, dict[str, Any]]:
+    """Return pressures (listeners, samples), their times, the listeners and attributes; arguments are as in `radiate`.
+
+    Raises
+    ------
+    ValueError
+        If nothing can be heard, a listener is where it cannot be heard, or the record is not usable.
+    """
+    air = Air() if air is None else air
+    instance("air", air, Air)
+    run = by_point(record("run", run))
+    tracks = _tracks(system)
+    beams = [body for body in system.bodies if body not in tracks and _is_slim(body)]
+    heard, silent = chosen(system, bodies, [*tracks, *beams])
+    outlines = {one.body: one for one in outlines_of(system)[0]}
+    wall = _wall(tracks, outlines, baffled)
+    if listener is None:
+        listener = ears(tracks[0]) if tracks else _ears(heard, outlines)
+    places = listeners_of(listener)
+    if wall is not None:
+        check_in_front(places)
+    seen = _in_the_plane(places, tracks, outlines)
+    parts = [
+        _of_track(run, system, one, outlines[one], seen, wall is not None, air, sample_rate)
+        for one in tracks
+        if one in heard
+    ]
+    if slim := [one for one in beams if one in heard]:
+        parts.append(_of_beams(run, system, slim, outlines, seen, wall, air, sample_rate, silent))
+    pressure, attributes = _added(parts)
+    attributes["bodies"] = [system.body_name(body) for body in heard]
+    attributes |= {f"air_{name}": value for name, value in asdict(air).items()}
+    attributes |= {"air_speed": air.speed, "air_density": air.density}
+    if silent and not slim:
+        attributes["notes"] = "; ".join(filter(None, [attributes["notes"], f"not heard: {listed(silent)}"]))
+    return pressure, parts[0][1], places, attributes
+
+
+def _tracks(system: System) -> list[Any]:
+    """Return the tracks that contacts move along and that can be heard."""
+    unknown = panel_of.dispatch(object)
+    found = [contact.path_body for contact in system.contacts if contact.path_body is not None]
+    return [body for body in dict.fromkeys(found) if panel_of.dispatch(type(body)) is not unknown]
+
+
+def _is_slim(body: Any) -> bool:
+    """Return whether a body is a beam whose section is known."""
+    return hasattr(body, "drawn_places") and hasattr(getattr(body, "section", None), "across")
+
+
+def _wall(tracks: Sequence[Any], outlines: dict[Any, Outline], baffled: bool | None) -> float | None:
+    """Return the height of the baffle above the first track [m], None without one."""
+    if baffled is False or (baffled is None and not tracks):
+        return None
+    if not tracks:
+        raise ArgumentError("baffled", "be False, or left out, without a track that can be heard", baffled)
+    heights = [float(outlines[one].place[1]) for one in tracks]
+    if max(heights) - min(heights) > LEVEL:
+        raise ArgumentError("baffled", "be False where tracks do not lie in one plane", baffled)
+    return heights[0]
+
+
+def _in_the_plane(places: Array, tracks: Sequence[Any], outlines: dict[Any, Outline]) -> Array:
+    """Return where listeners are along world x, across the plane and along world y, from those of the first track."""
+    if not tracks:
+        return places
+    x, y = outlines[tracks[0]].place
+    return _axes(tracks[0]).along_and_across(places) + np.array([x, 0.0, y])
+
+
+def _axes(track: Any) -> _Axes:
+    ends = np.column_stack(panel_of(track).place(np.array([0.0, 1.0]))) if hasattr(track, "track_line") else None
+    if ends is None:
+        return _Axes(np.zeros(2), np.array([1.0, 0.0]))
+    return _Axes(ends[0], ends[1] - ends[0])
+
+
+def _ears(heard: Sequence[Any], outlines: dict[Any, Outline]) -> list[tuple[float, float, float]]:
+    """Return two ears above the middle of what is heard."""
+    ends = np.concatenate([outlines[body].ends for body in heard])
+    middle, height = 0.5 * (ends[:, 0].min() + ends[:, 0].max()), ends[:, 1].max() + HEIGHT
+    return [(float(middle + side * SPACING / 2.0), 0.0, float(height)) for side in (-1.0, 1.0)]
+
+
+Part = tuple[Array, Array, dict[str, Any]]
+
+
+def _of_track(
+    run: xr.Dataset,
+    system: System,
+    track: Any,
+    outline: Outline,
+    seen: Array,
+    baffled: bool,
+    air: Air,
+    sample_rate: float | None,
+) -> Part:
+    on_it = [number for number, contact in enumerate(system.contacts) if contact.path_body == track]
+    pressing = run.isel(contact=on_it) if "contact" in run.dims else run
+    places = _axes(track).listeners(seen - [outline.place[0], 0.0, outline.place[1]])
+    pressure, time, _, attributes = track_sound(pressing, track, places, baffled, air, sample_rate)
+    if any(contact.touched_point and contact.touched_point.body == track for contact in system.contacts):
+        name = system.body_name(track)
+        attributes["notes"] += f"; what touches {name} at one point does not drive it here"
+    return pressure, time, attributes
+
+
+def _of_beams(
+    run: xr.Dataset,
+    system: System,
+    beams: Sequence[Any],
+    outlines: dict[Any, Outline],
+    seen: Array,
+    wall: float | None,
+    air: Air,
+    sample_rate: float | None,
+    silent: Sequence[str],
+) -> Part:
+    """Return the sound of slim beams, with that of their images behind a wall."""
+    moved = redriven(run, system, beams)
+    recorded = 1.0 / moved.interval
+    ratio = ratio_of(sample_rate, recorded, moved.samples)
+    bandwidth, shift = bandwidth_of(ratio, recorded), (moved.first - moved.start) / moved.interval
+    pressure = np.zeros((len(seen), moved.samples))
+    distances: list[Array] = []
+    notes = ["silence: nothing pushes the beams"] if moved.pushed is None else []
+    images = [seen] if wall is None else [seen, seen * [1.0, 1.0, -1.0] + [0.0, 0.0, 2.0 * wall]]
+    for body in beams:
+        first, last = moved.spans[system.body_name(body)]
+        numbers = first + np.flatnonzero(moved.accelerations[first:last].any(axis=1))
+        travel, reach = _travel(run, system, body)
+        beam = slim_beam(body, system.is_held(body), numbers - first, outlines[body].place + np.array([travel, 0.0]))
+        beam.check(seen)
+        for places in images if numbers.size else []:
+            responses = beam.responses(places, air, moved.interval, shift, bandwidth)
+            pressure += convolved(responses, moved, numbers)
+        distances.append(beam.distances(seen))
+        notes += _said(system, body, beam, travel, reach, air)
+    sounding = resample(pressure, ratio)
+    times = np.arange(sounding.shape[1]) * moved.interval / float(ratio)
+    nearest = np.min(distances, axis=0)
+    sounding[times < nearest[:, None] / air.speed] = 0.0
+    modes = sum(last - first for first, last in (moved.spans[system.body_name(body)] for body in beams))
+    notes += lacks(system, beams, silent, moved)
+    attributes = {"bandwidth": bandwidth, "modes": modes, "baffled": int(wall is not None)}
+    return sounding, moved.start + times, {**attributes, "distance": nearest.tolist(), "notes": "; ".join(notes)}
+
+
+def _travel(run: xr.Dataset, system: System, body: Any) -> tuple[float, float]:
+    """Return how far a body is from where it starts on average, and between which places it is at all [m]."""
+    for number, contact in enumerate(system.contacts):
+        still = contact.path_body is not None or (contact.rigid_track is not None and contact.rigid_track.is_still)
+        if contact.tip.body == body and still:
+            *_, (places,) = sampled(run, "contact_position")
+            return float(places[number].mean()) - contact.at, float(np.ptp(places[number]))
+    return 0.0, 0.0
+
+
+def _said(system: System, body: Any, beam: SlimBeam, travel: float, reach: float, air: Air) -> list[str]:
+    """Return what is to be said of a beam, in words."""
+    name = system.body_name(body)
+    notes = [f"{name}: a line of dipoles, slim below {slim_below(body, air):.4g} Hz"]
+    if reach > FAR:
+        notes.append(f"{name}: it slides over {reach:.3g} m and is heard from the middle of its way")
+    imposed = system.imposed_velocity
+    if system.is_held(body) and imposed is not None and imposed.history.kind != "constant":
+        notes.append(f"{name}: changes of its imposed velocity as a whole are not included")
+    return notes
+
+
+def _added(parts: Sequence[Part]) -> tuple[Array, dict[str, Any]]:
+    """Return the sum of sounds and what is known of all of them together."""
+    attributes = dict(parts[0][2])
+    attributes["modes"] = sum(one["modes"] for *_, one in parts)
+    attributes["distance"] = np.min([one["distance"] for *_, one in parts], axis=0).tolist()
+    notes = [note for *_, one in parts for note in one["notes"].split("; ") if note]
+    attributes["notes"] = "; ".join(dict.fromkeys(notes))
+    return np.sum([pressure for pressure, *_ in parts], axis=0), attributes

@@ -1,0 +1,288 @@
+"""The result of a run in words: the closing card of `stridula run`, and what notebooks show of a record."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..arrays import Array
+from ..cards import Stroke, drawing
+from ..cards import card as draw_card
+from ..checks import ArgumentError, counted
+from ..records.by_point import by_point
+from ..records.by_surface import groups
+from ..records.checked import record
+from ..records.variables import ENERGY, STATUS_WORDS
+from ..system import System
+from .bowed import bowed_motion
+from .phases import bursts, inside
+from .regimes import LIMITS, regime_of
+from .several_contacts import loads, mean_shares
+from .spectra import dominant_frequency
+
+# Ends that are worth a line.
+ENDINGS = {
+    "off the track": "the tip ran off the end of its track",
+    "not finite": "failed: the state is no longer finite",
+    "contact unsolved": "failed: the contact forces were not found",
+    "energy created": "failed: energy came from nowhere",
+    "interrupted": "interrupted",
+}
+# Regimes that are cycles of one frequency.
+CYCLES = ("squeal", "stick-slip")
+# Relative changes of a force below are rounding, not vibration.
+STEADY = 1e-9
+
+
+# Columns of the picture of a force, and its size, which the drawing fits to its own.
+COLUMNS, LONG, HIGH = 240, 240.0, 60.0
+
+
+@dataclass(frozen=True)
+class RecordCard:
+    """The result of a run in words; in print a table, in notebooks one with a picture of the normal force.
+
+    Attributes
+    ----------
+    title : str
+        The title of the run, if it has one.
+    facts : mapping
+        What is known, in words, by name: the regime and its tone first.
+    force : ndarray, shape (columns, 2)
+        Least and largest normal force of all contacts together in each stretch of time [N]; empty without samples.
+    """
+
+    title: str
+    facts: Mapping[str, str]
+    force: Array = field(repr=False, compare=False)
+
+    def __str__(self) -> str:
+        width = max(map(len, self.facts))
+        return "\n".join(f"{name:<{width}}  {words}" for name, words in self.facts.items())
+
+    def _repr_html_(self) -> str:
+        """Return the table with a picture of the normal force."""
+        return draw_card(self.title or "Record", self.facts, drawing(_strokes(self.force), "normal force over time"))
+
+
+def card(run: xr.Dataset, system: System | None = None) -> RecordCard:
+    """Return the result of a run in words, as `stridula run` prints it at the end.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A record of `simulate`.
+    system : System, optional
+        The system of the run; of a bowed string it tells which motion it is in.
+
+    Returns
+    -------
+    RecordCard
+        The regime and its tone, the forces, the shares of the time in each status, the balance of energy, and what was
+        computed. In notebooks the last line of a cell shows it as a table.
+
+    Raises
+    ------
+    ValueError
+        If it is no record of `simulate`, or lacks what a card needs.
+    """
+    given = record("run", run, "normal_force")
+    for name in ("ended", "sample_interval", "modes", "step", "scheme", "wall_time"):
+        if name not in given.attrs:
+            raise ArgumentError("run", f"be a record with the attribute {name}", run, got="one without")
+    return RecordCard(str(given.attrs.get("title", "")), facts_of(given, system), _force_over_time(given))
+
+
+def facts_of(record: xr.Dataset, system: System | None = None) -> dict[str, str]:
+    """Return what came of a run, in words: how it ended if not as asked, then what is heard, then the numbers of it."""
+    lines = _ending(record)
+    if record.sizes["time"]:
+        lines |= _contact(record) | _energy(record)
+    lines |= _computation(record)
+    # Beside the regime, which comes first.
+    shown = {name: lines.pop(name) for name in ("ended", "regime") if name in lines}
+    return shown | _strings(record, system) | lines
+
+
+def _force_over_time(record: xr.Dataset) -> Array:
+    force = by_point(record)["normal_force"].transpose("time", ...).values
+    total = force.sum(axis=tuple(range(1, force.ndim)))
+    parts = [part for part in np.array_split(total, COLUMNS) if part.size]
+    return np.array([[part.min(), part.max()] for part in parts]).reshape(-1, 2)
+
+
+def _strokes(force: Array) -> list[Stroke]:
+    """Return a force over time as strokes, from zero up to its largest value; nothing of one that does not change."""
+    largest = float(np.abs(force).max(initial=0.0))
+    if len(force) < 2 or not np.ptp(force):
+        return []
+    x = np.linspace(0.0, LONG, len(force))
+    y = HIGH * force / largest
+    bars = [np.array([[one, low], [one, high]]) for one, (low, high) in zip(x, y, strict=True)]
+    return [Stroke([np.array([[0.0, 0.0], [LONG, 0.0]])], 1.0, 0.4), Stroke(bars, 1.2)]
+
+
+def _ending(record: xr.Dataset) -> dict[str, str]:
+    """Return how a run ended that did not finish, and when."""
+    ended = record.attrs["ended"]
+    if ended not in ENDINGS:
+        return {}
+    end = float(record["time"][-1]) if record.sizes["time"] else 0.0
+    return {"ended": f"{ENDINGS[ended]} at t = {end:.6g} s"}
+
+
+def _computation(record: xr.Dataset) -> dict[str, str]:
+    """Return how much was computed, and how."""
+    simulated = record.sizes["time"] * record.attrs["sample_interval"]
+    wall_time, compile_time = record.attrs["wall_time"], record.attrs.get("compile_time", 0.0)
+    compiled = f", after {compile_time:.2g} s of compiling" if compile_time else ""
+    modes = counted(int(record.attrs["modes"]), "mode")
+    return {
+        "simulated": f"{simulated:.6g} s{_since(record)}",
+        "computed in": f"{wall_time:.3g} s, {simulated / max(wall_time, 1e-9):.2f} x real time{compiled}",
+        "step": f"{record.attrs['step']:.4g} s, {record.attrs['scheme']}, {modes}",
+    }
+
+
+def _since(record: xr.Dataset) -> str:
+    """Return from where to where a record reaches that continues another one."""
+    interval = record.attrs["sample_interval"]
+    if not record.sizes["time"] or record["time"][0] < 1.5 * interval:
+        return ""
+    first, last = float(record["time"][0]) - interval, float(record["time"][-1])
+    return f", from t = {first:.6g} s to {last:.6g} s"
+
+
+def _strings(record: xr.Dataset, system: System | None) -> dict[str, str]:
+    """Return the motion of the string that all contacts of a run touch, if they do."""
+    first = system.contacts[0] if system else None
+    stretched = [body for body in (first.tip.body, first.track_body) if getattr(body, "tension", 0.0)] if first else []
+    if system is None or len(stretched) != 1 or record.sizes["time"] < 2:
+        return {}
+    string: Any = stretched[0]
+    if not all(string in (contact.tip.body, contact.track_body) for contact in system.contacts):
+        return {}
+    fundamental = float(string.modes().frequency[0])
+    found = bowed_motion(record, fundamental)
+    rate, frequency = float(found["slips_per_period"]), float(found["frequency"])
+    words = f"{found['motion'].item()}{'' if math.isnan(frequency) else f' at {frequency:.4g} Hz'}"
+    slips = "" if math.isnan(rate) else f", {rate:.3g} slips in a period of {fundamental:.4g} Hz"
+    return {"bowed string": f"{words}{slips}, slips for {100.0 * float(found['slip_share']):.1f} % of the time"}
+
+
+def _contact(record: xr.Dataset) -> dict[str, str]:
+    """Return what came of the contact; of several, of all together and of each one or each surface on its own line."""
+    if "contact" in by_point(record).dims:
+        lines = {"regime": _regime(record)}
+        for name, part in _parts(record):
+            alone = _one_contact(part) if "contact" not in part.dims else _surface(part)
+            lines[name] = "; ".join(words for words in alone.values() if words[:4] != "none")
+        unsolved = int(record["unsolved_steps"].sum())
+        words = f"{counted(unsolved, 'step')} with contact forces out of tolerance"
+        return lines | ({"unsolved": words} if unsolved else {})
+    return _one_contact(record)
+
+
+def _parts(record: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
+    """Yield the record of each contact, those of the points of a surface as one, and what it is called."""
+    points = by_point(record)
+    names = [str(name) for name in points["contact"].values]
+    surfaces = [str(name) for name in points["surface"].values] if "surface" in points.coords else []
+    for members in groups(names, surfaces):
+        if len(members) > 1:
+            yield surfaces[members[0]], points.isel(contact=members)
+        else:
+            yield names[members[0]], record.sel(contact=names[members[0]])
+
+
+def _surface(record: xr.Dataset) -> dict[str, str]:
+    """Return what came of the points of a surface together."""
+    carried = loads(record["normal_force"].values, LIMITS.rare)
+    return {
+        "points": counted(carried.size, "point"),
+        "regime": _regime(record),
+        "normal force": _force(record["normal_force"].values.sum(axis=1)),
+        "status": _status(mean_shares(record["status_share"].values, carried)),
+    }
+
+
+def _status(shares: Array) -> str:
+    """Return the shares of the time in each status."""
+    return ", ".join(f"{word} {100 * max(share, 0.0):.1f} %" for word, share in zip(STATUS_WORDS, shares, strict=True))
+
+
+def _one_contact(record: xr.Dataset) -> dict[str, str]:
+    shares = record["status_share"].mean("time").values
+    force, place = record["normal_force"].values, record["contact_position"].values
+    jammed = int(record["jammed_steps"].sum())
+    lines = {
+        "regime": _regime(record),
+        "normal force": _force(force),
+        "dominant frequency": _frequency(record),
+        "status": _status(shares),
+        "tip": f"from {_place(place[0])} to {_place(place[-1])} along the track",
+    }
+    return lines | ({"jammed": f"{counted(jammed, 'step')} in which sliding would have jammed"} if jammed else {})
+
+
+def _place(place: Array) -> str:
+    """Return an abscissa, or in space a pair of them [m]."""
+    return f"{place:.4g} m" if np.ndim(place) == 0 else f"({', '.join(f'{one:.4g}' for one in place)}) m"
+
+
+def _force(force: Array) -> str:
+    """Return mean, fluctuation and peak of a force [N]."""
+    if _is_steady(force, force):
+        return f"{force.mean():.4g} N, constant"
+    return f"mean {force.mean():.4g} N, fluctuation {force.std():.4g} N rms, peak {force.max():.4g} N"
+
+
+def _is_steady(heard: Array, force: Array) -> bool:
+    """Return whether a part of a force varies by no more than rounding."""
+    return bool(np.ptp(heard) <= STEADY * np.abs(force).max())
+
+
+def _frequency(record: xr.Dataset) -> str:
+    """Return the dominant frequency of the normal force, between the stops where there are any."""
+    force = record["normal_force"].values
+    if force.size < 2:
+        return "none"
+    between = bursts(record)
+    # The first sample is where the load comes on.
+    heard = force[inside(record, between)] if len(between) else force[1:]
+    if _is_steady(heard, force):
+        return "none, the normal force is constant"
+    frequency = dominant_frequency(record["normal_force"], between if len(between) else None)
+    where = " of the normal force" + (" between the stops" if len(between) else "")
+    return "none" if math.isnan(frequency) else f"{frequency:.4g} Hz{where}"
+
+
+def _regime(record: xr.Dataset) -> str:
+    """Return the regime with its tone; it takes at least 2 samples."""
+    if record.sizes["time"] < 2:
+        return "none"
+    found = regime_of(record)
+    tone = _tone(str(found["regime"]), float(found["frequency"]), record.attrs["sample_interval"])
+    return f"{found['regime']}{tone} (confidence {found['confidence']:.2f})"
+
+
+def _tone(regime: str, frequency: float, interval: float) -> str:
+    """Return at which frequency [Hz] a regime is heard, in words; nothing where no tone is."""
+    if math.isnan(frequency):
+        return ""
+    # Samples hide a cycle that is faster than half their rate.
+    hertz = f"{frequency:{'.4g' if frequency < 1e4 else '.0f'}} Hz{' or more' if frequency * interval >= 0.5 else ''}"
+    return f" at {hertz}" if regime in CYCLES else f", loudest at {hertz}"
+
+
+def _energy(record: xr.Dataset) -> dict[str, str]:
+    largest = {variable.name: float(np.abs(record[variable.name]).max()) for variable in ENERGY}
+    residual = largest.pop("ledger_residual")
+    term = max(largest, key=largest.__getitem__)
+    share = residual / largest[term] if largest[term] else 0.0
+    return {"energy ledger": f"residual {share:.1e} of the largest term, {term}"}
