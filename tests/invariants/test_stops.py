@@ -204,14 +204,19 @@ def test_friction_of_a_law_with_state_may_give_back_what_it_stored():
     assert energy_created(energies, np.zeros(layout.ENERGIES), 0.0, 1.0, 0.0, False, True) is None
 
 
-def groove(opening, mu=0.0) -> st.System:
-    """A mass pressed by 1 N into a groove whose walls stand `opening` degrees apart."""
+def groove(opening, mu=0.0, history=None) -> st.System:
+    """A mass pressed by 1 N into a groove whose walls stand `opening` degrees apart, or by that times a history."""
     steep = radians(90.0 - opening / 2.0)
     walls = [
         st.PointContact(MASS.centre, st.RigidTrack(), inclination=lean, friction=st.Coulomb(mu), name=name)
         for name, lean in (("left", -steep), ("right", steep))
     ]
-    return st.System(walls, [st.Force(MASS.centre, y=-1.0)])
+    press = {} if history is None else {"history": history}
+    return st.System(walls, [st.Force(MASS.centre, y=-1.0, **press)])
+
+
+# The forces of a step are not those of the one before.
+CHANGING = st.Harmonic(100.0)
 
 
 def test_a_wide_groove_is_solved():
@@ -246,7 +251,7 @@ def test_too_few_sweeps_are_counted():
     """One sweep is no solution: every step in which both walls press is counted, or the run stops."""
     try:
         run = st.simulate(
-            groove(60.0),
+            groove(60.0, history=CHANGING),
             0.01,
             step=STEP,
             sample_rate=1e4,
@@ -263,7 +268,14 @@ def test_too_few_sweeps_are_counted():
 def test_a_stop_in_the_first_sample_keeps_an_empty_record():
     """Nothing was recorded before; the message still says where the contacts are."""
     with pytest.raises(st.Diverged) as caught:
-        st.simulate(groove(60.0), 0.01, step=STEP, sample_rate=1e4, probes=[], contact_solve=st.GaussSeidel(sweeps=1))
+        st.simulate(
+            groove(60.0, history=CHANGING),
+            0.01,
+            step=STEP,
+            sample_rate=1e3,
+            probes=[],
+            contact_solve=st.GaussSeidel(sweeps=1),
+        )
     check(caught.value, "contact unsolved", (0, 0), name="left")
 
 
