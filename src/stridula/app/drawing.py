@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies import BodyPoint
-from ..connections import ends
+from ..connections import ends, unit
 from ..integration.live import LiveChunk, LiveMarch
 from ..plot.lines import Line, Touch, lines_of
 from ..records.provenance import is_pair
@@ -124,7 +124,10 @@ class Lines:
             for one in self.lines
         ]
         contacts = [self._contact(number) for number in range(len(self.touches))]
-        joined = [[self._end(point) for point in ends(one)] for one in self.system.connections]
+        joined = [
+            {"ends": [self._end(point) for point in ends(one)], "along": unit(one)[:2].tolist()}
+            for one in self.system.connections
+        ]
         return {"lines": lines, "contacts": contacts, "joined": joined}
 
     def shapes(self, live: LiveMarch, chunk: LiveChunk) -> Shapes:

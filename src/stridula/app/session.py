@@ -60,8 +60,9 @@ class Session:
         self.source, self.repeats = "pressure", True
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._began, self._played = clock.monotonic(), 0
-        # Seconds played in one; of what was played since that was said last, seconds that it took, and samples.
-        self.speed, self._taken, self._made = 1.0, 0.0, 0
+        # Seconds of a system played in one; of what was played since, seconds that it took, and samples.
+        self.speed: float | None = None
+        self._taken, self._made = 0.0, 0
 
     async def run(self) -> None:
         """Answer the page until it goes; raises WebSocketDisconnect then."""
@@ -148,7 +149,10 @@ class Session:
             self.instrument.revision, self.instrument.repeats = revision, self.repeats
         else:
             goes_on = self.instrument.change(played, revision)
-        if not goes_on:
+        if played.before is None:
+            # Fast enough on any machine that is not busy with something else.
+            self.speed = None
+        elif not goes_on:
             self.speed = self.instrument.speed()
         return self.instrument, goes_on
 
@@ -164,6 +168,7 @@ class Session:
                 before, revision = instrument.played_samples, instrument.revision
                 if instrument.played.before is not None:
                     self.speed = self._made / RATE / self._taken
+                    await self._tell("speed", speed=self.speed)
                 self._taken, self._made = 0.0, 0
                 variables, pressure = instrument.last_seconds.moment(MOMENT, TOGETHER)
                 if not variables or len(variables["damping_loss"]) < SHORTEST * RATE / TOGETHER:
@@ -173,7 +178,7 @@ class Session:
                 found = await self.beside.ask("now", interval=TOGETHER / RATE, contacts=names, variables=told)
                 if found is not None:
                     words = now.words(found, now.level_of(pressure))
-                    await self._tell("now", revision=revision, words=words, speed=self.speed, **found)
+                    await self._tell("now", revision=revision, words=words, **found)
 
     async def _pull(self, instrument: Instrument, pull: Pull) -> None:
         """Play the next parts; a page that asks for more than time brings waits."""
@@ -283,7 +288,7 @@ def _lines(error: ValueError) -> list[str]:
     return list(error.problems) if isinstance(error, ScenarioError) else [str(error)]
 
 
-def _described(instrument: Instrument, speed: float) -> dict[str, Any]:
+def _described(instrument: Instrument, speed: float | None) -> dict[str, Any]:
     """Return what the page shows of what is played."""
     played, live = instrument.played, instrument.live
     return {

@@ -160,10 +160,16 @@ def _control(key: str, path: Path, tables: dict[str, Any], value: float) -> Cont
     unit, scale = _shown_in(outline.unit(node), value)
     low, high = sorted((value / scale / REACH, value / scale * REACH))
     step = 10.0 ** math.floor(math.log10((high - low) / STEPS))
-    words = (node or {}).get("description", "")
+    words = _sentence((node or {}).get("description", ""))
     name = str(path[-1]).replace("_", " ")
     label = f"Along {name}" if len(name) == 1 else name.capitalize()
     return Control(key, group, label, unit, scale, _rounded(low), _rounded(high), step, words)
+
+
+def _sentence(text: str) -> str:
+    """Return a description as a sentence, without its unit: that is the one shown."""
+    plain = re.sub(r"\s*\[[^\]]*\]", "", text).strip()
+    return f"{plain[:1].upper()}{plain[1:]}." if plain else ""
 
 
 def _rounded(value: float) -> float:

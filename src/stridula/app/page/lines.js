@@ -2,6 +2,7 @@
 const VIBRATION = 0.06; // What is exaggerated, as a share of the picture's extent.
 const STILL = 1e-9; // Share of the extent below which nothing vibrates.
 const SMALLEST = 1e-3; // Extent of what has none [m].
+const GROUND = 0.3; // How far from a point the ground is to which a spring holds it, as a share of the extent.
 const MARGIN = 28;
 
 // Where everything is, for one frame, in metres: places to scale, and what departs from them.
@@ -22,12 +23,17 @@ export class Frame {
     this.exaggeration = 0;
   }
 
-  follow(lines) {
+  follow(lines, scene) {
     let [left, low, right, high] = this.box ?? [Infinity, Infinity, -Infinity, -Infinity];
     let most = 0;
     for (const { places, apart } of lines) {
       for (const [x, y] of places) [left, low, right, high] = [Math.min(left, x), Math.min(low, y), Math.max(right, x), Math.max(high, y)];
       for (const [x, y] of apart) most = Math.max(most, Math.abs(x), Math.abs(y));
+    }
+    for (const { ends, along } of scene.joined) {
+      if (ends.length > 1 || !scene.lines[ends[0][0]].slides) continue;
+      const [x, y] = wallOf(scene, ends[0], along, this.extent ?? 0);
+      [left, low, right, high] = [Math.min(left, x), Math.min(low, y), Math.max(right, x), Math.max(high, y)];
     }
     this.box = [left, low, right, high];
     this.extent = Math.max(right - left, high - low, SMALLEST);
@@ -58,10 +64,13 @@ export function drawLines(draw, scene, lines, contacts, at, much, colours, state
   }));
   draw.lineWidth = 1;
   draw.strokeStyle = colours.soft;
-  for (const [one, other] of scene.joined) {
-    if (!other) continue;
-    draw.setLineDash([3, 3]);
-    path(draw, [drawn[one[0]].points[one[1]], drawn[other[0]].points[other[1]]]);
+  for (const { ends, along } of scene.joined) {
+    const [one, other] = ends.map(([line, row]) => drawn[line].points[row]);
+    // What holds a point that touches another body would be drawn over what passes there.
+    if (!other && !scene.lines[ends[0][0]].slides) continue;
+    const wall = wallOf(scene, ends[0], along, extent);
+    coil(draw, other ?? at(wall), one);
+    if (!other) path(draw, [-1, 1].map((s) => at([wall[0] - s * 0.05 * extent * along[1], wall[1] + s * 0.05 * extent * along[0]])));
   }
   draw.strokeStyle = colours.line;
   draw.setLineDash([4, 4]);
@@ -92,6 +101,20 @@ export function mark({ tip, touched }, lines, much) {
   const [line, row] = touched ?? tip;
   const { places, apart } = lines[line];
   return [places[row][0] + much * apart[row][0], places[row][1] + much * apart[row][1]];
+}
+
+// Where the ground is to which a spring holds a point.
+function wallOf(scene, [line, row], along, extent) {
+  const [x, y] = scene.lines[line].places[row];
+  return [x - GROUND * extent * along[0], y - GROUND * extent * along[1]];
+}
+
+// A spring or a dashpot from one point to another.
+function coil(draw, [x0, y0], [x1, y1]) {
+  const length = Math.hypot(x1 - x0, y1 - y0) || 1;
+  const [nx, ny] = [(-5 * (y1 - y0)) / length, (5 * (x1 - x0)) / length];
+  const turns = Array.from({ length: 13 }, (_, i) => [(i + 1) / 14, i % 2 ? 1 : -1]);
+  path(draw, [[x0, y0], ...turns.map(([t, side]) => [x0 + t * (x1 - x0) + side * nx, y0 + t * (y1 - y0) + side * ny]), [x1, y1]]);
 }
 
 // A surface that passes: a line with strokes that move along with it.

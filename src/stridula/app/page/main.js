@@ -42,11 +42,11 @@ function told(message) {
     problem: () => problem(message.problems),
     stroke: () => stroke(message),
     theory: () => theory(message),
-    now: () => {
-      write("now", message.words);
+    now: () => write("now", message.words),
+    speed: () => {
       // As the machine is busy now: only what is clearly another speed changes how fast it is shown.
       const needed = paceOf(message.speed);
-      if (needed > 1.1 * slowest || needed < 0.7 * slowest) keepUp(message.speed);
+      if (needed > 1.1 * slowest || needed < 0.8 * slowest) keepUp(message.speed);
     },
     "map row": () => map?.take(message),
     "map done": () => map?.done(),
@@ -102,6 +102,7 @@ function shown(message) {
   // What is played in place of a link that cannot be read does not take its message away.
   $("problem").hidden = !badLink;
   badLink = false;
+  if (!message.goes_on) write("now", "");
   build(message.turned);
   controls.show(message.values);
   scene.places = message.places;
@@ -133,7 +134,7 @@ function offer({ sources: offered, source }) {
 }
 
 function paceOf(speed) {
-  return speed < SLOW ? Math.ceil((10 * MARGIN) / speed) / 10 : 1;
+  return speed !== null && speed < SLOW ? Math.ceil((10 * MARGIN) / speed) / 10 : 1;
 }
 
 // What is computed slower than it sounds is played as fast as it can be, and that is said.

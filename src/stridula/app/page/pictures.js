@@ -210,7 +210,7 @@ export class Pictures {
     if (this.shapes.slider.length !== expected(this.scene)) return;
     const [draw, width, height] = this.#begin("beams");
     const lines = placed(this.scene, this.shapes.slider);
-    const much = this.frame.follow(lines);
+    const much = this.frame.follow(lines, this.scene);
     this.much = much ? rounded(much) : 0;
     const at = this.frame.to(width, height);
     drawLines(draw, this.scene, lines, this.shapes.contacts, at, this.much, this.colours, STATES, this.frame.extent);
