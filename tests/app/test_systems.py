@@ -12,10 +12,49 @@ from stridula.app.parts import Part
 from stridula.app.playable import SYSTEMS, playable
 from stridula.scenarios.show import scenario_text
 
+from .browsing import plays_on, shown, until
 from .conversation import RATE
 
 SURFACE, BOW_FORCE, TENSION = "contacts.*.surface_velocity", "drives.*.x", "bodies.string.tension"
 FRICTION = "contacts.0.friction.coefficient"
+TWO_RODS = """
+damping = 0.01
+cutoff = "12 kHz"
+friction = 0.6
+material = { young = "210 GPa", density = 7800.0 }
+section = { shape = "rectangle", width = 0.02, height = 0.008 }
+[bodies]
+front = { kind = "finite-element beam", length = 0.3, angle = "20 deg", elements = 8 }
+back = { kind = "finite-element beam", length = 0.35, angle = "-15 deg", elements = 8 }
+track = { kind = "modal beam", length = 1.2 }
+[[contacts]]
+tip = { body = "front" }
+track = { kind = "beam", body = "track" }
+at = 0.4
+[[contacts]]
+tip = { body = "back" }
+track = { kind = "beam", body = "track" }
+at = 0.7
+[[connections]]
+kind = "spring"
+first = { body = "front", point = "root" }
+second = { body = "back", point = "root" }
+stiffness = 1000.0
+[[drives]]
+kind = "force"
+body = "front"
+point = "root"
+x = 1.0
+y = -5.0
+[[drives]]
+kind = "force"
+body = "back"
+point = "root"
+x = 1.0
+y = -5.0
+[simulation]
+duration = 0.1
+"""
 PRESSURE_ON_PLATES = {"squeal-on-plate", "judder-on-plate"}
 
 
@@ -58,6 +97,48 @@ def test_a_violin_is_heard_at_its_bridge_as_a_run_has_it():
     later = instrument.live.delay
     assert np.abs(wanted).max() > 0.1
     assert np.allclose(sound[later:], wanted[: len(sound) - later], rtol=0.0, atol=1e-9)
+
+
+def test_two_rods_on_a_beam_are_heard_together():
+    instrument = Instrument(playable("", TWO_RODS, {}))
+    assert instrument.name == "pressure"
+    sound = np.concatenate([part.sound for part in instrument.play(4800) if isinstance(part, Part)])
+    system = instrument.played.system
+    run = st.simulate(system, duration=0.1, sample_rate=RATE)
+    track = system.track
+    wanted = st.radiate(run, track, (track.length / 2.0, 0.0, 0.5)).values[:, 0]
+    inner = slice(int(np.flatnonzero(wanted)[0]), len(wanted) - 100)
+    loudest = np.abs(wanted).max()
+    assert loudest > 1e-3
+    # The streamed one comes a sample later.
+    assert np.abs(sound[1:] - wanted[:-1])[inner].max() < 1e-5 * loudest
+    alone = instrument.live.advance(480)[0].contacts["normal_force"]
+    assert alone.shape[0] == 2
+
+
+@pytest.mark.parametrize(
+    ("key", "share", "goes_on"),
+    [
+        ("contacts.*.friction.coefficient", 0.9, True),
+        ("drives.*.y", 0.9, True),
+        ("bodies.track.length", 1.1, True),
+        ("bodies.track.material.density", 0.9, True),
+        ("connections.0.stiffness", 0.9, False),
+        ("bodies.front.length", 0.9, False),
+    ],
+)
+def test_two_rods_go_on_where_their_motion_means_something(key, share, goes_on):
+    first = playable("", TWO_RODS, {})
+    instrument = Instrument(first)
+    before = [part for part in instrument.play(4800) if isinstance(part, Part)][-1].chunk
+    value = share * first.turned.values[key]
+    assert instrument.change(playable("", TWO_RODS, {key: value}), 1) == goes_on
+    after = next(part for part in instrument.play(480) if isinstance(part, Part)).chunk
+    moved = np.abs(after.contacts["contact_position"][:, 0] - before.contacts["contact_position"][:, -1])
+    assert (moved.max() < 1e-5) == goes_on
+    gaps = after.contacts["gap"][:, 0] - before.contacts["gap"][:, -1]
+    assert not goes_on or np.abs(gaps).max() < 1e-6
+    assert instrument.ended == ""
 
 
 def test_a_violin_is_bowed_as_a_whole(talk):
@@ -153,3 +234,34 @@ def test_the_words_name_regime_pitch_and_level(tone):
     assert words(found | {"frequency": tone}, 77.6) == f"{expected}, 78 dB half a metre above"
     assert words(found | {"frequency": tone}, None) == expected
     assert np.array_equal(heard(said(normal)), normal.astype("f4").astype(float))
+
+
+def test_the_page_shows_a_system_with_its_own_controls_and_sources(browsing):
+    page = browsing.open("#case=violin")
+    assert page.locator(f"input[type=number][data-key='{BOW_FORCE}']").input_value() == "220"
+    assert page.locator("#source option").first.inner_text() == "Support force, string left end [N]"
+    until(page, "stridula.now().title.startsWith('Violin')")
+    page.locator(f"input[type=number][data-key='{SURFACE}']").fill("-10")
+    page.keyboard.press("Enter")
+    until(page, f"stridula.now().values['{SURFACE}'] === -0.1")
+    plays_on(page)
+    command = page.evaluate("stridula.scene.command()")
+    assert command.count("surface_velocity=-0.1") == 5
+    page.locator("#case").select_option("squeal")
+    until(page, "stridula.now().turned === null")
+    assert shown(page, "slider.angle") == pytest.approx(45.0)
+    plays_on(page)
+
+
+KEEP_UP = """(speeds) => speeds.map((speed) => {
+  stridula.keepUp(speed);
+  return [document.getElementById("speed").value, document.getElementById("pace").textContent];
+})"""
+
+
+def test_what_is_slower_than_it_sounds_is_shown_slowly_and_that_is_said(browsing):
+    page = browsing.open("#case=belt")
+    slow, fast = page.evaluate(KEEP_UP, [0.5, 3.0])
+    words = "This machine computes it 2.2 times slower than it sounds: it is shown at that speed, without sound."
+    assert slow == ["2.2", words]
+    assert fast == ["1", ""]

@@ -18,7 +18,7 @@ from .controls import CHOICES, CONTROLS, DEGREE, Choice, Control, Turned
 # Tables whose numbers are turned: what acts and rubs before what bodies are.
 TURNED = ("contacts", "drives", "connections", "bodies")
 # Where things are, and what hardly matters, is no business of an instrument.
-NOT_TURNED = ("point", "gap", "at", "inclination", "poisson")
+NOT_TURNED = {"point", "points", "gap", "at", "inclination", "poisson"}
 # How far a slider goes from the value that a scenario has.
 REACH = 5.0
 # Steps of a slider from end to end, at least.
@@ -108,7 +108,7 @@ def _is_turned(path: Path, node: outline.Node) -> bool:
     return (
         path[0] in TURNED
         and isinstance(path[-1], str)
-        and path[-1] not in NOT_TURNED
+        and not NOT_TURNED & set(path)
         and not any("." in str(part) for part in path)
         and outline.is_number(node)
         and not outline.is_whole(node)

@@ -3,6 +3,7 @@ const VIBRATION = 0.06; // What is exaggerated, as a share of the picture's exte
 const STILL = 1e-9; // Share of the extent below which nothing vibrates.
 const SMALLEST = 1e-3; // Extent of what has none [m].
 const GROUND = 0.3; // How far from a point the ground is to which a spring holds it, as a share of the extent.
+const BLOCK = 14; // Size of what stands for a point [px].
 const MARGIN = 28;
 
 // Where everything is, for one frame, in metres: places to scale, and what departs from them.
@@ -69,8 +70,14 @@ export function drawLines(draw, scene, lines, contacts, at, much, colours, state
     // What holds a point that touches another body would be drawn over what passes there.
     if (!other && !scene.lines[ends[0][0]].slides) continue;
     const wall = wallOf(scene, ends[0], along, extent);
-    coil(draw, other ?? at(wall), one);
-    if (!other) path(draw, [-1, 1].map((s) => at([wall[0] - s * 0.05 * extent * along[1], wall[1] + s * 0.05 * extent * along[0]])));
+    if (other) {
+      coil(draw, other, one);
+      continue;
+    }
+    // At half the height of the block that stands for a point.
+    const [x, y] = at(wall);
+    coil(draw, [x, y - BLOCK / 2], [one[0], one[1] - BLOCK / 2]);
+    path(draw, [-1, 1].map((s) => [x + s * BLOCK * along[1], y - BLOCK / 2 - s * BLOCK * along[0]]));
   }
   draw.strokeStyle = colours.line;
   draw.setLineDash([4, 4]);
@@ -82,7 +89,7 @@ export function drawLines(draw, scene, lines, contacts, at, much, colours, state
     draw.strokeStyle = draw.fillStyle = isTip ? colours.mark : colours.ink;
     draw.lineWidth = 4;
     if (count > 1) path(draw, points.slice(0, count));
-    else draw.fillRect(points[0][0] - 7, points[0][1] - 14, 14, 14);
+    else draw.fillRect(points[0][0] - BLOCK / 2, points[0][1] - BLOCK, BLOCK, BLOCK);
   });
   const size = scene.contacts.length === 1 ? 8 : 5;
   scene.contacts.forEach((contact, i) => {

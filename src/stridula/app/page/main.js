@@ -444,7 +444,7 @@ setInterval(() => {
   $("tone").textContent = tone ? `strongest tone ${tone < 1000 ? `${Math.round(tone)} Hz` : `${(tone / 1000).toFixed(2)} kHz`}` : "";
 }, 1000);
 
-window.stridula = { stats, late: () => sound.late, shares: () => pictures.shares, scene, now: () => described };
+window.stridula = { keepUp, stats, late: () => sound.late, shares: () => pictures.shares, scene, now: () => described };
 theme(localStorage.getItem("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
 pace();
 $("undo").disabled = $("redo").disabled = true;
