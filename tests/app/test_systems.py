@@ -231,7 +231,7 @@ def test_the_words_name_regime_pitch_and_level(tone):
     assert found["regime"] == "squeal"
     assert found["frequency"] == pytest.approx(tone, rel=0.02)
     expected = {440.0: "sounds at 440 Hz", 2950.0: "squeals at 2.95 kHz"}[tone]
-    assert words(found | {"frequency": tone}, 77.6) == f"{expected}, 78 dB at half a metre"
+    assert words(found | {"frequency": tone}, 77.6) == f"{expected}, 78 dB"
     assert words(found | {"frequency": tone}, None) == expected
     assert np.array_equal(heard(said(normal)), normal.astype("f4").astype(float))
 

@@ -66,7 +66,7 @@ def words(found: dict[str, Any], level: float | None) -> str:
         Level of the sound pressure [dB], None where none is heard.
     """
     told = _verb(found["regime"], found["frequency"], found["impact_rate"])
-    return told if level is None else f"{told}, {level:.0f} dB at half a metre"
+    return told if level is None else f"{told}, {level:.0f} dB"
 
 
 def level_of(pressure: Array) -> float | None:
