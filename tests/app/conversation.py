@@ -34,30 +34,33 @@ class Part:
     height: float
     slider: np.ndarray
     track: np.ndarray
+    contacts: np.ndarray
 
 
 def parts_of(data: bytes) -> list[Part]:
     """Return the parts that lie one after the other in an answer."""
     found, at = [], 0
     while at < len(data):
-        samples, seen, nodes, points = (int(number) for number in np.frombuffer(data, "<f8", 4, at + 24))
-        count = samples + 5 * seen + 1 + 2 * nodes + points
-        found.append(unpacked(data[at : at + 64 + 4 * count]))
-        at += 64 + 4 * (count + count % 2)
+        samples, seen, nodes, points, contacts = (int(number) for number in np.frombuffer(data, "<f8", 5, at + 24))
+        count = samples + 5 * seen + 1 + 2 * nodes + points + 2 * contacts
+        found.append(unpacked(data[at : at + 72 + 4 * count]))
+        at += 72 + 4 * (count + count % 2)
     assert at == len(data)
     return found
 
 
 def unpacked(data: bytes) -> Part:
-    head = np.frombuffer(data, "<f8", 8)
-    revision, _, stroke, samples, seen, nodes, points = (int(number) for number in head[:7])
-    sizes = [samples, *[seen] * 5, 1, 2 * nodes, points]
-    values = np.frombuffer(data, "<f4", offset=64)
+    head = np.frombuffer(data, "<f8", 9)
+    revision, _, stroke, samples, seen, nodes, points, contacts = (int(number) for number in head[:8])
+    sizes = [samples, *[seen] * 5, 1, 2 * nodes, points, 2 * contacts]
+    values = np.frombuffer(data, "<f4", offset=72)
     assert len(values) == sum(sizes)
-    sound, force, tangential, status, moved, slip, height, slider, track = np.split(values, np.cumsum(sizes)[:-1])
+    sound, force, tangential, status, moved, slip, height, slider, track, touching = np.split(
+        values, np.cumsum(sizes)[:-1]
+    )
     return Part(
-        revision, head[1], stroke, head[7], sound, force, tangential, status.astype(int), head[7] + moved, slip,
-        float(height[0]), slider.reshape(-1, 2), track,
+        revision, head[1], stroke, head[8], sound, force, tangential, status.astype(int), head[8] + moved, slip,
+        float(height[0]), slider.reshape(-1, 2), track, touching.reshape(-1, 2),
     )  # fmt: skip
 
 

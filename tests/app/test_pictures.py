@@ -11,6 +11,14 @@ const top = new Top();
 result = given.map(([largest, now]) => top.follow(largest, now));"""
 BESIDE = """import { besideTip } from "./pictures.js";
 result = given.map((words) => besideTip(...words));"""
+LINES = """import { Frame, mark, placed } from "./lines.js";
+const scene = { lines: given.lines, contacts: given.contacts, joined: [] };
+const frame = new Frame();
+result = given.values.map((values) => {
+  const lines = placed(scene, Float32Array.from(values));
+  const much = frame.follow(lines, scene);
+  return [much, frame.extent, scene.contacts.map((one) => mark(one, lines, much))];
+});"""
 # A word of so many pixels over a tip at this height.
 WORD, TIP, WIDTH = 60.0, 200.0, 700.0
 
@@ -38,3 +46,30 @@ def test_the_word_beside_the_tip_lies_in_the_picture_and_not_over_the_slider(tmp
         assert left + WORD < x if lean > 0.0 else left > x
     else:
         assert base - 12.0 > TIP + 8.0
+
+
+def test_lines_travel_to_scale_and_depart_exaggerated(tmp_path):
+    beam = {"places": [[0.0, 0.0], [1.0, 0.0]], "count": 2}
+    block = {"places": [[0.25, 0.0]], "count": 1}
+    contacts = [{"tip": [1, 0], "touched": None}]
+    # Travel of each line, then what departs from it.
+    still, moved = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 1e-4, 0.5, 0, 0, -2e-4]
+    given = {"lines": [beam, block], "contacts": contacts, "values": [still, moved, moved]}
+    (rest, first, second) = result_of(tmp_path, LINES, given)
+    assert rest[0] == 0.0
+    assert rest[2] == [[0.25, 0.0]]
+    much, extent, [[x, y]] = first
+    assert extent == pytest.approx(1.0)
+    assert much * 2e-4 == pytest.approx(0.06)
+    assert (x, y) == (pytest.approx(0.75), pytest.approx(-0.06))
+    assert second == first
+
+
+def test_what_vibrates_less_is_drawn_larger_only_slowly(tmp_path):
+    beam = {"places": [[0.0, 0.0], [1.0, 0.0]], "count": 2}
+    values = [[0, 0, 0, 0, 0, size] for size in (1e-4, 1e-5, 1e-3)]
+    loud, quiet, louder = (
+        one[0] for one in result_of(tmp_path, LINES, {"lines": [beam], "contacts": [], "values": values})
+    )
+    assert quiet == pytest.approx(1.01 * loud)
+    assert louder == pytest.approx(0.06 / 1e-3)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stridula as st
+from stridula.app.playable import PRESETS
 from stridula.app.sources import SOURCES
 
 from .conversation import RATE, Conversation, conversation
@@ -36,9 +37,6 @@ def test_the_greeting_names_cases_controls_and_what_can_be_heard(hello):
     assert (hello["version"], hello["rate"]) == (st.__version__, RATE)
     assert {"squeal", "judder", "stable-sliding"} <= {one["name"] for one in hello["presets"]}
     assert all(one["title"] and one["description"] for one in hello["presets"])
-    units = {name: source["unit"] for name, source in hello["sources"].items()}
-    assert units == {"pressure": "Pa", "force": "N", "acceleration": "m/s²"}
-    assert all(source["words"] and source["full_scale"] > 0.0 for source in hello["sources"].values())
     for control in hello["controls"]:
         # Only a friction coefficient has no unit.
         assert bool(control["unit"]) != (control["label"].lower().endswith(("friction", "coefficient")))
@@ -51,10 +49,18 @@ def test_the_greeting_names_cases_controls_and_what_can_be_heard(hello):
         assert one["group"] in hello["groups"]
 
 
+def test_a_scene_says_what_can_be_heard_of_it(talk):
+    sources = talk.scene("squeal")["sources"]
+    units = {name: source["unit"] for name, source in sources.items()}
+    assert units == {"pressure": "Pa", "force": "N", "friction": "N", "acceleration": "m/s²"}
+    assert all(source["words"] and source["full_scale"] > 0.0 for source in sources.values())
+    assert talk.asks("listen", "problem", source="loudness")["problems"]
+
+
 def test_every_control_turns_something_of_some_case(hello, talk):
     seen: dict[str, object] = {}
-    for preset in hello["presets"]:
-        seen |= talk.scene(preset["name"])["values"]
+    for preset in PRESETS:
+        seen |= talk.scene(preset)["values"]
     seen |= talk.scene("squeal", {"damping": 0.01})["values"]
     for choice in hello["choices"]:
         for kind, begins in choice["begins"].items():

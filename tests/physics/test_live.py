@@ -105,7 +105,7 @@ def test_an_open_contact_keeps_its_opening_and_a_closed_one_stays_closed():
     for number in range(40):
         last = {name: values[-1] for name, values in marched(live, 1, 37).items()}
         assert changed(live, "judder", slider__length=0.5354 - 1e-5 * (number % 2))
-        gap = float(live._gap)
+        gap = float(live._gaps[0])
         arrays, state = live._arrays, live._march.states[0]
         rows = live._blocks.contacts.rows[0, 0].copy()
         track = arrays.contacts[0].bending
@@ -232,9 +232,37 @@ def test_schemes_change_on_the_way():
 
 
 def test_what_it_cannot_march_is_refused_in_one_line():
-    belt = system("belt")
-    with pytest.raises(ValueError, match="track must be a ModalBeam or a ModalPlate to march without end, got a Rigid"):
-        LiveMarch(belt, ())
+    with pytest.raises(ValueError, match="system must lie in the plane to march without end, got one in space"):
+        LiveMarch(system("pin-on-disc"), ())
+
+
+@pytest.mark.parametrize("case", ["violin", "belt", "lugre"])
+def test_several_contacts_and_rigid_tracks_are_the_run_bit_for_bit(case):
+    what = system(case)
+    live = LiveMarch(what, ())
+    parts = [live.advance(480)[0] for _ in range(10)]
+    run = st.simulate(what, duration=0.1, sample_rate=RATE, probes=())
+    for name in ("normal_force", "tangential_force", "gap", "slip_velocity", "status"):
+        found = np.concatenate([part.contacts[name] for part in parts], axis=1)
+        assert np.array_equal(np.atleast_2d(run[name].values.T), found), name
+    assert np.abs(run.tangential_force.values).max() > 0.01
+
+
+@pytest.mark.parametrize(
+    ("case", "key", "value"), [("belt", "track__velocity", 0.2), ("violin", "friction__static", 0.9)]
+)
+def test_what_rubs_goes_on_where_it_is_when_it_is_turned(case, key, value):
+    live, _ = LiveMarch(system(case), ()), None
+    before = live.advance(4800)[0]
+    assert live.change(system(case, **{key: value}), ())
+    after = live.advance(4800)[0]
+    for name in ("contact_position", "gap"):
+        steps = np.abs(np.diff(np.concatenate([before.contacts[name], after.contacts[name]], axis=1), axis=1))
+        assert steps[:, 4799].max() <= 2.0 * steps.max(axis=1).max() + 1e-12
+    passed = live.passed[0]
+    live.advance(4800)
+    speed = (live.passed[0] - passed) / 0.1
+    assert speed == pytest.approx(value if case == "belt" else -0.2)
 
 
 def refuse(*_):

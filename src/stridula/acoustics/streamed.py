@@ -18,6 +18,8 @@ from .resampling import ATTENUATION, BANDWIDTH, bandwidth_of
 from .responses import check_listeners, responses
 from .sample_rates import low_pass
 
+# What a mode sends to the listener, relative to the loudest, that rounding may make.
+ROUND_OFF = 1e-12
 # Samples by which the first acceleration comes before the middle of the first interval.
 EARLY = 0.5 - LEAD
 
@@ -63,7 +65,7 @@ class StreamedSound:
         listeners = listeners_of(listener)
         check_listeners(listeners, track, True)
         kept = np.flatnonzero(panel.angular_frequency * interval < FASTEST)
-        self.panel = panel = panel.only(kept)
+        panel = panel.only(kept)
         self.taps = undo_mean(steps)
         bandwidth = bandwidth_of(Fraction(1), 1.0 / interval)
         (path,) = responses(panel, track, True, listeners, air, interval, EARLY - 0.5 / steps, bandwidth)
@@ -72,8 +74,12 @@ class StreamedSound:
         # An acceleration is known DEGREE samples after its force.
         self.delay = max(0, DEGREE - first)
         self.path = np.apply_along_axis(np.convolve, 1, path.taps.T, taps)
+        # Over the middle of a track most modes cancel out.
+        loudest = np.abs(self.path).max(axis=1)
+        audible = np.flatnonzero(loudest > ROUND_OFF * loudest.max())
+        self.panel, self.path = panel.only(audible), self.path[audible]
         self.spectra: dict[int, Array] = {}
-        self.filters = filters(panel, interval)
+        self.filters = filters(self.panel, interval)
         self.reach = self.path.shape[1] - 1 + first + self.delay - DEGREE
         self.begin()
 

@@ -26,9 +26,9 @@ class Beside:
         Parameters
         ----------
         what : str
-            ``regimes`` or ``theory``.
+            ``regimes``, ``theory`` or ``now``.
         **words
-            Arguments of the function of that name in `beside_worker`.
+            Arguments of the function that `beside_worker.ANSWERS` has under that name.
         """
         # A question that nobody waits for any more is not begun, for it would begin the process.
         await self._turn.acquire()

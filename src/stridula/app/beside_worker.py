@@ -10,6 +10,8 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from .now import measured
+
 # The sound comes first.
 NICENESS = 10
 # Modes that grow that are told at most.
@@ -69,7 +71,7 @@ def theory(tables: dict[str, Any]) -> dict[str, Any]:
     return {"equilibrium": str(found.attrs["equilibrium"]), "modes": modes}
 
 
-ANSWERS: dict[str, Callable[..., Any]] = {"regimes": regimes, "theory": theory}
+ANSWERS: dict[str, Callable[..., Any]] = {"regimes": regimes, "theory": theory, "now": measured}
 
 
 def main() -> None:

@@ -186,13 +186,40 @@ CHOICES = (
 KEYS = tuple(one.key for one in (*CONTROLS, *CHOICES))
 
 
-def described() -> dict[str, Any]:
-    """Return all controls for the page, in plain numbers and texts."""
-    return {
-        "groups": GROUPS,
-        "controls": [asdict(control) for control in CONTROLS],
-        "choices": [asdict(choice) for choice in CHOICES],
-    }
+@dataclass(frozen=True)
+class Turned:
+    """What one turns of a scenario.
+
+    Attributes
+    ----------
+    groups : tuple of str
+        Where controls are shown, in their order.
+    controls : tuple of Control
+        Numbers.
+    choices : tuple of Choice
+        Kinds.
+    values : dict
+        What each is now, in SI, by key; of controls that a scenario has not nothing.
+    """
+
+    groups: tuple[str, ...]
+    controls: tuple[Control, ...]
+    choices: tuple[Choice, ...]
+    values: dict[str, Any]
+
+    @property
+    def described(self) -> dict[str, Any]:
+        """All of it for the page, in plain numbers and texts, but for the values."""
+        return {
+            "groups": self.groups,
+            "controls": [asdict(control) for control in self.controls],
+            "choices": [asdict(choice) for choice in self.choices],
+        }
+
+
+def turned_of_pair(tables: dict[str, Any]) -> Turned:
+    """Return what one turns of one beam on another: all that the page knows, and the values in a full scenario."""
+    return Turned(GROUPS, CONTROLS, CHOICES, values(tables))
 
 
 def values(tables: dict[str, Any]) -> dict[str, Any]:

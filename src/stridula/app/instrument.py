@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+import time as clock
 from collections.abc import Iterator
-from functools import lru_cache
 
 import numpy as np
 
 from ..arrays import Array
-from ..bodies import FiniteElementBeam, ModalBeam
+from ..checks import choice
 from ..histories import Constant
 from ..integration.live import LiveChunk, LiveMarch
+from .drawing import drawing_of
 from .last_seconds import LastSeconds
-from .parts import Part, Shapes, Stop
+from .parts import Part, Stop
 from .playable import Playable
-from .sources import SOURCES, source_of
+from .sources import Source, source_of
 
 RATE = 48_000
 # A tip that sticks under a constant force, or has been off the track, for so long [s] begins another stroke.
@@ -23,7 +24,8 @@ PATIENCE = 0.5
 TRUST = 0.5
 # Time in which a jump of what is heard dies away [s]: a stroke that begins anew does not click.
 BLEND = 0.004
-TRACK_POINTS = 65
+# Moments of so many samples by which it is found how fast it can be played.
+MOMENTS, MOMENT = 5, 480
 
 
 class Instrument:
@@ -34,20 +36,21 @@ class Instrument:
     played : Playable
         What is played.
     source : str
-        What is heard: ``pressure``, ``force`` or ``acceleration``.
+        What is heard, a key of `Playable.sources`; the first of them where there is none of this name.
     """
 
     def __init__(self, played: Playable, source: str = "pressure") -> None:
         self.played, self.revision = played, 0
         self.live = LiveMarch(played.system, played.probes, played.scenario.scheme, RATE)
-        self.name, self.source = source, source_of(source, self.live)
+        self.wanted, self.name = source, _offered(source, played)
+        self.source, self.drawing = source_of(self.name, self.live), drawing_of(played.system)
         self.repeats, self.stroke, self.played_samples = True, 1, 0
         self.ended = ""
         self._still, self._blend, self._last = 0, 0.0, 0.0
         # Samples since a stroke last followed another by itself.
         self._since_repeat = round(TRUST * RATE)
         self._must_blend = False
-        self.last_seconds = LastSeconds(RATE)
+        self.last_seconds = LastSeconds(RATE, played)
         self.last_seconds.changed(0.0, played.toml)
 
     def change(self, played: Playable, revision: int) -> bool:
@@ -55,17 +58,23 @@ class Instrument:
 
         Another case or text begins one, and so does whatever follows a stroke that has ended.
         """
-        track, steps = self.live.system.track, self.live.ratio
+        track, steps, contacts = self.live.system.track, self.live.ratio, len(self.live.system.contacts)
         what = (played.system, played.probes, played.scenario.scheme)
         goes_on = played.origin == self.played.origin and not self.ended
         if goes_on:
             goes_on = self.live.change(*what)
         else:
             self.live.begin(*what)
+        name = _offered(self.wanted, played)
+        self._last *= played.sources[name].full_scale / self.heard_as.full_scale
         self.played, self.revision = played, revision
+        if played.system != self.drawing.system:
+            self.drawing = drawing_of(played.system)
+        self.last_seconds.goes_on_as(played)
         self.last_seconds.changed(self.played_samples / RATE, played.toml)
-        if (track, steps) != (self.live.system.track, self.live.ratio):
-            self.source = source_of(self.name, self.live)
+        now = (self.live.system.track, self.live.ratio, len(self.live.system.contacts))
+        if (track, steps, contacts) != now or name != self.name:
+            self.name, self.source = name, source_of(name, self.live)
         self._must_blend, self._still = True, 0
         if not goes_on:
             self._begin_stroke()
@@ -73,9 +82,37 @@ class Instrument:
         return goes_on
 
     def listen_to(self, name: str) -> None:
-        """Let something else be heard, led over from what was heard at the same level."""
-        self._last *= SOURCES[name].full_scale / SOURCES[self.name].full_scale
-        self.name, self.source, self._must_blend = name, source_of(name, self.live), True
+        """Let something else be heard, led over from what was heard at the same level.
+
+        Raises
+        ------
+        ValueError
+            If there is nothing of this name to be heard.
+        """
+        choice("source", name, tuple(self.played.sources))
+        self._last *= self.played.sources[name].full_scale / self.heard_as.full_scale
+        self.wanted = self.name = name
+        self.source, self._must_blend = source_of(name, self.live), True
+
+    @property
+    def heard_as(self) -> Source:
+        """What is heard."""
+        return self.played.sources[self.name]
+
+    def speed(self) -> float:
+        """Return how many seconds are played in one, from some moments, and begin again at the start."""
+        taken = []
+        for _ in range(MOMENTS):
+            began = clock.perf_counter()
+            chunk, _ended = self.live.advance(MOMENT)
+            if len(chunk.time):
+                self.source.heard(chunk)
+                self.drawing.shapes(self.live, chunk)
+            taken.append(clock.perf_counter() - began)
+        self.live.restart()
+        self.source.begin()
+        # The first may compile.
+        return MOMENT / RATE / sorted(taken)[MOMENTS // 2]
 
     def restart(self) -> None:
         """Begin a stroke at the start."""
@@ -122,19 +159,27 @@ class Instrument:
         """Return why nothing more will come of this stroke, or nothing."""
         drives = self.live.system.drives
         is_constant = all(getattr(drive, "history", Constant()).settled == 0.0 for drive in drives)
-        sticks = chunk.status_share[:, 1].min() == 1.0 and self.live.system.imposed_velocity is None
-        is_still = is_constant and (sticks or chunk.status_share[:, 0].min() == 1.0)
+        sticks = chunk.status_shares[..., 1].min() == 1.0 and not self._is_drawn_along()
+        is_still = is_constant and (sticks or chunk.status_shares[..., 0].min() == 1.0)
         self._still = self._still + len(chunk.time) if is_still else min(self._still, 0)
         if self._still < PATIENCE * RATE:
             return ""
         return "at rest" if sticks else "lifted off"
 
+    def _is_drawn_along(self) -> bool:
+        """Return whether something is moved whatever the contacts do."""
+        system = self.live.system
+        rigid = [one.rigid_track for one in system.contacts if one.rigid_track is not None]
+        moves = [*(not track.is_still for track in rigid), *(any(one.surface_velocities) for one in system.contacts)]
+        return system.imposed_velocity is not None or any(moves)
+
     def _part(self, chunk: LiveChunk) -> Part:
         self.played_samples += len(chunk.time)
         sound = self._blended(self.source.heard(chunk))
-        clock = self.played_samples / RATE
-        part = Part(self.revision, clock, sound, chunk, self._shapes(chunk), self.stroke)
-        self.last_seconds.keep(part, self.name)
+        part = Part(
+            self.revision, self.played_samples / RATE, sound, chunk, self.drawing.shapes(self.live, chunk), self.stroke
+        )
+        self.last_seconds.keep(part, self.heard_as)
         return part
 
     def _blended(self, sound: Array) -> Array:
@@ -150,20 +195,7 @@ class Instrument:
         self._last = float(sound[-1])
         return sound
 
-    def _shapes(self, chunk: LiveChunk) -> Shapes:
-        position, spans, system = self.live.position, self.live.spans, self.live.system
-        slider: FiniteElementBeam = system.slider
-        track: ModalBeam = system.track
-        nodes = slider.node_traces(system.is_held(slider)) @ position[slice(*spans[system.body_name(slider)])]
-        moved = nodes.reshape(-1, 3)[:, :2]
-        first, _ = spans[system.body_name(track)]
-        waves = track.harmonics[0]
-        deflection = _sines(waves) @ (track.amplitude * position[first : first + waves])
-        place, height = (float(chunk.contact[name][-1]) for name in ("contact_position", "contact_height"))
-        return Shapes(place, height, moved - moved[0], np.asarray(deflection))
 
-
-@lru_cache(maxsize=64)
-def _sines(waves: int) -> Array:
-    """Return the values of sines over a track, shape (points, waves)."""
-    return np.sin(np.outer(np.linspace(0.0, np.pi, TRACK_POINTS), np.arange(1, waves + 1)))
+def _offered(wanted: str, played: Playable) -> str:
+    """Return what is to be heard of what is played: what is wanted if it has it, else what it has first."""
+    return wanted if wanted in played.sources else next(iter(played.sources))

@@ -27,22 +27,25 @@ from ..records.variables import (
 from ..version import __version__
 from .parts import Part
 from .playable import Playable
-from .sources import SOURCES
+from .sources import Source
 
 KEPT = 10.0
+# Energies that a regime is judged by.
+LOSSES = ("damping_loss", "friction_loss", "convection_work", "contact_work")
 
 
 @dataclass(frozen=True)
 class _Kept:
-    """A part, in single precision and without its shapes."""
+    """A part, in single precision and without its shapes; contacts before samples."""
 
-    source: str
+    source: Source
     clock: float
     stroke: int
     sound: Array
-    contact: dict[str, Array]
-    status_share: Array
-    acceleration: Array
+    contacts: dict[str, Array]
+    status_shares: Array
+    probes: Array
+    losses: Array
 
 
 class LastSeconds:
@@ -52,19 +55,30 @@ class LastSeconds:
     ----------
     rate : int
         Samples per second [Hz].
+    played : Playable
+        What is played.
     """
 
-    def __init__(self, rate: int) -> None:
-        self.rate = rate
+    def __init__(self, rate: int, played: Playable) -> None:
+        self.rate, self.played = rate, played
         self._parts: deque[_Kept] = deque()
         self._samples = 0
         self._changes: deque[tuple[float, str]] = deque()
 
-    def keep(self, part: Part, source: str) -> None:
+    def goes_on_as(self, played: Playable) -> None:
+        """Let something else be played; of a system with other contacts or probes nothing before it is kept."""
+        if _labels(played) != _labels(self.played):
+            self._parts.clear()
+            self._samples = 0
+        self.played = played
+
+    def keep(self, part: Part, source: Source) -> None:
         """Keep a part and let go of what is too old."""
-        small = {variable.name: part.chunk.contact[variable.name].astype("f4") for variable in (*CONTACT, STATUS)}
-        shares, acceleration = part.chunk.status_share.astype("f4"), part.chunk.probes[:, 0].astype("f4")
-        kept = _Kept(source, part.clock, part.stroke, part.sound.astype("f4"), small, shares, acceleration)
+        chunk = part.chunk
+        small = {variable.name: chunk.contacts[variable.name].astype("f4") for variable in (*CONTACT, STATUS)}
+        shares, probes = chunk.status_shares.astype("f4"), chunk.probes.astype("f4")
+        losses = np.stack([chunk.energies[name] for name in LOSSES])
+        kept = _Kept(source, part.clock, part.stroke, part.sound.astype("f4"), small, shares, probes, losses)
         self._parts.append(kept)
         self._samples += len(kept.sound)
         while self._samples - len(self._parts[0].sound) >= KEPT * self.rate:
@@ -94,30 +108,30 @@ class LastSeconds:
             If nothing was played yet.
         """
         self._check()
-        parts = self._parts
+        parts, (contacts, probes) = self._parts, _labels(played)
         first = round(parts[-1].clock * self.rate) - self._samples
         time = (first + np.arange(1, self._samples + 1)) / self.rate
-        shares = np.concatenate([part.status_share for part in parts])
-        data: dict[str, Any] = {
-            variable.name: (
-                "time",
-                np.concatenate([part.contact[variable.name] for part in parts]),
-                attributes_of(variable),
-            )
-            for variable in CONTACT
-        }
-        status = np.concatenate([part.contact[STATUS.name] for part in parts]).astype(np.int8)
-        data[STATUS.name] = ("time", status, status_attributes())
-        data[STATUS_SHARE.name] = (("time", "contact_status"), shares, attributes_of(STATUS_SHARE))
-        probe = np.concatenate([part.acceleration for part in parts])[:, None]
-        data["acceleration"] = (("time", "acceleration_probe"), probe, attributes_of(PROBES["acceleration"]))
-        strokes = np.concatenate([np.full(len(part.sound), part.stroke, dtype="i4") for part in parts])
-        data["stroke"] = ("time", strokes, described("1", "number of the stroke"))
+        over = ("time", "contact") if len(contacts) > 1 else ("time",)
+        data: dict[str, Any] = {}
+        for variable in CONTACT:
+            data[variable.name] = (over, self._joined(variable.name), attributes_of(variable))
+        data[STATUS.name] = (over, self._joined(STATUS.name).astype(np.int8), status_attributes())
+        shares = np.concatenate([part.status_shares for part in parts], axis=1).swapaxes(0, 1)
+        shares = shares if len(contacts) > 1 else shares[:, 0]
+        data[STATUS_SHARE.name] = ((*over, "contact_status"), shares, attributes_of(STATUS_SHARE))
         coordinates: dict[str, Any] = {
             "time": ("time", time, described("s", "time played at the end of the sample interval")),
             "contact_status": ("contact_status", list(STATUS_WORDS)),
-            "acceleration_probe": ("acceleration_probe", ["track centre y"]),
         }
+        if len(contacts) > 1:
+            coordinates["contact"] = ("contact", list(contacts))
+        probed = np.concatenate([part.probes for part in parts])
+        for quantity in dict.fromkeys(quantity for quantity, _ in probes):
+            of_it = [k for k, (other, _) in enumerate(probes) if other == quantity]
+            data[quantity] = (("time", f"{quantity}_probe"), probed[:, of_it], attributes_of(PROBES[quantity]))
+            coordinates[f"{quantity}_probe"] = (f"{quantity}_probe", [probes[k][1] for k in of_it])
+        strokes = np.concatenate([np.full(len(part.sound), part.stroke, dtype="i4") for part in parts])
+        data["stroke"] = ("time", strokes, described("1", "number of the stroke"))
         attributes = {
             "title": f"played on the page: {played.scenario.title}",
             "source": f"stridula {__version__}",
@@ -134,6 +148,45 @@ class LastSeconds:
         xr.Dataset(data, coordinates, attributes).to_netcdf(content, engine="h5netcdf", encoding=encoding)
         return content.getvalue()
 
+    def moment(self, seconds: float, together: int) -> tuple[dict[str, Array], Array]:
+        """Return what decides the regime of the last seconds of this stroke, and what was heard of them as pressure.
+
+        Parameters
+        ----------
+        seconds : float
+            How many at most.
+        together : int
+            Samples that become one.
+
+        Returns
+        -------
+        variables : dict
+            By the names of records, over time, and over contacts where there are several.
+        pressure : ndarray, shape (samples,)
+            Nothing where something else was heard.
+        """
+        parts: list[_Kept] = []
+        for part in reversed(self._parts):
+            if part.stroke != self._parts[-1].stroke or sum(len(one.sound) for one in parts) >= seconds * self.rate:
+                break
+            parts.insert(0, part)
+        if not parts:
+            return {}, np.zeros(0)
+        damping, rubbed, convected, contact = np.concatenate([one.losses for one in parts], axis=1)
+        every = len(damping) // together * together
+        sound = [one.sound for one in parts if one.source.unit == "Pa"]
+        found = {"damping_loss": damping, "friction_loss": rubbed, "impact_loss": convected - rubbed - contact}
+        variables = {name: values[:every][together - 1 :: together] for name, values in found.items()}
+        for name, scale in (("normal_force", 1), ("tangential_force", 1), ("landings", together)):
+            of_contacts = np.concatenate([one.contacts[name] for one in parts], axis=1)[:, :every]
+            variables[name] = scale * of_contacts.reshape(len(of_contacts), -1, together).mean(axis=2).T
+        shares = np.concatenate([one.status_shares for one in parts], axis=1)[:, :every]
+        variables["status_share"] = shares.reshape(len(shares), -1, together, 3).mean(axis=2).swapaxes(0, 1)
+        if len(shares) == 1:
+            for name in ("normal_force", "tangential_force", "landings", "status_share"):
+                variables[name] = variables[name][:, 0]
+        return variables, np.concatenate(sound) if len(sound) == len(parts) else np.zeros(0)
+
     def wav(self) -> bytes:
         """Return what was heard last as a sound file of 24 bits, 1 dB below full scale, which its comment states.
 
@@ -143,22 +196,35 @@ class LastSeconds:
             If nothing was played yet.
         """
         self._check()
-        name = self._parts[-1].source
+        source = self._parts[-1].source
         heard: list[Array] = []
         for part in reversed(self._parts):
-            if part.source != name:
+            if part.source != source:
                 break
             heard.append(part.sound)
         sound = np.concatenate(heard[::-1]).astype(float)
-        sound -= sound.mean() if name == "force" else 0.0
+        sound -= sound.mean() if source.unit == "N" else 0.0
         scale = normalised_scale(float(np.abs(sound).max()))
-        if name == "pressure":
+        if source.unit == "Pa":
             comment = scale_comment(scale, self._parts[-1].clock - len(sound) / self.rate)
         else:
-            source = SOURCES[name]
             comment = f"stridula: {source.name.lower()}, full scale is {scale!r} {source.unit}"
         return bytes(encoded(sound[:, None] / scale, self.rate, "PCM_24", comment))
+
+    def _joined(self, name: str) -> Array:
+        """Return a record of the contacts over time, and over contacts where there are several."""
+        found = np.concatenate([part.contacts[name] for part in self._parts], axis=1)
+        return found.T if len(found) > 1 else found[0]
 
     def _check(self) -> None:
         if not self._parts:
             raise ArgumentError("something", "have been played before it can be saved", got="nothing yet")
+
+
+def _labels(played: Playable) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...]]:
+    """Return the names of the contacts, and quantity and label of each probe."""
+    system = played.system
+    if played.before is None:
+        return system.contact_names, (("acceleration", "track centre y"),)
+    probes = tuple((probe.quantity, f"{system.body_name(probe.body)} {probe.place}") for probe in played.probes)
+    return system.contact_names, probes

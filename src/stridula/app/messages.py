@@ -41,7 +41,7 @@ class Listen(_Message):
     """What is to be heard."""
 
     type: Literal["listen"]
-    source: Literal["pressure", "force", "acceleration"]
+    source: Annotated[str, Field(max_length=40)]
 
 
 class Restart(_Message):

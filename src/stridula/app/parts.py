@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -21,17 +21,21 @@ class Shapes:
     Attributes
     ----------
     place, height : float
-        Where the tip is, along the track and above it where it is straight [m].
+        Where the first tip is, along its track and above it where it is straight [m].
     slider : ndarray, shape (nodes, 2)
-        Displacements of the slider's nodes along x and y less that of its tip [m], tip first.
+        Displacements along x and y [m]: of two beams those of the slider's nodes less that of its tip, tip first; of
+        other systems, line by line, the travel that is to scale and then what departs from it at each point.
     track : ndarray, shape (points,)
-        Deflections at equal distances along the track [m].
+        Of two beams the deflections at equal distances along the track [m].
+    contacts : ndarray, shape (contacts, 2)
+        Of other systems the status of each contact, and how far what it slides on has moved along itself [m].
     """
 
     place: float
     height: float
     slider: Array
     track: Array
+    contacts: Array = field(default_factory=lambda: np.zeros((0, 2)))
 
 
 @dataclass(frozen=True)
@@ -47,7 +51,7 @@ class Part:
     sound : ndarray, shape (samples,)
         What is heard, in the unit of the source.
     chunk : LiveChunk
-        Record of the contact and of the acceleration of the track's middle.
+        Record of the contacts and of the probes.
     shapes : Shapes
         Where the bodies are at its end.
     stroke : int
@@ -81,10 +85,11 @@ class Stop:
 def packed(part: Part) -> bytes:
     """Return a part as the page reads it.
 
-    Eight numbers in double precision: revision, clock, stroke, samples, samples of the pictures, nodes of the slider,
-    points of the track, place of the tip. Then in single precision the sound; for the pictures normal force, tangential
-    force, status, place of the tip and its velocity; height of the tip, displacements of the nodes, deflections of the
-    track. All little-endian; a zero at the end where they are odd in number, so that parts can lie one after the other.
+    Nine numbers in double precision: revision, clock, stroke, samples, samples of the pictures, nodes, points of the
+    track, contacts, place of the first tip. Then in single precision the sound; for the pictures normal force,
+    tangential force, status, place of the tip and its velocity; height of the tip, displacements of the nodes,
+    deflections of the track, status and travel of each contact. All little-endian; a zero at the end where they are odd
+    in number, so that parts can lie one after the other.
     """
     samples = len(part.sound)
     thinned = THINNED if samples % THINNED == 0 else 1
@@ -93,9 +98,10 @@ def packed(part: Part) -> bytes:
     seen = [_means(contact["normal_force"], thinned), _means(contact["tangential_force"], thinned)]
     seen += [dominant_status(shares)]
     seen += [contact["contact_position"][thinned - 1 :: thinned] - shapes.place, contact["slip_velocity"][::thinned]]
-    counts = [samples, samples // thinned, len(shapes.slider), len(shapes.track)]
+    counts = [samples, samples // thinned, len(shapes.slider), len(shapes.track), len(shapes.contacts)]
     head = np.array([part.revision, part.clock, part.stroke, *counts, shapes.place], dtype="<f8")
-    body = np.concatenate([part.sound, *seen, [shapes.height], shapes.slider.ravel(), shapes.track])
+    moved = [shapes.slider.ravel(), shapes.track, shapes.contacts.ravel()]
+    body = np.concatenate([part.sound, *seen, [shapes.height], *moved])
     odd = np.zeros(len(body) % 2)
     return head.tobytes() + np.concatenate([body, odd]).astype("<f4").tobytes()
 

@@ -1,26 +1,32 @@
-"""What the page can play: a scenario of a slider on a beam, small enough to march faster than sound."""
+"""What the page can play: a scenario in the plane, small enough to march about as fast as it sounds."""
 
 from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
-from ..bodies import FiniteElementBeam, ModalBeam
 from ..records import Acceleration, Probe
-from ..records.provenance import scenario_toml, toml
+from ..records.provenance import is_pair, scenario_toml, toml
 from ..scenarios.errors import ScenarioError
 from ..scenarios.keys import overridden
 from ..scenarios.load import Scenario, scenario_of_tables
 from ..scenarios.outline import TAGS
 from ..scenarios.read import read_tables, tables_of_text
 from ..system import System
-from .controls import KEYS
+from .controls import KEYS, Turned, turned_of_pair
+from .sources import Source, sources_of
+from .turned import expanded, turned_of_system
 
+# One beam on another, and other systems.
 PRESETS = ("squeal", "judder", "weak-pressure", "strong-pressure", "stable-sliding", "axial-sliding")
-MOST_ELEMENTS, MOST_MODES = 100, 400
+SYSTEMS = ("violin", "squeal-on-plate", "judder-on-plate", "belt", "lugre")
+CASES = (*PRESETS, *SYSTEMS)
+MOST_ELEMENTS, MOST_MODES, MOST_CONTACTS = 100, 400, 32
+# Modes of a system that is no pair of beams: it may be played slower than it sounds.
+MOST_OF_SYSTEMS = 1500
 
 
 @dataclass(frozen=True)
@@ -35,21 +41,41 @@ class Playable:
         The scenario in full and in SI.
     origin : str
         Name of the shipped scenario, or the text, that it was before values were set.
+    before : dict or None
+        The scenario in full before values were set, None of a beam on a beam.
     """
 
     scenario: Scenario
     tables: dict[str, Any]
     origin: str
+    before: dict[str, Any] | None = None
 
     @property
     def system(self) -> System:
         """The system."""
         return self.scenario.system
 
-    @property
+    @cached_property
     def probes(self) -> tuple[Probe, ...]:
-        """What is recorded beside the contact."""
-        return (Acceleration(self.system.track.centre, "y"),)
+        """What is recorded beside the contacts: an acceleration, and the scenario's own of systems."""
+        contact = self.system.contacts[0]
+        if contact.path_body is not None:
+            first = Acceleration(contact.path_body.centre, "y")
+        else:
+            tangent = contact.frame[1]
+            first = Acceleration(contact.tip, "xy"[int(abs(tangent[1]) > abs(tangent[0]))])
+        own = () if self.before is None else self.scenario.probes or ()
+        return (first, *(probe for probe in own if probe != first))
+
+    @cached_property
+    def sources(self) -> dict[str, Source]:
+        """What can be heard."""
+        return sources_of(self.system, self.probes)
+
+    @cached_property
+    def turned(self) -> Turned:
+        """What one turns."""
+        return turned_of_pair(self.tables) if self.before is None else turned_of_system(self.tables, self.before)
 
     @cached_property
     def toml(self) -> str:
@@ -67,28 +93,51 @@ def playable(case: str, text: str | None, overrides: Mapping[str, Any]) -> Playa
     text : str or None
         A scenario as TOML; it cannot name files.
     overrides : mapping
-        Values by key, as in `load_scenario`.
+        Values by key, as in `load_scenario`; of a system also by keys that mean several places.
 
     Raises
     ------
     ScenarioError
         With every problem found.
     """
-    if text is None and case not in PRESETS:
-        raise ScenarioError([f"case must be one of {', '.join(PRESETS)}, got {case!r}"])
-    unknown = [key for key in overrides if key not in KEYS]
+    if text is None and case not in CASES:
+        raise ScenarioError([f"case must be one of {', '.join(CASES)}, got {case!r}"])
+    tables, before = _given(case, text)
+    if before is not None:
+        overrides = expanded(overrides, before)
+    unknown = [key for key in overrides if before is None and key not in KEYS]
     if unknown:
         raise ScenarioError([f"key must be one of the page's, got {unknown[0]!r}"])
-    tables = read_tables(case) if text is None else tables_of_text(text, "the scenario")
     # A kind starts a table afresh: what belongs to it comes after it.
     kinds_first = sorted(overrides.items(), key=lambda item: item[0].rpartition(".")[2] not in TAGS)
     changed, problems = overridden(tables, dict(kinds_first))
     _check_size(changed)
     scenario = scenario_of_tables(changed, problems)
-    _check_kind(scenario.system)
+    _check_system(scenario.system)
+    return Playable(scenario, _in_full(scenario), case if text is None else text, before)
+
+
+@lru_cache(maxsize=32)
+def _given(case: str, text: str | None) -> tuple[dict[str, Any], dict[str, Any] | None]:
+    """Return the tables of a scenario in which values are set, and of a system those in full, which are the same."""
+    tables = read_tables(case) if text is None else tables_of_text(text, "the scenario")
+    _check_size(tables)
+    try:
+        scenario = scenario_of_tables(tables, [])
+    except ScenarioError:
+        # What is wrong with it is said once values are set.
+        return tables, None
+    if is_pair(scenario.system):
+        return tables, None
+    _check_system(scenario.system)
+    full = {"title": scenario.title, "description": scenario.description} | _in_full(scenario)
+    return full, full
+
+
+def _in_full(scenario: Scenario) -> dict[str, Any]:
+    """Return a scenario in full and in SI."""
     simulation = {"duration": scenario.duration, "scheme": scenario.scheme.name}
-    full = tomllib.loads(scenario_toml(scenario.system, scenario.probes or (), simulation))
-    return Playable(scenario, full, case if text is None else text)
+    return tomllib.loads(scenario_toml(scenario.system, scenario.probes or (), simulation))
 
 
 def _check_size(tables: dict[str, Any]) -> None:
@@ -101,16 +150,21 @@ def _check_size(tables: dict[str, Any]) -> None:
             raise ScenarioError([f"{name}.elements must be at most {MOST_ELEMENTS} to be played, got {elements!r}"])
 
 
-def _check_kind(system: System) -> None:
-    contacts, kinds = len(system.contacts), [type(system.slider).__name__, type(system.track).__name__]
-    if contacts != 1 or kinds != [FiniteElementBeam.__name__, ModalBeam.__name__] or system.connections:
+def _check_system(system: System) -> None:
+    """Raise ScenarioError if a system is in space or too large."""
+    if system.is_spatial:
+        kinds = ", ".join(sorted({type(body).__name__ for body in system.bodies if body.is_spatial}))
         raise ScenarioError(
-            [
-                "scenario must be one finite-element beam on one modal beam to be played, got "
-                f"{contacts} contact{'s' * (contacts > 1)} of a {kinds[0]} on a {kinds[1]}"
-                f"{' and connections' if system.connections else ''}; run it with `stridula run`"
-            ]
+            [f"scenario must lie in the plane to be played, got bodies in space: {kinds}; run it with `stridula run`"]
         )
-    modes = sum(system.track.harmonics)
-    if modes > MOST_MODES:
-        raise ScenarioError([f"track must have at most {MOST_MODES} modes to be played, got {modes}: lower cutoff"])
+    if len(system.contacts) > MOST_CONTACTS:
+        many = len(system.contacts)
+        raise ScenarioError([f"contacts must be at most {MOST_CONTACTS} to be played, got {many}"])
+    if is_pair(system):
+        modes = sum(system.track.harmonics)
+        if modes > MOST_MODES:
+            raise ScenarioError([f"track must have at most {MOST_MODES} modes to be played, got {modes}: lower cutoff"])
+        return
+    modes = sum(body.modes().count for body in system.bodies)
+    if modes > MOST_OF_SYSTEMS:
+        raise ScenarioError([f"bodies must have at most {MOST_OF_SYSTEMS} modes to be played, got {modes}"])

@@ -6,14 +6,14 @@ from functools import cache
 from typing import Any
 
 from ..scenarios.load import load_scenario
-from .playable import PRESETS
+from .playable import CASES
 
 
 @cache
 def presets() -> list[dict[str, Any]]:
     """Return name, title and description of each case."""
     found = []
-    for name in PRESETS:
+    for name in CASES:
         scenario = load_scenario(name)
         found.append({"name": name, "title": scenario.title, "description": scenario.description})
     return found

@@ -11,11 +11,10 @@ from typing import Any
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from ..checks import ArgumentError
-from ..integration.live import LiveMarch
 from ..plot.colours import REGIME_COLOURS
 from ..scenarios.errors import ScenarioError
 from ..version import __version__
-from . import controls
+from . import controls, now
 from .beside import Beside
 from .held import held, is_of_one_case
 from .instrument import RATE, Instrument
@@ -25,7 +24,7 @@ from .messages import Listen, Map, Message, NoMap, Pull, Repeat, Restart, Save, 
 from .parts import Stop, packed
 from .playable import Playable
 from .presets import presets
-from .sources import SOURCES
+from .turned import expanded
 
 # A page may be ahead of time by so much [s], and play at most so much faster than time goes.
 AHEAD, FASTEST = 1.0, 1.5
@@ -33,6 +32,10 @@ AHEAD, FASTEST = 1.0, 1.5
 PARTS_AT_ONCE = 4
 # Quiet time after a change before linear theory is asked [s].
 PAUSE = 0.25
+# Of so many seconds it is said what goes on, each time they have passed; not of fewer than the shortest [s].
+MOMENT, SHORTEST = 1.0, 0.2
+# Samples that become one for that.
+TOGETHER = 2
 # A page that says nothing for so long at first [s] makes room for another.
 HURRY = 10.0
 # Codes of a socket that closed without one, and of one whose page said nothing.
@@ -57,6 +60,9 @@ class Session:
         self.source, self.repeats = "pressure", True
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._began, self._played = clock.monotonic(), 0
+        # Seconds of a system played in one; of what was played since, seconds that it took, and samples.
+        self.speed: float | None = None
+        self._taken, self._made = 0.0, 0
 
     async def run(self) -> None:
         """Answer the page until it goes; raises WebSocketDisconnect then."""
@@ -67,8 +73,7 @@ class Session:
             kept=KEPT,
             presets=presets(),
             regimes=REGIME_COLOURS,
-            sources={name: vars(source) for name, source in SOURCES.items()},
-            **controls.described(),
+            **controls.turned_of_pair({}).described,
         )
         try:
             patience: float | None = HURRY
@@ -103,9 +108,9 @@ class Session:
             await ANSWERS_OF_WHAT_PLAYS[type(message)](self, self.instrument, message)
 
     async def _listen(self, message: Listen) -> None:
-        self.source = message.source
         if self.instrument is not None:
             self.instrument.listen_to(message.source)
+        self.source = message.source
 
     async def _repeat(self, message: Repeat) -> None:
         self.repeats = message.on
@@ -120,7 +125,7 @@ class Session:
             refused, played = found.refused, found.played
             if refused and self.scene is not None and _is_same(found.scene, self.scene):
                 raise ScenarioError(found.problems)
-            live, goes_on = await asyncio.to_thread(self._play, played, scene.revision)
+            instrument, goes_on = await asyncio.to_thread(self._play, played, scene.revision)
         except MemoryError:
             problems = ["scenario must fit into memory"]
         except ValueError as error:
@@ -128,19 +133,52 @@ class Session:
         else:
             self.scene = found.scene
             told = {"goes_on": goes_on, "refused": refused, "kept": _said(found.scene) if refused else None}
-            await self._tell("scene", revision=scene.revision, **told, **_described(played, live))
+            await self._tell("scene", revision=scene.revision, **told, **_described(instrument, self.speed))
             self._do("theory", self._theory(played, scene.revision))
+            if "now" not in self._tasks:
+                self._do("now", self._now())
             return
         told = {"problems": problems, "refused": refused or {"": problems}, "kept": _said(self.scene)}
         await self._tell("refused", revision=scene.revision, **told)
 
-    def _play(self, played: Playable, revision: int) -> tuple[LiveMarch, bool]:
-        """Return what marches, and whether its motion went on."""
+    def _play(self, played: Playable, revision: int) -> tuple[Instrument, bool]:
+        """Return what plays, and whether its motion went on."""
+        goes_on = False
         if self.instrument is None:
             self.instrument = Instrument(played, self.source)
             self.instrument.revision, self.instrument.repeats = revision, self.repeats
-            return self.instrument.live, False
-        return self.instrument.live, self.instrument.change(played, revision)
+        else:
+            goes_on = self.instrument.change(played, revision)
+        if played.before is None:
+            # Fast enough on any machine that is not busy with something else.
+            self.speed = None
+        elif not goes_on:
+            self.speed = self.instrument.speed()
+        return self.instrument, goes_on
+
+    async def _now(self) -> None:
+        """Say once a second what is going on."""
+        before = 0
+        with suppress(WebSocketDisconnect):
+            while True:
+                await asyncio.sleep(MOMENT)
+                instrument = self.instrument
+                if instrument is None or instrument.played_samples - before < MOMENT * RATE / 4 or not self._taken:
+                    continue
+                before, revision = instrument.played_samples, instrument.revision
+                if instrument.played.before is not None:
+                    self.speed = self._made / RATE / self._taken
+                    await self._tell("speed", speed=self.speed)
+                self._taken, self._made = 0.0, 0
+                variables, pressure = instrument.last_seconds.moment(MOMENT, TOGETHER)
+                if not variables or len(variables["damping_loss"]) < SHORTEST * RATE / TOGETHER:
+                    continue
+                told = {name: now.said(values) for name, values in variables.items()}
+                names = instrument.played.system.contact_names
+                found = await self.beside.ask("now", interval=TOGETHER / RATE, contacts=names, variables=told)
+                if found is not None:
+                    words = now.words(found, now.level_of(pressure))
+                    await self._tell("now", revision=revision, words=words, **found)
 
     async def _pull(self, instrument: Instrument, pull: Pull) -> None:
         """Play the next parts; a page that asks for more than time brings waits."""
@@ -154,7 +192,11 @@ class Session:
         parts: list[bytes] = []
         for number in range(pull.parts):
             # Marched here and not in a thread: to change threads takes as long as a part.
-            for part in instrument.play(pull.samples):
+            began = clock.perf_counter()
+            found = list(instrument.play(pull.samples))
+            self._taken += clock.perf_counter() - began
+            self._made += pull.samples
+            for part in found:
                 if isinstance(part, Stop):
                     await self._tell("stroke", why=part.why, goes_on=part.goes_on)
                 else:
@@ -180,7 +222,7 @@ class Session:
 
     async def _map(self, instrument: Instrument, message: Map) -> None:
         played = instrument.played
-        known = {control.key for control in controls.CONTROLS} & set(controls.values(played.tables))
+        known = {control.key for control in played.turned.controls} & set(played.turned.values)
         for side in ("x", "y"):
             axis = getattr(message, side)
             if axis.key not in known or not axis.low < axis.high:
@@ -246,17 +288,27 @@ def _lines(error: ValueError) -> list[str]:
     return list(error.problems) if isinstance(error, ScenarioError) else [str(error)]
 
 
-def _described(played: Playable, live: LiveMarch) -> dict[str, Any]:
+def _described(instrument: Instrument, speed: float | None) -> dict[str, Any]:
     """Return what the page shows of what is played."""
-    slider, track = played.system.slider, played.system.track
+    played, live = instrument.played, instrument.live
     return {
         "title": played.scenario.title,
         "description": played.scenario.description,
-        "values": controls.values(played.tables),
+        "values": played.turned.values,
+        "turned": None if played.before is None else played.turned.described,
+        "places": {} if played.before is None else _places(played),
         "toml": played.toml,
-        "slider": {"length": slider.length, "angle": slider.angle},
-        "track": {"length": track.length},
+        "sources": {name: vars(source) for name, source in played.sources.items()},
+        "source": instrument.name,
+        **instrument.drawing.described,
         "modes": len(live.position),
         "step": live.step,
         "steps": live.ratio,
+        "speed": speed,
     }
+
+
+def _places(played: Playable) -> dict[str, list[str]]:
+    """Return the keys that a key with a ``*`` means."""
+    several = [key for key in played.turned.values if "*" in key]
+    return {key: list(expanded({key: 0.0}, played.tables)) for key in several}

@@ -1,17 +1,22 @@
-"""What one hears: the contact force, the track's acceleration or the sound it radiates, sample by sample."""
+"""What one hears: contact forces, probes or the sound that a track radiates, sample by sample."""
 
 from __future__ import annotations
 
 from copy import copy
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any, Protocol
 
 import numpy as np
 
 from ..acoustics.streamed import StreamedSound
 from ..arrays import Array
-from ..bodies import ModalBeam
+from ..bodies import ModalBeam, ModalPlate
+from ..connections import ends
 from ..integration.live import LiveChunk, LiveMarch
+from ..records import Probe
+from ..records.variables import PROBES
+from ..system import System
 
 
 @dataclass(frozen=True)
@@ -38,60 +43,143 @@ SOURCES = {
     "pressure": Source("Sound pressure", "Pa", 0.1, "What a listener hears half a metre above the track, in a baffle."),
     "force": Source("Contact force", "N", 20.0, "The normal force between tip and track, as if an ear lay in it."),
     "acceleration": Source("Track acceleration", "m/s²", 50.0, "What a sensor on the middle of the track would give."),
+    "friction": Source("Friction force", "N", 20.0, "The force of friction on what is rubbed."),
 }
+# What stands in for a contact alone where there are several.
+TOGETHER = {
+    "force": Source("Contact forces", "N", 20.0, "The sum of the normal forces of all contacts."),
+    "friction": Source("Friction forces", "N", 20.0, "The sum of the forces of friction of all contacts."),
+}
+TIP_ACCELERATION = Source(
+    "Tip acceleration", "m/s²", 50.0, "What a sensor on the first tip would give, along its track."
+)
+# As loud as can be: values of probes, by their unit.
+FULL_SCALES = {"m": 1e-3, "m/s": 0.5, "m/s2": 50.0, "N": 5.0}
 HEIGHT = 0.5
+
+
+def sources_of(system: System, probes: tuple[Probe, ...]) -> dict[str, Source]:
+    """Return what can be heard of a system, what is most worth hearing first.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    probes : tuple of probe
+        What is recorded beside the contacts; the first is an acceleration.
+    """
+    found = {"pressure": SOURCES["pressure"]} if _radiates(system) else {}
+    more = {f"probe {number}": _of_probe(probe, system) for number, probe in enumerate(probes[1:], 1)}
+    on_supports = {name: one for name, one in more.items() if one.name.startswith("Support force")}
+    known = TOGETHER if len(system.contacts) > 1 else SOURCES
+    # A pressed point on a belt feels the same normal force all the time.
+    is_on_track = system.contacts[0].path_body is not None
+    forces = {name: known[name] for name in (("force", "friction") if is_on_track else ("friction", "force"))}
+    acceleration = SOURCES["acceleration"] if is_on_track else TIP_ACCELERATION
+    return {**found, **on_supports, **forces, "acceleration": acceleration, **more}
+
+
+def _of_probe(probe: Any, system: System) -> Source:
+    variable = PROBES[probe.quantity]
+    name = f"{probe.quantity.replace('_', ' ').capitalize()}, {system.body_name(probe.body)} {probe.place}"
+    unit = variable.units.replace("m/s2", "m/s²")
+    return Source(name, unit, FULL_SCALES.get(variable.units, 1.0), f"A probe of the scenario: {variable.long_name}.")
+
+
+def _radiates(system: System) -> bool:
+    """Return whether all that drives a beam or a plate are tips that slide along it."""
+    track = system.contacts[0].path_body
+    others = [point.body for connection in system.connections for point in ends(connection)]
+    others += [drive.acted_on for drive in system.drives]
+    return track is not None and track not in others and all(one.path_body == track for one in system.contacts)
+
+
+class Heard(Protocol):
+    """What is heard of a march."""
+
+    def begin(self) -> None:
+        """Let nothing have sounded yet."""
+
+    def heard(self, chunk: LiveChunk) -> Array:
+        """Return what is heard over a chunk."""
 
 
 class Pressure:
     """The sound pressure above the middle of a track."""
 
-    def __init__(self, track: ModalBeam, interval: float, steps: int) -> None:
-        self.sound = copy(_sound(track, interval, steps))
+    def __init__(self, track: ModalBeam | ModalPlate, contacts: int, interval: float, steps: int) -> None:
+        self.sounds = [copy(_sound(track, interval, steps)) for _ in range(contacts)]
         self.begin()
 
     def begin(self) -> None:
         """Let nothing have sounded yet."""
-        self.sound.begin()
-        self.place: float | None = None
+        for sound in self.sounds:
+            sound.begin()
+        self.places: list[float | None] = [None] * len(self.sounds)
 
     def heard(self, chunk: LiveChunk) -> Array:
         """Return the pressure over a chunk [Pa]."""
-        places = chunk.contact["contact_position"]
-        before = np.concatenate([places[:1] if self.place is None else [self.place], places[:-1]])
-        self.place = float(places[-1])
-        return self.sound.feed(chunk.contact["normal_force"], (before + places) / 2.0)
+        forces, abscissas = chunk.contacts["normal_force"], chunk.contacts["contact_position"]
+        heard = []
+        for number, (sound, force, places) in enumerate(zip(self.sounds, forces, abscissas, strict=True)):
+            last = self.places[number]
+            before = np.concatenate([places[:1] if last is None else [last], places[:-1]])
+            self.places[number] = float(places[-1])
+            heard.append(sound.feed(force, (before + places) / 2.0))
+        return heard[0] if len(heard) == 1 else np.asarray(np.sum(heard, axis=0))
 
 
 @lru_cache(maxsize=64)
-def _sound(track: ModalBeam, interval: float, steps: int) -> StreamedSound:
+def _sound(track: ModalBeam | ModalPlate, interval: float, steps: int) -> StreamedSound:
     """Return the sound of a track before it is heard: to find its paths takes longer than a part of the sound."""
-    return StreamedSound(track, (track.length / 2.0, 0.0, HEIGHT), interval, steps)
+    across = getattr(track, "width", 0.0) / 2.0
+    return StreamedSound(track, (track.length / 2.0, across, HEIGHT), interval, steps)
 
 
-class Force:
-    """The normal contact force."""
+@dataclass(frozen=True)
+class OfContacts:
+    """What is recorded of the contacts, summed.
+
+    Attributes
+    ----------
+    variable : str
+        Its name in records.
+    """
+
+    variable: str
 
     def begin(self) -> None:
         """Forget nothing: nothing is known of what was before."""
 
     def heard(self, chunk: LiveChunk) -> Array:
-        """Return the force over a chunk [N]."""
-        return chunk.contact["normal_force"]
+        """Return the sum over a chunk."""
+        return np.asarray(chunk.contacts[self.variable].sum(axis=0))
 
 
-class Acceleration:
-    """The acceleration of the middle of the track."""
+@dataclass(frozen=True)
+class OfProbe:
+    """A probe.
+
+    Attributes
+    ----------
+    number : int
+        Which one.
+    """
+
+    number: int
 
     def begin(self) -> None:
         """Forget nothing: nothing is known of what was before."""
 
     def heard(self, chunk: LiveChunk) -> Array:
-        """Return the acceleration over a chunk [m/s²]."""
-        return chunk.probes[:, 0]
+        """Return it over a chunk."""
+        return chunk.probes[:, self.number]
 
 
-def source_of(name: str, live: LiveMarch) -> Pressure | Force | Acceleration:
+def source_of(name: str, live: LiveMarch) -> Heard:
     """Return what is to be heard of a march; what sounded before it is silent."""
     if name == "pressure":
-        return Pressure(live.system.track, live.interval, live.ratio)
-    return Force() if name == "force" else Acceleration()
+        return Pressure(live.system.track, len(live.system.contacts), live.interval, live.ratio)
+    if name in ("force", "friction"):
+        return OfContacts("normal_force" if name == "force" else "tangential_force")
+    return OfProbe(int(name.removeprefix("probe ")) if name.startswith("probe ") else 0)

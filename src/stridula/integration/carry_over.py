@@ -11,7 +11,8 @@ import numpy as np
 from .._kernels import layout as at
 from ..arrays import Array
 from ..assembly import Assembly
-from ..bodies import FiniteElementBeam, ModalBeam, ModalPlate
+from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate
+from ..contact import PointContact
 from ..records.state import State
 from ..system import System
 from .schemes import Scheme
@@ -46,7 +47,8 @@ class Before:
         return (
             (before.imposed_velocity is None) == (system.imposed_velocity is None)
             and before.connections == system.connections
-            and before.contacts[0].gap == system.contacts[0].gap
+            and len(before.contacts) == len(system.contacts)
+            and all(_is_like_contact(*pair) for pair in zip(before.contacts, system.contacts, strict=True))
             and len(before.bodies) == len(system.bodies)
             and all(carries_over(*pair) for pair in zip(before.bodies, system.bodies, strict=True))
         )
@@ -69,6 +71,24 @@ class Before:
 def _root_velocity(system: System, time: float) -> float:
     imposed = system.imposed_velocity
     return 0.0 if imposed is None else imposed.velocity * float(imposed.history.factor(np.array([time]))[0])
+
+
+def _is_like_contact(before: PointContact, now: PointContact) -> bool:
+    """Return whether a contact begins as open as another, in the same direction and on what is of its kind."""
+    return (
+        (before.gap, before.inclination) == (now.gap, now.inclination)
+        and (before.path_body is None) == (now.path_body is None)
+        and (before.rigid_track is None) == (now.rigid_track is None)
+        and before.yields == now.yields
+        and (now.path_body is not None or before.at == now.at)
+        and _is_like_point(before.tip, now.tip)
+        and _is_like_point(before.touched_point, now.touched_point)
+    )
+
+
+def _is_like_point(before: BodyPoint | None, now: BodyPoint | None) -> bool:
+    """Return whether points are the same, or points of bodies that are not."""
+    return before == now or (before is not None and now is not None and before.body != now.body)
 
 
 def carries_over(before: Any, now: Any) -> bool:

@@ -13,8 +13,8 @@ from .._kernels import layout as at
 from .._kernels.contact import SEPARATED
 from ..arrays import Array
 from ..assembly import Assembly, Signal, assemble, with_travel
-from ..bodies import is_track
 from ..checks import ArgumentError, instance, positive
+from ..contact import PointContact
 from ..records import Probe
 from ..records.state import State
 from ..system import System
@@ -44,9 +44,9 @@ class LiveChunk:
     ----------
     time : ndarray, shape (samples,)
         Time since the start of the stroke at the end of every sample interval [s].
-    contact : dict of ndarray, shape (samples,)
-        Record of the contact, by the names of records.
-    status_share : ndarray, shape (samples, 3)
+    contacts : dict of ndarray, shape (contacts, samples)
+        Record of the contacts, by the names of records.
+    status_shares : ndarray, shape (contacts, samples, 3)
         Share of each interval separated, sticking and sliding.
     energies : dict of ndarray, shape (samples,)
         Energies since the start or the last change, by the names of records.
@@ -55,23 +55,34 @@ class LiveChunk:
     """
 
     time: Array
-    contact: dict[str, Array]
-    status_share: Array
+    contacts: dict[str, Array]
+    status_shares: Array
     energies: dict[str, Array]
     probes: Array
 
+    @property
+    def contact(self) -> dict[str, Array]:
+        """Record of the first contact."""
+        return {name: values[0] for name, values in self.contacts.items()}
+
+    @property
+    def status_share(self) -> Array:
+        """Shares of the first contact."""
+        found: Array = self.status_shares[0]
+        return found
+
 
 class LiveMarch:
-    """A system of one contact on the march, sample by sample, for as long as one likes.
+    """A system in the plane on the march, sample by sample, for as long as one likes.
 
-    What it is may change on the way: its motion goes on from where it is. Friction and forces change at once; bodies
-    that change keep their deflections, the contact its opening and its place on the track. A contact that is moved
-    along the track keeps its opening there.
+    What it is may change on the way: its motion goes on from where it is. Friction and forces change at once, and so do
+    the velocities of rigid tracks and of surfaces; bodies that change keep their deflections, contacts their opening
+    and their place on the track. A contact that is moved along the track keeps its opening there.
 
     Parameters
     ----------
     system : System
-        What marches: one contact on a beam or a plate.
+        What marches, without bodies in space.
     probes : sequence of Displacement, Velocity, Acceleration, Reaction, SupportForce, ModalDisplacement, ModalVelocity
         What is recorded beside the contact.
     scheme : CentralDifference or ExactModal, optional
@@ -82,7 +93,7 @@ class LiveMarch:
     Raises
     ------
     ValueError
-        If the system has several contacts, or one that does not move along a beam or a plate.
+        If the system has bodies in space.
     """
 
     # What marches and where it is; set again at every change.
@@ -125,9 +136,15 @@ class LiveMarch:
         """First mode of each body, and the one after its last."""
         return self._arrays.spans
 
+    @property
+    def passed(self) -> Array:
+        """How far what each contact slides on has been moved along itself by now, shape (contacts,) [m]."""
+        return self._imposed_now()[:, at.TRACK_MOTION]
+
     def restart(self) -> None:
         """Put everything back to the start."""
-        self._sample, self._gap, self._travel = 0, self.system.contacts[0].gap, 0.0
+        self._sample, self._travel = 0, 0.0
+        self._gaps = np.array([contact.gap for contact in self.system.contacts])
         self._lay_out(in_equilibrium(self.system, self._described))
         self._go(state_at_start(self._arrays, self.scheme, self.step, self._blocks, GaussSeidel()))
         self._begin_probes()
@@ -153,12 +170,12 @@ class LiveMarch:
         done, ended = self._belief.of(chunk)
         time = (self._sample + np.arange(1, done + 1)) * self.interval
         self._sample += done
-        record, energy = chunk.contacts[:done, 0].T, chunk.energies[:done].T
-        self._gap = float(record[at.CONTACT_GAP, -1]) if done else self._gap
-        contact = {name: record[column].copy() for name, column in CONTACT_COLUMN.items()}
+        record, energy = chunk.contacts[:done].transpose(1, 2, 0), chunk.energies[:done].T
+        self._gaps = record[:, at.CONTACT_GAP, -1].copy() if done else self._gaps
+        contacts = {name: record[:, column].copy() for name, column in CONTACT_COLUMN.items()}
         energies = {name: energy[column].copy() for name, column in ENERGY_COLUMN.items()}
-        shares = record[at.SEPARATED : at.SLIDING + 1].T.copy()
-        return LiveChunk(time, contact, shares, energies, self._low_passed(chunk.raw, done)), ENDED[ended]
+        shares = record[:, at.SEPARATED : at.SLIDING + 1].transpose(0, 2, 1).copy()
+        return LiveChunk(time, contacts, shares, energies, self._low_passed(chunk.raw, done)), ENDED[ended]
 
     def begin(self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None) -> None:
         """Start anew as another system, whatever became of the march before.
@@ -222,19 +239,22 @@ class LiveMarch:
         self._travel = self._root_at(self._arrays) - self._root_at(arrays)
         self._take(system, probes, before.scheme if scheme is None else scheme, arrays)
         self._begin_probes()
-        moved = system.contacts[0].at - before.system.contacts[0].at
-        place = float(state.carried[0, at.ABSCISSA] + moved)
-        low, high = system.track.ends
-        if not (before.goes_on_as(system) and low < place < high):
+        if not before.goes_on_as(system):
+            self.restart()
+            return False
+        pairs = zip(before.system.contacts, system.contacts, strict=True)
+        moved = np.array([now.at - then.at for then, now in pairs])
+        places = state.carried[:, at.ABSCISSA] + moved
+        if not all(map(_is_on_track, system.contacts, places)):
             self.restart()
             return False
         position, velocity = before.motion_as(system, arrays, state, self.time)
         has_same_modes = system.bodies == before.system.bodies and self.step == before.step
-        if has_same_modes and self.scheme == before.scheme and not moved:
-            self._go_on(state, place, position, velocity, before.system)
+        if has_same_modes and self.scheme == before.scheme and not moved.any():
+            self._go_on(state, places, position, velocity, before.system)
         else:
-            is_closed = state.carried[0, at.STATUS] != SEPARATED
-            self._start_from(position, velocity, place, 0.0 if is_closed else self._gap)
+            is_closed = state.carried[:, at.STATUS] != SEPARATED
+            self._start_from(position, velocity, places, np.where(is_closed, 0.0, self._gaps))
         return True
 
     def _take(self, system: System, probes: Sequence[Probe], scheme: Scheme, arrays: Assembly) -> None:
@@ -271,30 +291,43 @@ class LiveMarch:
         """Return how far an imposed velocity has moved the root of a system by now [m]."""
         return float(arrays.signals[-3](np.array([self.time]), self.step)[0])
 
-    def _shifted(self, place: float, position: Array) -> Assembly:
-        """Return the system whose tip is at a place now: the sum of its start, its displacement and what is imposed."""
+    def _shifted(self, places: Array, position: Array, before: Array) -> Assembly:
+        """Return the system whose tips are at some places now: the sum of start, displacement and what is imposed.
+
+        What is imposed on contacts besides is where it was `before`, shape (contacts, motions).
+        """
         moved = with_travel(self._described, self.system, self._travel)
-        described, (contact,) = moved.motion, moved.contacts
-        imposed = described(np.array([self.time]), self.step)[0, 0, at.TIP_MOTION]
-        offset = np.zeros(at.MOTIONS)
-        offset[at.TIP_MOTION] = -imposed - contact.fixed[1] @ position
-        here = replace(contact, contact=replace(contact.contact, at=place))
-        return replace(moved, contacts=[here], motion=lambda times, step: described(times, step) + offset)
+        described, now = moved.motion, np.array([self.time])
+        imposed, offset, contacts = described(now, self.step)[0], np.zeros(before.shape), []
+        for number, one in enumerate(moved.contacts):
+            if one.contact.path_body is None:
+                offset[number] = before[number] - imposed[number]
+                contacts.append(one)
+                continue
+            offset[number, at.TIP_MOTION] = -imposed[number, at.TIP_MOTION] - one.fixed[1] @ position
+            contacts.append(replace(one, contact=replace(one.contact, at=float(places[number]))))
+        return replace(moved, contacts=contacts, motion=lambda times, step: described(times, step) + offset)
 
-    def _go_on(self, state: State, place: float, position: Array, velocity: Array, before: System) -> None:
+    def _imposed_now(self) -> Array:
+        """Return what is imposed on contacts now, shape (contacts, motions)."""
+        return np.asarray(self._arrays.motion(np.array([self.time]), self.step)[0])
+
+    def _go_on(self, state: State, places: Array, position: Array, velocity: Array, before: System) -> None:
         """March on in the same modes, under other forces and another friction."""
-        self._lay_out(self._shifted(place, position))
+        self._lay_out(self._shifted(places, position, self._imposed_now()))
         state.modal[at.D] = velocity * self.step
-        law = self.system.contacts[0].friction
-        if type(law) is not type(before.contacts[0].friction):
-            state.carried[0, at.FRICTION_STATE] = law.state_at_start
-        self._put(state, place)
+        for own, now, then in zip(state.carried, self.system.contacts, before.contacts, strict=True):
+            if type(now.friction) is not type(then.friction):
+                own[at.FRICTION_STATE] = now.friction.state_at_start
+        self._put(state, places)
 
-    def _start_from(self, position: Array, velocity: Array, place: float, gap: float) -> None:
-        """March on in other modes or at another place on the track, the contact opened by a gap."""
-        position = position + _opening(self._shifted(place, position), position, gap)
-        self._lay_out(self._shifted(place, position))
-        now = self.time
+    def _start_from(self, position: Array, velocity: Array, places: Array, gaps: Array) -> None:
+        """March on in other modes or at other places on the track, contacts opened by their gaps."""
+        imposed, now = self._imposed_now(), self.time
+        shifted = self._shifted(places, position, imposed)
+        raised = shifted.motion(np.array([now]), self.step)[0, :, at.GAP_MOTION]
+        position = position + _opening(shifted, position, gaps - raised)
+        self._lay_out(self._shifted(places, position, imposed))
         arrays = replace(
             self._arrays,
             position=position,
@@ -302,24 +335,33 @@ class LiveMarch:
             signals=[_later(signal, now) for signal in self._arrays.signals],
             motion=_later(self._arrays.motion, now),
         )
-        self._put(state_at_start(arrays, self.scheme, self.step, self._blocks, GaussSeidel()), place)
+        self._put(state_at_start(arrays, self.scheme, self.step, self._blocks, GaussSeidel()), places)
 
-    def _put(self, state: State, place: float) -> None:
-        """March on from a state whose tip is at a place on the track."""
-        state.carried[0, list(ON_THE_TRACK)] += place - state.carried[0, at.ABSCISSA]
+    def _put(self, state: State, places: Array) -> None:
+        """March on from a state whose tips are at some places on the track."""
+        for own, contact, place in zip(state.carried, self.system.contacts, places, strict=True):
+            if contact.path_body is not None:
+                own[list(ON_THE_TRACK)] += place - own[at.ABSCISSA]
         self._go(state)
 
 
-def _opening(arrays: Assembly, position: Array, gap: float) -> Array:
-    """Return the displacement that opens the contact to a gap as a force on it would, rigid motions first."""
-    one = arrays.contacts[0]
-    row = rows_at(one, one.contact.at)[0]
+def _is_on_track(contact: PointContact, place: float) -> bool:
+    """Return whether a tip at an abscissa is on what it slides on; rigid tracks and points have no ends."""
+    if contact.path_body is None:
+        return True
+    low, high = contact.path_body.ends
+    return bool(low < place < high)
+
+
+def _opening(arrays: Assembly, position: Array, gaps: Array) -> Array:
+    """Return the displacement that opens contacts to gaps as forces on them would, rigid motions first."""
+    rows = np.array([rows_at(one, one.contact.at)[0] for one in arrays.contacts])
     squared = arrays.all_stiffness
     vibrating = np.diag(squared)[np.diag(squared) > 0.0]
-    squared += SOFT**2 * (vibrating.min() if vibrating.size else 1.0) * np.eye(len(row))
-    yielded = np.linalg.solve(squared, row)
-    missing = gap - one.contact.gap - row @ position
-    return np.asarray(yielded * missing / (row @ yielded))
+    squared += SOFT**2 * (vibrating.min() if vibrating.size else 1.0) * np.eye(rows.shape[1])
+    yielded = np.linalg.solve(squared, rows.T)
+    missing = gaps - np.array([one.contact.gap for one in arrays.contacts]) - rows @ position
+    return np.asarray(yielded @ np.linalg.lstsq(rows @ yielded, missing)[0])
 
 
 def _later(signal: Signal, now: float) -> Signal:
@@ -327,19 +369,14 @@ def _later(signal: Signal, now: float) -> Signal:
 
 
 def assembled(system: System, probes: Sequence[Probe]) -> Assembly:
-    """Return a system of one contact on a track as flat arrays.
+    """Return a system in the plane as flat arrays.
 
     Raises
     ------
     ValueError
-        If it is no such system.
+        If it is in space.
     """
     instance("system", system, System)
-    if len(system.contacts) != 1:
-        raise ArgumentError("system", "have one contact to march without end", system, got=len(system.contacts))
-    if not is_track(system.contacts[0].track):
-        kind = type(system.contacts[0].track).__name__
-        raise ArgumentError("track", "be a ModalBeam or a ModalPlate to march without end", got=f"a {kind}")
     if system.is_spatial:
         raise ArgumentError("system", "lie in the plane to march without end", system, got="one in space")
     return assemble(system, probes)

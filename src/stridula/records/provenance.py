@@ -40,7 +40,7 @@ def scenario_toml(system: System, probes: Sequence[Probe], simulation: dict[str,
     Matrices are lists of rows while they are small, text that holds every bit of them beyond.
     """
     probed = [probe.point for probe in probes if hasattr(probe, "point")]
-    tables = _pair(system) if _is_pair(system) else _general(system, probed)
+    tables = _pair(system) if is_pair(system) else _general(system, probed)
     tables["drives"] = [_drive(drive, system) for drive in system.drives]
     tables["simulation"] = {**_value(simulation), "probes": [_probe(probe, system) for probe in probes]}
     return toml(tables)
@@ -70,7 +70,8 @@ def _on_one_line(found: re.Match[str]) -> str:
     return f"[{' '.join(found[1].split()).rstrip(',')}]"
 
 
-def _is_pair(system: System) -> bool:
+def is_pair(system: System) -> bool:
+    """Return whether a system is one finite-element beam that slides on one modal beam, and nothing else."""
     return (
         len(system.contacts) == 1
         and not system.connections

@@ -120,8 +120,12 @@ class Quantity(Number, _Kind):
     def json_schema(self) -> dict[str, Any]:
         limits = {"exclusiveMinimum": self.above, "minimum": self.least, "exclusiveMaximum": self.below}
         number = {"type": "number", **{word: limit for word, limit in limits.items() if limit is not None}}
-        spellings = "|".join(UNITS[self.unit])
-        return {"anyOf": [number, {"type": "string", "pattern": rf"^\s*[-+0-9.eE]+\s*({spellings})?\s*$"}]}
+        return {"anyOf": [number, {"type": "string", "pattern": pattern_of(self.unit)}]}
+
+
+def pattern_of(unit: str) -> str:
+    """Return the pattern of the texts that stand for a number with an SI unit."""
+    return rf"^\s*[-+0-9.eE]+\s*({'|'.join(UNITS[unit])})?\s*$"
 
 
 @dataclass(frozen=True)

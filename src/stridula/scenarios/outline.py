@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from .fields import BY_NAME, ONE, TEXT, holds_tables
+from .fields import BY_NAME, ONE, TEXT, holds_tables, pattern_of
+from .quantities import UNITS
 from .schema import TOUCHING, json_schema
 
 Node = dict[str, Any]
@@ -45,6 +46,12 @@ def is_number(node: Node) -> bool:
 def patterns(node: Node | None) -> set[str]:
     """Return the patterns of the texts that a key takes."""
     return {variant["pattern"] for variant in _variants(node) if "pattern" in variant}
+
+
+def unit(node: Node | None) -> str:
+    """Return the SI unit of the numbers that a key takes, ``"1"`` where they have none."""
+    known = patterns(node)
+    return next((unit for unit in UNITS if pattern_of(unit) in known), "1")
 
 
 def is_choice(node: Node | None) -> bool:

@@ -2,8 +2,16 @@
 export class Controls {
   constructor(form, hello, scene) {
     this.scene = scene;
-    this.rows = new Map();
+    this.form = form;
     form.addEventListener("submit", (event) => event.preventDefault());
+    this.build(hello);
+  }
+
+  // Build the controls of a kind of systems.
+  build(hello) {
+    const form = this.form;
+    this.rows = new Map();
+    this.values = undefined;
     form.replaceChildren();
     for (const group of hello.groups) {
       const field = document.createElement("fieldset");
@@ -15,7 +23,7 @@ export class Controls {
   }
 
   #number(control) {
-    const id = control.key.replaceAll(".", "-");
+    const id = idOf(control.key);
     const row = document.createElement("div");
     row.className = "control";
     row.innerHTML = `<label for="${id}"></label>
@@ -60,7 +68,7 @@ export class Controls {
   }
 
   #choice(choice) {
-    const id = choice.key.replaceAll(".", "-");
+    const id = idOf(choice.key);
     const row = document.createElement("div");
     row.className = "control";
     row.innerHTML = `<label class="field" for="${id}"></label><select id="${id}"></select><p class="refused" role="alert" hidden></p><p class="words" id="${id}-words"></p>`;
@@ -102,6 +110,10 @@ export class Controls {
   numbers() {
     return [...this.rows.values()].filter(({ control, row }) => control && !row.hidden).map(({ control }) => control);
   }
+}
+
+function idOf(key) {
+  return key.replaceAll(/[^\w]/g, "-");
 }
 
 export function si(shown, control) {

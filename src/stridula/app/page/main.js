@@ -14,9 +14,13 @@ const scene = new Scene(changed);
 const sound = new Sound(stream, heard);
 const moves = new Map();
 const sent = new Map(); // Scenes that were not answered yet, by revision.
+const SLOW = 1.05; // Seconds played in one below which the sound would break, and
+const MARGIN = 1.1; // what is left to others then.
 const LONG = 5; // Time of drawing from which every other frame is left out [ms].
 const stats = { drawing: 0, revision: 0, played: 0, samples: 0, frames: 0, fps: 0, dropouts: 0, latency: null, latencies: [], connected: false, level: 0, peak: 0 };
-let hello, controls, map, described;
+let hello, controls, map, described, sources;
+let turned = "null"; // What the controls were built of, beyond two beams.
+let slowest = 1; // How many seconds one second takes where that is slower than sound.
 let revision = 0;
 let mode = "live";
 let skipped = false;
@@ -38,6 +42,12 @@ function told(message) {
     problem: () => problem(message.problems),
     stroke: () => stroke(message),
     theory: () => theory(message),
+    now: () => write("now", message.words),
+    speed: () => {
+      // As the machine is busy now: only what is clearly another speed changes how fast it is shown.
+      const needed = paceOf(message.speed);
+      if (needed > 1.1 * slowest || needed < 0.8 * slowest) keepUp(message.speed);
+    },
     "map row": () => map?.take(message),
     "map done": () => map?.done(),
   };
@@ -53,14 +63,13 @@ async function welcome(message) {
     $("version").textContent = hello.version;
     $("kept").textContent = `the last ${hello.kept} s`;
     $("case").replaceChildren(...hello.presets.map(({ name, title }) => new Option(title, name)));
-    $("source").replaceChildren(...Object.entries(hello.sources).map(([name, { name: word, unit }]) => new Option(`${word} [${unit}]`, name)));
     controls = new Controls($("controls"), hello, scene);
     map = new RegimeMap(scene, controls, hello.regimes, say);
     await readLink();
     // Undo does not go back to before the link.
     scene.past = [];
   }
-  listenTo();
+  if (sources) listenTo();
   say({ type: "repeat", on: $("repeat").checked });
   map.again();
   send();
@@ -93,13 +102,57 @@ function shown(message) {
   // What is played in place of a link that cannot be read does not take its message away.
   $("problem").hidden = !badLink;
   badLink = false;
+  if (!message.goes_on) write("now", "");
+  build(message.turned);
   controls.show(message.values);
+  scene.places = message.places;
+  offer(message);
+  keepUp(message.speed);
   putBack(message);
   pictures.describe(message);
   map.follow();
   showCase(message);
   showToml();
   write("numbers", `${message.modes} modes, ${message.steps} steps of ${short(1e6 * message.step)} µs a sample. `);
+}
+
+// Systems have controls of their own.
+function build(wanted) {
+  const told = JSON.stringify(wanted);
+  if (told === turned) return;
+  turned = told;
+  controls.build(wanted ?? hello);
+}
+
+// What can be heard of a system.
+function offer({ sources: offered, source }) {
+  if (JSON.stringify(offered) === JSON.stringify(sources)) return;
+  sources = offered;
+  $("source").replaceChildren(...Object.entries(sources).map(([name, { name: word, unit }]) => new Option(`${word} [${unit}]`, name)));
+  $("source").value = source;
+  showSource();
+}
+
+function paceOf(speed) {
+  return speed !== null && speed < SLOW ? Math.ceil((10 * MARGIN) / speed) / 10 : 1;
+}
+
+// What is computed slower than it sounds is played as fast as it can be, and that is said.
+function keepUp(speed) {
+  const needed = paceOf(speed);
+  const own = [...$("speed").options].find((one) => one.dataset.own);
+  if (needed === slowest) return;
+  const wasSlow = own?.selected;
+  own?.remove();
+  slowest = needed;
+  if (needed > 1) {
+    const option = new Option(`As fast as it can, 1 : ${needed}`, String(needed));
+    option.dataset.own = "1";
+    $("speed").append(option);
+    option.selected = $("speed").value === "1" || wasSlow;
+  } else if (wasSlow) $("speed").value = "1";
+  $("pace").textContent = needed > 1 ? `This machine computes it ${needed} times slower than it sounds: it is shown at that speed, without sound.` : "";
+  pace();
 }
 
 function showCase(message) {
@@ -191,8 +244,8 @@ function heard(data) {
   $("level").style.width = `${Math.max(0, Math.min(100, 100 + (100 * decibels(data.peak)) / 60))}%`;
   $("limiter").style.width = `${Math.min(100, (-100 * decibels(data.reduction)) / 30)}%`;
   stats.reduction = data.reduction;
-  if (silence()) return;
-  const { full_scale: fullScale, unit } = hello.sources[$("source").value];
+  if (silence() || !sources) return;
+  const { full_scale: fullScale, unit } = sources[$("source").value];
   const factor = data.gain * 10 ** (Number($("volume").value) / 20);
   $("level-out").textContent = `${Math.round(decibels(data.peak))} dB, limited by ${Math.round(-decibels(data.reduction))} dB`;
   $("scale-out").textContent = `full scale ${Number((fullScale / factor).toPrecision(2))} ${unit}`;
@@ -206,14 +259,20 @@ function silence() {
 }
 
 function listenTo() {
-  const source = hello.sources[$("source").value];
-  stream.postMessage({ say: { type: "listen", source: $("source").value }, fullScale: source.full_scale });
+  say({ type: "listen", source: $("source").value });
+  showSource();
+}
+
+function showSource() {
+  const source = sources[$("source").value];
+  stream.postMessage({ fullScale: source.full_scale });
   $("spectrogram-words").textContent = `of the ${source.name.toLowerCase()}`;
   listen();
 }
 
 function listen() {
-  const { words, full_scale: fullScale, unit } = hello.sources[$("source").value];
+  if (!sources) return;
+  const { words, full_scale: fullScale, unit } = sources[$("source").value];
   const levelled = $("levelled").checked;
   $("source-words").textContent = `${words} 0 dB: ${levelled ? "the loudest of the last 4 s is 3 dB below full scale" : `${fullScale} ${unit} is full scale`}.`;
   $("volume-out").textContent = `${$("volume").value} dB`;
@@ -371,10 +430,10 @@ async function copied(text, what) {
 
 // Words beside the pictures change slowly enough to be read.
 setInterval(() => {
-  if (!pictures.much) return;
+  if (pictures.much === undefined) return;
   const shares = pictures.shares.map((share, i) => `${STATES[i]} ${Math.round(100 * share)} %`);
   write("shares", shares.join(", "));
-  write("exaggeration", `deflections ${pictures.much.toLocaleString("en")} times`);
+  write("exaggeration", pictures.much ? `deflections ${pictures.much.toLocaleString("en")} times` : "");
 }, 250);
 
 setInterval(() => {
@@ -385,7 +444,7 @@ setInterval(() => {
   $("tone").textContent = tone ? `strongest tone ${tone < 1000 ? `${Math.round(tone)} Hz` : `${(tone / 1000).toFixed(2)} kHz`}` : "";
 }, 1000);
 
-window.stridula = { stats, late: () => sound.late, shares: () => pictures.shares, scene, now: () => described };
+window.stridula = { keepUp, stats, late: () => sound.late, shares: () => pictures.shares, scene, now: () => described };
 theme(localStorage.getItem("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
 pace();
 $("undo").disabled = $("redo").disabled = true;

@@ -1,4 +1,5 @@
 // The pictures: what has come since the last one, drawn once for each frame of the screen.
+import { drawLines, Frame, placed } from "./lines.js";
 import { hann, spectrum, strongestTone } from "./spectrum.js";
 
 const RATE = 48000;
@@ -63,7 +64,7 @@ export class Pictures {
 
   // Take over a part.
   take({ head, values }) {
-    const [, clock, stroke, samples, seen, nodes, points, place] = head;
+    const [, clock, stroke, samples, seen, nodes, points, contacts, place] = head;
     let at = 0;
     const next = (count) => values.subarray(at, (at += count));
     const sound = next(samples);
@@ -81,11 +82,17 @@ export class Pictures {
     if (stroke !== this.stroke) this.begun = this.count - seen;
     this.clock = clock;
     this.stroke = stroke;
-    this.shapes = { place, height, slider: next(2 * nodes), track: next(points) };
+    this.shapes = { place, height, slider: next(2 * nodes), track: next(points), contacts: next(2 * contacts) };
     if (this.slow === 1) this.#hear(sound);
   }
 
   describe(scene) {
+    // Another system begins another picture.
+    const known = JSON.stringify([scene.lines, scene.track]);
+    if (known !== this.known) this.frame = new Frame();
+    if (this.scene && !scene.lines !== !this.scene.lines) this.shapes = null;
+    else if (scene.lines && this.shapes && this.shapes.slider.length !== expected(scene)) this.shapes = null;
+    this.known = known;
     this.scene = scene;
   }
 
@@ -116,7 +123,8 @@ export class Pictures {
   // The beams in every frame, the others in turns.
   draw() {
     if (!this.scene || !this.shapes) return;
-    this.#beams();
+    if (this.scene.lines) this.#lines();
+    else if (this.shapes.track.length) this.#beams();
     this.turn = !this.turn;
     if (this.turn) this.#timeline();
     else {
@@ -196,6 +204,18 @@ export class Pictures {
     draw.fillStyle = this.colours.soft;
     draw.fillText(`stroke ${this.stroke}, tip at ${(1000 * place).toFixed(1)} mm`, 8, height - 6);
     this.much = much;
+  }
+
+  #lines() {
+    if (this.shapes.slider.length !== expected(this.scene)) return;
+    const [draw, width, height] = this.#begin("beams");
+    const lines = placed(this.scene, this.shapes.slider);
+    const much = this.frame.follow(lines, this.scene);
+    this.much = much ? rounded(much) : 0;
+    const at = this.frame.to(width, height);
+    drawLines(draw, this.scene, lines, this.shapes.contacts, at, this.much, this.colours, STATES, this.frame.extent);
+    draw.fillStyle = this.colours.soft;
+    draw.fillText(`stroke ${this.stroke}, ${short(1000 * this.frame.extent)} mm across`, 8, height - 6);
   }
 
   #timeline() {
@@ -346,6 +366,11 @@ export class Pictures {
       draw.fillRect(width - 10, height * (1 - frequency / HIGHEST), 10, 2);
     }
   }
+}
+
+// Numbers that a part has of the lines of a system.
+function expected({ lines }) {
+  return lines.reduce((sum, { places }) => sum + 2 * (places.length + 1), 0);
 }
 
 function joined(one, other) {

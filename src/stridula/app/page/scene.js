@@ -7,6 +7,7 @@ export class Scene {
     this.now = { case: "squeal", text: null, overrides: {} };
     this.past = [];
     this.future = [];
+    this.places = {}; // Keys that a key with a * means.
   }
 
   // Change what is played; a movement that goes on is one step of undo.
@@ -79,7 +80,7 @@ export class Scene {
 
   // The command line that runs the same.
   command() {
-    const words = Object.entries(this.now.overrides).map(([key, value]) => `--set ${quoted(`${key}=${value}`)}`);
+    const words = Object.entries(this.now.overrides).flatMap(([key, value]) => (this.places[key] ?? [key]).map((one) => `--set ${quoted(`${one}=${value}`)}`));
     return ["stridula run", this.now.text === null ? this.now.case : "scenario.toml", ...words].join(" ");
   }
 

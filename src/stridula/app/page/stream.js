@@ -56,10 +56,9 @@ self.onmessage = ({ data }) => {
   } else if (data.say) {
     if (data.say.type === "scene") scene(data.say);
     else say(data.say);
-    if (data.fullScale) {
-      next = 1 / data.fullScale;
-      rescale();
-    }
+  } else if (data.fullScale) {
+    next = 1 / data.fullScale;
+    rescale();
   }
 };
 

@@ -1,0 +1,90 @@
+"""What is going on now, in words: the regime of the last second, its pitch and how loud it is."""
+
+from __future__ import annotations
+
+import base64
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+
+# Sound pressure of 0 dB [Pa].
+QUIETEST = 2e-5
+# Frequency from which a tone is a squeal in plain words [Hz].
+SHRILL = 1000.0
+
+
+def said(values: Array) -> dict[str, Any]:
+    """Return an array as JSON holds it, in single precision."""
+    plain = np.ascontiguousarray(values, dtype="<f4")
+    return {"shape": plain.shape, "values": base64.b64encode(plain.tobytes()).decode("ascii")}
+
+
+def heard(told: dict[str, Any]) -> Array:
+    """Return the array that `said` told."""
+    return np.frombuffer(base64.b64decode(told["values"]), dtype="<f4").reshape(told["shape"]).astype(float)
+
+
+def measured(interval: float, contacts: Sequence[str], variables: dict[str, Any]) -> dict[str, Any]:
+    """Return the regime of what was played last and its measures.
+
+    Parameters
+    ----------
+    interval : float
+        Interval of the samples [s].
+    contacts : sequence of str
+        Names of the contacts.
+    variables : dict
+        What is recorded over time, and over contacts where there are several, by the names of records, as `said`.
+
+    Returns
+    -------
+    dict
+        ``regime``, and ``frequency`` [Hz] and ``impact_rate`` [1/s] where they are known, else None.
+    """
+    from ..analysis import regime_of
+    from ..records.plain import PlainRecord
+
+    held = {name: heard(told) for name, told in variables.items()}
+    time = interval * np.arange(1, len(held["normal_force"]) + 1)
+    found = regime_of(PlainRecord(time, held, contacts, {}), start=0.0)
+    numbers = {name: float(found[name]) for name in ("frequency", "impact_rate")}
+    return {"regime": found["regime"]} | {name: one if math.isfinite(one) else None for name, one in numbers.items()}
+
+
+def words(found: dict[str, Any], level: float | None) -> str:
+    """Return what is going on in a line.
+
+    Parameters
+    ----------
+    found : dict
+        What `measured` returns.
+    level : float or None
+        Level of the sound pressure [dB], None where none is heard.
+    """
+    told = _verb(found["regime"], found["frequency"], found["impact_rate"])
+    return told if level is None else f"{told}, {level:.0f} dB"
+
+
+def level_of(pressure: Array) -> float | None:
+    """Return the level of a sound pressure [dB], None of silence."""
+    size = float(np.sqrt(np.mean(np.square(pressure, dtype=float)))) if len(pressure) else 0.0
+    return 20.0 * math.log10(size / QUIETEST) if size > QUIETEST else None
+
+
+def _verb(regime: str, frequency: float | None, impacts: float | None) -> str:
+    pitch = "" if frequency is None else f" at {_pitch(frequency)}"
+    if regime == "squeal":
+        return f"{'squeals' if frequency is None or frequency >= SHRILL else 'sounds'}{pitch}"
+    if regime == "stick-slip":
+        return "sticks and slips" + ("" if frequency is None else f" {frequency:.3g} times a second")
+    if regime == "judder":
+        return "judders" + ("" if not impacts else f", {impacts:.3g} landings a second")
+    return {"stable sliding": "slides steadily", "sticking": "sticks", "off the track": "has lifted off"}[regime]
+
+
+def _pitch(frequency: float) -> str:
+    return f"{frequency / 1000.0:.3g} kHz" if frequency >= 1000.0 else f"{frequency:.3g} Hz"

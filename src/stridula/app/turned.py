@@ -1,0 +1,217 @@
+"""What one turns of a system: its own numbers, as the schema of scenarios declares them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from fnmatch import fnmatchcase
+from functools import lru_cache
+from typing import Any
+
+from ..scenarios import outline
+from ..scenarios.outline import Path, look_up
+from ..scenarios.quantities import DEGREES, UNITS
+from .controls import CHOICES, CONTROLS, DEGREE, Choice, Control, Turned
+
+# Tables whose numbers are turned: what acts and rubs before what bodies are.
+TURNED = ("contacts", "drives", "connections", "bodies")
+# Where things are, and what hardly matters, is no business of an instrument.
+NOT_TURNED = {"point", "points", "gap", "at", "inclination", "poisson"}
+# How far a slider goes from the value that a scenario has.
+REACH = 5.0
+# Steps of a slider from end to end, at least.
+STEPS = 400
+MOST = 40
+# Keys of one beam on another, by the keys that they have in a list of contacts and bodies.
+_PAIR = (
+    (r"^contacts\.(\d+|\*)\.", "contact."),
+    (r"^bodies\.(slider|track)\.", r"\1."),
+    (r"^drives\.\*\.", "drives.0."),
+)
+FRICTION_LAW = CHOICES[0]
+GROUPS = {"drives": "Drive", "connections": "Springs", "contacts": "Contact"}
+
+
+def turned_of_system(tables: dict[str, Any], before: dict[str, Any]) -> Turned:
+    """Return what one turns of a system.
+
+    Numbers that are the same in all entries of a list, or in all bodies whose names differ by a number, are turned
+    together: their key has a ``*`` in its place.
+
+    Parameters
+    ----------
+    tables : dict
+        The scenario in full as it is played.
+    before : dict
+        The same before values were set, from which ranges are derived.
+    """
+    controls = []
+    keys = _keys(tables, before)
+    for key, path in keys:
+        first = look_up(before, path)
+        controls.append(_control(key, path, tables, first if _is_number(first) and first else look_up(tables, path)))
+    laws = dict(_together(tables, before, _is_law))
+    choices = [_law(key, path) for key, path in laws.items()]
+    controls = controls[:MOST]
+    values = {key: look_up(tables, path) for key, path in (*keys, *laws.items())}
+    known = {one.key for one in choices} | {one.key for one in controls}
+    groups = tuple(dict.fromkeys([*(one.group for one in choices), *(one.group for one in controls)]))
+    return Turned(groups, tuple(controls), tuple(choices), {key: one for key, one in values.items() if key in known})
+
+
+def expanded(overrides: Mapping[str, Any], tables: dict[str, Any]) -> dict[str, Any]:
+    """Return values by key in which a key with a ``*`` is all keys that it means.
+
+    Parameters
+    ----------
+    overrides : mapping
+        Values by key.
+    tables : dict
+        The scenario in full.
+    """
+    found: dict[str, Any] = {}
+    for key, value in overrides.items():
+        found |= {".".join(map(str, path)): value for path in places_of(key, tables)} if "*" in key else {key: value}
+    return found
+
+
+def places_of(key: str, tables: Any) -> list[Path]:
+    """Return the paths that a key means: those that are there, else those whose tables are; of a plain key itself."""
+    parts = tuple(key.split("."))
+    matching = list(_matching(parts[:-1], tables, ()))
+    there = [(*path, parts[-1]) for path in matching if look_up(tables, (*path, parts[-1])) is not None]
+    return there or [(*path, parts[-1]) for path in matching]
+
+
+def _matching(parts: tuple[str, ...], tables: Any, path: Path) -> Iterator[Path]:
+    if not parts:
+        if isinstance(tables, dict):
+            yield path
+        return
+    entries: Any = tables.items() if isinstance(tables, dict) else ()
+    if isinstance(tables, list):
+        entries = enumerate(tables)
+    for name, entry in entries:
+        if fnmatchcase(str(name), parts[0]):
+            yield from _matching(parts[1:], entry, (*path, name))
+
+
+def _keys(tables: dict[str, Any], before: dict[str, Any]) -> list[tuple[str, Path]]:
+    """Return the keys of numbers that are turned, what acts and rubs before what bodies are."""
+    found = _together(tables, before, _is_turned)
+    return sorted(found, key=lambda item: (TURNED.index(item[1][0]), "friction" not in item[1]))
+
+
+def _is_turned(path: Path, node: outline.Node) -> bool:
+    return (
+        path[0] in TURNED
+        and isinstance(path[-1], str)
+        and not NOT_TURNED & set(path)
+        and not any("." in str(part) for part in path)
+        and outline.is_number(node)
+        and not outline.is_whole(node)
+    )
+
+
+def _is_law(path: Path, node: outline.Node) -> bool:
+    return path[-2:] == ("friction", "law")
+
+
+def _together(
+    tables: dict[str, Any], before: dict[str, Any], is_wanted: Callable[[Path, outline.Node], bool]
+) -> list[tuple[str, Path]]:
+    """Return the keys that are there, those of the same value everywhere as one, with the first of their paths."""
+    found: dict[str, Path] = {}
+    for path, node in outline.paths(tables):
+        value = look_up(tables, path)
+        # A zero may be turned again, but one that stood there from the start gives no range.
+        is_there = isinstance(value, str) or (_is_number(value) and (value or look_up(before, path)))
+        if not (is_there and is_wanted(path, node)):
+            continue
+        common = ".".join("*" if isinstance(part, int) else re.sub(r"\d+", "*", part) for part in path)
+        places = places_of(common, tables)
+        same = len(places) > 1 and all(look_up(tables, one) == value for one in places)
+        found.setdefault(common if same else ".".join(map(str, path)), path)
+    return list(found.items())
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+@lru_cache(maxsize=1)
+def _of_pairs() -> dict[str, Control]:
+    return {control.key: control for control in CONTROLS}
+
+
+def _control(key: str, path: Path, tables: dict[str, Any], value: float) -> Control:
+    """Return what turns a number: as the page has it for one beam on another, else derived from the value."""
+    pair_key = key
+    for pattern, known in _PAIR:
+        pair_key = re.sub(pattern, known, pair_key)
+    node = outline.node_at(path, tables)
+    group = _group(key, path, tables)
+    if pair_key in _of_pairs():
+        known_one = _of_pairs()[pair_key]
+        if known_one.low <= value / known_one.scale <= known_one.high:
+            return replace(known_one, key=key, group=group, place="")
+    unit, scale = _shown_in(outline.unit(node), value)
+    low, high = sorted((value / scale / REACH, value / scale * REACH))
+    step = 10.0 ** math.floor(math.log10((high - low) / STEPS))
+    words = _sentence((node or {}).get("description", ""))
+    name = str(path[-1]).replace("_", " ")
+    label = f"Along {name}" if len(name) == 1 else name.capitalize()
+    return Control(key, group, label, unit, scale, _rounded(low), _rounded(high), step, words)
+
+
+def _sentence(text: str) -> str:
+    """Return a description as a sentence, without its unit: that is the one shown."""
+    plain = re.sub(r"\s*\[[^\]]*\]", "", text).strip()
+    return f"{plain[:1].upper()}{plain[1:]}." if plain else ""
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.4g}")
+
+
+def _shown_in(unit: str, value: float) -> tuple[str, float]:
+    """Return a unit in which a value is a handy number, and its SI value."""
+    if unit == "1":
+        return "", 1.0
+    known = {name: DEGREE if factor == DEGREES else float(factor) for name, factor in UNITS[unit].items()}
+    if unit == "rad":
+        return "°", DEGREE
+    handy = {name: factor for name, factor in known.items() if 1.0 <= abs(value) / factor < 1000.0}
+    name = next(iter(handy), next(iter(known)))
+    pretty = name.replace("m2", "m²").replace("m3", "m³").replace("s2", "s²").replace("um", "µm").replace("us", "µs")
+    return pretty, known[name]
+
+
+def _group(key: str, path: Path, tables: dict[str, Any]) -> str:
+    """Return where a number is shown: with what acts, what rubs or its body."""
+    if "friction" in path:
+        group = "Friction"
+    elif path[0] == "bodies":
+        name = re.sub(r"\W*\*", "", key.split(".")[1]) or str(path[1])
+        return name[:1].upper() + name[1:]
+    else:
+        group = GROUPS.get(str(path[0]), str(path[0]).capitalize())
+    entries = look_up(tables, path[:1])
+    if "*" in key or not isinstance(entries, list) or len(entries) == 1:
+        return group
+    entry = entries[int(path[1])]
+    told = entry.get("name") or entry.get("kind") or ""
+    return f"{group}: {told} {int(path[1]) + 1}".replace("  ", " ")
+
+
+def _law(key: str, path: Path) -> Choice:
+    """Return what chooses a law of friction."""
+    prefix = key.rpartition(".")[0]
+    begins = {
+        kind: {f"{prefix}.{name.rpartition('.')[2]}": value for name, value in given.items()}
+        for kind, given in FRICTION_LAW.begins.items()
+    }
+    group = "Friction" if "*" in key or path[1] == 0 else f"Friction {int(path[1]) + 1}"
+    return replace(FRICTION_LAW, key=key, group=group, begins=begins)

@@ -1,0 +1,267 @@
+"""Systems that are no two beams on the page: what is played, drawn, heard, turned and said of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import stridula as st
+from stridula.app.instrument import Instrument
+from stridula.app.now import heard, measured, said, words
+from stridula.app.parts import Part
+from stridula.app.playable import SYSTEMS, playable
+from stridula.scenarios.show import scenario_text
+
+from .browsing import plays_on, shown, until
+from .conversation import RATE
+
+SURFACE, BOW_FORCE, TENSION = "contacts.*.surface_velocity", "drives.*.x", "bodies.string.tension"
+FRICTION = "contacts.0.friction.coefficient"
+TWO_RODS = """
+damping = 0.01
+cutoff = "12 kHz"
+friction = 0.6
+material = { young = "210 GPa", density = 7800.0 }
+section = { shape = "rectangle", width = 0.02, height = 0.008 }
+[bodies]
+front = { kind = "finite-element beam", length = 0.3, angle = "20 deg", elements = 8 }
+back = { kind = "finite-element beam", length = 0.35, angle = "-15 deg", elements = 8 }
+track = { kind = "modal beam", length = 1.2 }
+[[contacts]]
+tip = { body = "front" }
+track = { kind = "beam", body = "track" }
+at = 0.4
+[[contacts]]
+tip = { body = "back" }
+track = { kind = "beam", body = "track" }
+at = 0.7
+[[connections]]
+kind = "spring"
+first = { body = "front", point = "root" }
+second = { body = "back", point = "root" }
+stiffness = 1000.0
+[[drives]]
+kind = "force"
+body = "front"
+point = "root"
+x = 1.0
+y = -5.0
+[[drives]]
+kind = "force"
+body = "back"
+point = "root"
+x = 1.0
+y = -5.0
+[simulation]
+duration = 0.1
+"""
+PRESSURE_ON_PLATES = {"squeal-on-plate", "judder-on-plate"}
+
+
+@pytest.mark.parametrize("case", SYSTEMS)
+def test_every_system_is_played_and_drawn(talk, case):
+    scene = talk.scene(case)
+    assert scene["type"] == "scene"
+    assert ("pressure" in scene["sources"]) == (case in PRESSURE_ON_PLATES)
+    played = talk.play(4800)
+    assert len(played.sound) == 4800
+    assert np.isfinite(played.sound).all()
+    numbers = sum(1 + len(line["places"]) for line in scene["lines"])
+    for part in played.parts:
+        assert part.slider.shape == (numbers, 2)
+        assert part.contacts.shape == (len(scene["contacts"]), 2)
+        assert set(part.contacts[:, 0]) <= {0.0, 1.0, 2.0}
+    assert np.abs(played.parts[-1].slider).max() > 0.0
+    for contact in scene["contacts"]:
+        for line, row in filter(None, (contact["tip"], contact["touched"])):
+            assert 0 <= row < len(scene["lines"][line]["places"])
+    assert scene["speed"] > 0.0
+
+
+@pytest.mark.parametrize("case", SYSTEMS)
+def test_all_that_can_be_heard_of_a_system_is(talk, case):
+    for name in talk.scene(case)["sources"]:
+        talk.say("listen", source=name)
+        sound = talk.play(2400).sound
+        assert len(sound) == 2400
+        assert np.isfinite(sound).all()
+
+
+def test_a_violin_is_heard_at_its_bridge_as_a_run_has_it():
+    instrument = Instrument(playable("violin", None, {}))
+    assert instrument.heard_as.name == "Support force, string left end"
+    parts = [part for part in instrument.play(9600) if isinstance(part, Part)]
+    sound = np.concatenate([part.sound for part in parts])
+    run = st.load_scenario("violin").simulate(duration=0.2, sample_rate=RATE)
+    wanted = run.support_force.values[:, 0]
+    later = instrument.live.delay
+    assert np.abs(wanted).max() > 0.1
+    assert np.allclose(sound[later:], wanted[: len(sound) - later], rtol=0.0, atol=1e-9)
+
+
+def test_two_rods_on_a_beam_are_heard_together():
+    instrument = Instrument(playable("", TWO_RODS, {}))
+    assert instrument.name == "pressure"
+    sound = np.concatenate([part.sound for part in instrument.play(4800) if isinstance(part, Part)])
+    system = instrument.played.system
+    run = st.simulate(system, duration=0.1, sample_rate=RATE)
+    track = system.track
+    wanted = st.radiate(run, track, (track.length / 2.0, 0.0, 0.5)).values[:, 0]
+    inner = slice(int(np.flatnonzero(wanted)[0]), len(wanted) - 100)
+    loudest = np.abs(wanted).max()
+    assert loudest > 1e-3
+    # The streamed one comes a sample later.
+    assert np.abs(sound[1:] - wanted[:-1])[inner].max() < 1e-5 * loudest
+    alone = instrument.live.advance(480)[0].contacts["normal_force"]
+    assert alone.shape[0] == 2
+
+
+@pytest.mark.parametrize(
+    ("key", "share", "goes_on"),
+    [
+        ("contacts.*.friction.coefficient", 0.9, True),
+        ("drives.*.y", 0.9, True),
+        ("bodies.track.length", 1.1, True),
+        ("bodies.track.material.density", 0.9, True),
+        ("connections.0.stiffness", 0.9, False),
+        ("bodies.front.length", 0.9, False),
+    ],
+)
+def test_two_rods_go_on_where_their_motion_means_something(key, share, goes_on):
+    first = playable("", TWO_RODS, {})
+    instrument = Instrument(first)
+    before = [part for part in instrument.play(4800) if isinstance(part, Part)][-1].chunk
+    value = share * first.turned.values[key]
+    assert instrument.change(playable("", TWO_RODS, {key: value}), 1) == goes_on
+    after = next(part for part in instrument.play(480) if isinstance(part, Part)).chunk
+    moved = np.abs(after.contacts["contact_position"][:, 0] - before.contacts["contact_position"][:, -1])
+    assert (moved.max() < 1e-5) == goes_on
+    gaps = after.contacts["gap"][:, 0] - before.contacts["gap"][:, -1]
+    assert not goes_on or np.abs(gaps).max() < 1e-6
+    assert instrument.ended == ""
+
+
+def test_a_violin_is_bowed_as_a_whole(talk):
+    values = talk.scene("violin")["values"]
+    assert values[SURFACE] == pytest.approx(-0.2)
+    assert values[BOW_FORCE] == pytest.approx(0.22)
+    assert values[TENSION] == pytest.approx(44.0)
+    talk.play(4800)
+    turned = talk.scene("violin", {SURFACE: -0.1, BOW_FORCE: 0.3})
+    assert turned["type"] == "scene"
+    assert turned["goes_on"]
+    assert (turned["values"][SURFACE], turned["values"][BOW_FORCE]) == (-0.1, 0.3)
+    assert turned["toml"].count("surface_velocity = -0.1") == 5
+    assert turned["places"][BOW_FORCE] == [f"drives.{k}.x" for k in range(5)]
+    assert set(talk.play(480).stroke) == {1}
+
+
+@pytest.mark.parametrize("case", SYSTEMS)
+def test_every_control_of_a_system_turns_something(case):
+    before = playable(case, None, {})
+    assert before.turned.controls
+    for control in before.turned.controls:
+        value = before.turned.values[control.key]
+        assert control.low < control.high
+        assert control.low * control.scale <= value <= control.high * control.scale
+        assert control.words
+        after = playable(case, None, {control.key: 0.99 * value})
+        assert after.turned.values[control.key] == pytest.approx(0.99 * value)
+        assert after.system != before.system
+        assert {one.key for one in after.turned.controls} >= {control.key}
+        assert [one for one in after.turned.controls if one.key == control.key] == [control]
+
+
+def test_a_belt_takes_another_law_of_friction_on_the_way(talk):
+    assert talk.scene("belt")["values"]["contacts.0.friction.law"] == "static-kinetic"
+    talk.play(4800)
+    changed = {"contacts.0.friction.law": "coulomb", FRICTION: 0.5}
+    scene = talk.scene("belt", changed)
+    assert scene["type"] == "scene"
+    assert scene["goes_on"]
+    assert scene["values"][FRICTION] == 0.5
+    assert "contacts.0.friction.static" not in scene["values"]
+
+
+def test_a_belt_that_carries_its_block_is_not_at_rest(talk):
+    talk.scene("belt")
+    played = talk.play(RATE)
+    assert played.stops == []
+    assert set(played.status) == {1}
+
+
+def test_systems_in_space_are_refused_in_one_line(talk):
+    talk.scene("belt")
+    answer = talk.scene("", text=scenario_text("glass"))
+    assert answer["type"] == "refused"
+    (line,) = answer["problems"]
+    assert line.startswith("scenario must lie in the plane to be played, got bodies in space: AxisymmetricBody")
+
+
+def test_a_record_of_several_contacts_and_probes_opens_as_any(talk, tmp_path):
+    talk.scene("violin")
+    talk.play(9600)
+    file = tmp_path / "played.nc"
+    file.write_bytes(talk.save("nc"))
+    record = st.load(file)
+    assert record.normal_force.dims == ("time", "contact")
+    assert list(record.contact.values) == [f"hair {k}" for k in range(1, 6)]
+    assert record.status_share.shape == (9600, 5, 3)
+    assert {"acceleration", "support_force", "velocity"} <= set(record.data_vars)
+    assert st.load_scenario(file).system == st.load_scenario("violin").system
+
+
+def test_it_says_what_goes_on(talk):
+    talk.scene("squeal")
+    talk.play(RATE)
+    told = talk.until("now")
+    assert told["regime"] in told["words"] or told["words"]
+    assert told["words"].startswith(("squeals at", "sticks and slips", "slides", "judders", "sounds at"))
+
+
+@pytest.mark.parametrize("tone", [440.0, 2950.0])
+def test_the_words_name_regime_pitch_and_level(tone):
+    interval, count = 1.0 / 24e3, 24_000
+    time = interval * np.arange(1, count + 1)
+    sliding = np.tile([0.0, 0.0, 1.0], (count, 1))
+    normal = 10.0 + 3.0 * np.sin(2.0 * np.pi * tone * time)
+    variables = {"normal_force": normal, "tangential_force": 0.3 * normal, "status_share": sliding}
+    variables |= {"damping_loss": 0.1 * time, "impact_loss": 0.0 * time, "friction_loss": time, "landings": 0.0 * time}
+    found = measured(interval, ["contact 1"], {name: said(values) for name, values in variables.items()})
+    assert found["regime"] == "squeal"
+    assert found["frequency"] == pytest.approx(tone, rel=0.02)
+    expected = {440.0: "sounds at 440 Hz", 2950.0: "squeals at 2.95 kHz"}[tone]
+    assert words(found | {"frequency": tone}, 77.6) == f"{expected}, 78 dB"
+    assert words(found | {"frequency": tone}, None) == expected
+    assert np.array_equal(heard(said(normal)), normal.astype("f4").astype(float))
+
+
+def test_the_page_shows_a_system_with_its_own_controls_and_sources(browsing):
+    page = browsing.open("#case=violin")
+    assert page.locator(f"input[type=number][data-key='{BOW_FORCE}']").input_value() == "220"
+    assert page.locator("#source option").first.inner_text() == "Support force, string left end [N]"
+    until(page, "stridula.now().title.startsWith('Violin')")
+    page.locator(f"input[type=number][data-key='{SURFACE}']").fill("-10")
+    page.keyboard.press("Enter")
+    until(page, f"stridula.now().values['{SURFACE}'] === -0.1")
+    plays_on(page)
+    command = page.evaluate("stridula.scene.command()")
+    assert command.count("surface_velocity=-0.1") == 5
+    page.locator("#case").select_option("squeal")
+    until(page, "stridula.now().turned === null")
+    assert shown(page, "slider.angle") == pytest.approx(45.0)
+    plays_on(page)
+
+
+KEEP_UP = """(speeds) => speeds.map((speed) => {
+  stridula.keepUp(speed);
+  return [document.getElementById("speed").value, document.getElementById("pace").textContent];
+})"""
+
+
+def test_what_is_slower_than_it_sounds_is_shown_slowly_and_that_is_said(browsing):
+    page = browsing.open("#case=belt")
+    slow, fast = page.evaluate(KEEP_UP, [0.5, 3.0])
+    words = "This machine computes it 2.2 times slower than it sounds: it is shown at that speed, without sound."
+    assert slow == ["2.2", words]
+    assert fast == ["1", ""]
