@@ -12,7 +12,7 @@ from ..arrays import Array
 from ..bodies import BodyPoint
 from ..connections import ends, unit
 from ..integration.live import LiveChunk, LiveMarch
-from ..plot.lines import Line, Touch, lines_of
+from ..lines import Line, Touch, lines_of
 from ..records.provenance import is_pair
 from ..records.variables import dominant_status
 from ..system import System
