@@ -233,7 +233,7 @@ REFUSED = {
     "a normal": (lambda: replace(SYSTEM.contact, normal=(0.0, 1.0, 0.0)), "normal must be left out on a beam"),
     "a tangent": (lambda: replace(SYSTEM.contact, tangent=(1.0, 0.0, 0.0)), "tangent must be left out on a beam"),
     "the page": (lambda: LiveMarch(SYSTEM, ()), "system must lie in the plane"),
-    "a film": (lambda: st.plot.animate(SYSTEM, "film.gif"), "system must be a FiniteElementBeam on one"),
+    "a film": (lambda: st.plot.animate(SYSTEM, "film.gif"), "system must be in the plane, or have a SolidBody"),
 }
 
 

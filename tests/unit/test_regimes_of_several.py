@@ -231,6 +231,11 @@ def belts(count: int) -> st.System:
     return st.System(contacts, drives, springs)
 
 
+def test_contacts_without_names_count():
+    run = st.simulate(belts(3), 5.0, step=1e-4, sample_rate=2e3, probes=[])
+    assert named(run.drop_vars("contact")) == named(run)
+
+
 def test_three_belts_are_one_belt():
     one, three = (st.simulate(belts(count), 5.0, step=1e-4, sample_rate=2e3, probes=[]) for count in (1, 3))
     found, expected = st.regime(three), st.regime(one)

@@ -92,7 +92,8 @@ def plain_of(run: xr.Dataset) -> PlainRecord:
     """
     held = run.variables
     over_time = {str(name): one.values for name, one in held.items() if name != "time" and one.dims[:1] == ("time",)}
-    contacts = [str(name) for name in np.atleast_1d(held["contact"].values)] if "contact" in held else ["contact 1"]
+    numbered = [f"contact {number}" for number in range(1, run.sizes.get("contact", 1) + 1)]
+    contacts = [str(name) for name in np.atleast_1d(held["contact"].values)] if "contact" in held else numbered
     time = held["time"].values if "time" in held else np.empty(0)
     surfaces = [str(name) for name in np.atleast_1d(held["surface"].values)] if "surface" in held else []
     return PlainRecord(time, over_time, contacts, dict(run.attrs), surfaces)
