@@ -78,6 +78,32 @@ def round_a_disc() -> list[st.System]:
     ]
 
 
+def on_three_feet() -> list[st.System]:
+    """A block whose feet touch a belt in each run in another order, the last of them in one run never."""
+    stiffness, points = np.zeros((8, 8)), {"back": np.eye(2, 8)}
+    for number in range(3):
+        own = slice(2 + 2 * number, 4 + 2 * number)
+        stiffness[own, own] = [[4e4, 1e4], [1e4, 9e4]]
+        points[f"foot {number}"] = np.eye(2, 8) + np.eye(2, 8, 2 + 2 * number)
+    mass = np.diag([0.2, 0.2] + [0.02] * 6)
+    found = []
+    for gaps, velocity, load in (
+        ((0.0, 1e-9, 2e-9), 0.02, 2e3),
+        ((2e-9, 0.0, 1.0), 0.5, 9e3),
+        ((1e-9, 2e-9, 0.0), -0.1, 5e2),
+    ):
+        block = st.ReducedBody(mass, stiffness, points, damping=0.02, translation=points["back"], name="block")
+        feet = [block.at(f"foot {number}") for number in range(3)]
+        belt = st.RigidTrack(velocity=velocity)
+        contacts = [
+            st.PointContact(foot, belt, friction=st.Coulomb(0.4), gap=gap, name=foot.position)
+            for foot, gap in zip(feet, gaps, strict=True)
+        ]
+        forces = [st.Force(foot, y=-load) for foot in feet]
+        found.append(st.System(contacts, forces, [st.Spring(block.at("back"), stiffness=5e3)]))
+    return found
+
+
 CASES = {
     "coulomb on a beam": coulomb_on_a_beam,
     "shaken force": shaken_force,
@@ -86,6 +112,7 @@ CASES = {
     "lugre in space": on_a_table,
     "off the track": off_the_track,
     "round a disc": round_a_disc,
+    "on three feet": on_three_feet,
 }
 
 
@@ -156,6 +183,12 @@ def difference(kind, one, other) -> float:
     return float((np.abs(one - other) / np.where(scale > 0.0, scale, 1.0)).max(initial=0.0))
 
 
+def columns(prepared) -> dict[str, int]:
+    """Return how many columns what is written of contacts has."""
+    contacts = CudaMarch([one.blocks for one in prepared], [one.state for one in prepared], STEP, RATIO).contacts
+    return {name: getattr(contacts, name).shape[-1] for name in ("faces", "scratch", "places", "now", "sums")}
+
+
 def compare(systems) -> dict[str, object]:
     """Return the largest differences kind by kind, the least from the run beside it, and how each run ended."""
     prepared = [Prepared(system) for system in systems]
@@ -170,6 +203,7 @@ def compare(systems) -> dict[str, object]:
         "beside": min(
             difference("energies", a["energies"], b["energies"]) for a, b in zip(together, beside, strict=True)
         ),
+        "columns": columns(prepared),
         "apart": [float(one["record"][:, at.SEPARATED].mean()) for one in alone],
         "ended": [int(one["ended"][0, -1]) for one in alone],
     }

@@ -44,6 +44,13 @@ def test_runs_side_by_side_are_told_apart(comparisons, case):
     assert comparisons[case]["beside"] > 1e-3
 
 
+@pytest.mark.parametrize("case", CASES)
+def test_no_thread_writes_where_another_one_does(comparisons, case):
+    """The simulator takes one thread after the other, and would not see it."""
+    found = comparisons[case]
+    assert set(found["columns"].values()) == {len(found["ended"])}, found["columns"]
+
+
 def test_a_run_that_leaves_its_track_leaves_the_others_alone(comparisons):
     assert comparisons["off the track"]["ended"] == [at.FINISHED, at.OFF_TRACK, at.FINISHED]
 

@@ -279,11 +279,11 @@ def number_equations(contacts, count, run, zero):
         holds = choose(sticks, 1.0, zero) if set_valued(law) else zero
         if not mirrors and anywhere(closed):
             set_component(scratch, size, has, run, choose(closed, 1.0, zero))
-            contacts.places[size] = 2 * i
+            contacts.places[size, run] = 2 * i
             of_normal, size = size, size + 1
         if anywhere(holds > 0.5):
             set_component(scratch, size, has, run, holds)
-            contacts.places[size] = 2 * i + 1
+            contacts.places[size, run] = 2 * i + 1
             of_tangential, size = size, size + 1
         hold(now, here + at.NORMAL_EQUATION, run, zero + float(of_normal))
         hold(now, here + at.TANGENTIAL_EQUATION, run, zero + float(of_tangential))
@@ -335,7 +335,7 @@ def put_column(scratch, places, displaced, row, column, give, size, run, zero):
     """
     has = scratch.shape[0] + HAS
     for i in range(size):
-        value = component(displaced, places[i], row, run, zero) * component(scratch, i, has, run, zero)
+        value = component(displaced, places[i, run], row, run, zero) * component(scratch, i, has, run, zero)
         set_component(scratch, i, column, run, value)
     own, value = component(scratch, column, has, run, zero), component(scratch, column, column, run, zero)
     set_component(scratch, column, column, run, choose(own > 0.5, value + give, 1.0))

@@ -100,8 +100,8 @@ class Contacts(NamedTuple):
         Constants of each contact; compliance of the only one on constant rows.
     faces, scratch : ndarray, shape (rows, blocks, lanes)
         Displacements and compliances of all contacts; a linear system.
-    places : ndarray, shape (2 contacts,)
-        Row of the displacements that each equation of the system is of.
+    places : ndarray, shape (2 contacts, lanes)
+        Row of the displacements that each equation of the system is of; of runs side by side, in the first lane.
     now, sums : ndarray, a column a run
         What each contact is in a step; sums over a sample.
     """

@@ -382,7 +382,7 @@ def room_to_solve(sizes: Sizes, width: int) -> tuple[Array, Array]:
     out = aligned(rows, sizes.faces * width).reshape(rows, sizes.faces, width)
     if sizes.faces and sizes.per_block > 1:
         out[SAVED - sizes.per_block : SAVED, 0] = np.tri(width, k=-1).T[::-1]
-    return out, np.zeros(rows, dtype=np.int64)
+    return out, np.zeros((2 * sizes.contacts, width), dtype=np.int64)
 
 
 def turns_of(where: Layout, bodies: Sequence[Sequence[TurningBlocks]], width: int) -> Array:
