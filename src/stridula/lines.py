@@ -132,6 +132,7 @@ def lines_of(system: Any) -> tuple[list[Line], list[Touch]]:
         raise ArgumentError("system", words, system, got=", ".join(kinds))
     joints = list(_joints(system))
     points = [point for joint in joints for point in (joint.first, joint.second) if point is not None]
+    points += [point for one in system.connections for point in ends(one)]
     origins = _origins(joints)
     numbers = {thing: number for number, thing in enumerate(origins)}
     lines = [_line(thing, origin, points, system) for thing, origin in origins.items()]

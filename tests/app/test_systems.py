@@ -55,6 +55,8 @@ y = -5.0
 [simulation]
 duration = 0.1
 """
+# A spring to the ground at a point that touches nothing.
+ON_A_SPRING = TWO_RODS.replace('second = { body = "back", point = "root" }\n', "")
 PRESSURE_ON_PLATES = {"squeal-on-plate", "judder-on-plate"}
 
 
@@ -76,6 +78,16 @@ def test_every_system_is_played_and_drawn(talk, case):
         for line, row in filter(None, (contact["tip"], contact["touched"])):
             assert 0 <= row < len(scene["lines"][line]["places"])
     assert scene["speed"] > 0.0
+
+
+def test_a_spring_to_the_ground_is_drawn_where_nothing_touches(talk):
+    scene = talk.scene(text=ON_A_SPRING)
+    ((line, row),) = scene["joined"][0]["ends"]
+    assert scene["lines"][line]["name"] == "front"
+    # Its root, at the far end of a rod of 0.3 m.
+    tip = next(one["tip"] for one in scene["contacts"] if one["tip"][0] == line)
+    places = np.array(scene["lines"][line]["places"])
+    assert np.linalg.norm(places[row] - places[tip[1]]) == pytest.approx(0.3)
 
 
 @pytest.mark.parametrize("case", SYSTEMS)

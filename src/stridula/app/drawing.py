@@ -127,6 +127,7 @@ class Lines:
         joined = [
             {"ends": [self._end(point) for point in ends(one)], "along": unit(one)[:2].tolist()}
             for one in self.system.connections
+            if all(map(self._is_drawn, ends(one)))
         ]
         return {"lines": lines, "contacts": contacts, "joined": joined}
 
@@ -164,11 +165,16 @@ class Lines:
             told["touched"] = [on, self.lines[on].row(place)]
         return told
 
+    def _is_drawn(self, point: BodyPoint) -> bool:
+        """Return whether a point is drawn: of bodies without a line only those that touch, or are joined to others."""
+        return any(self._has(one, point) for one in self.lines)
+
+    def _has(self, one: _Drawn, point: BodyPoint) -> bool:
+        return one.line.name == self.system.body_name(point.body) and point.position in one.line.rows
+
     def _end(self, point: BodyPoint) -> list[int]:
-        for number, one in enumerate(self.lines):
-            if one.line.name == self.system.body_name(point.body) and point.position in one.line.rows:
-                return [number, one.row(one.line.rows[point.position])]
-        raise LookupError(point)
+        number, found = next((number, one) for number, one in enumerate(self.lines) if self._has(one, point))
+        return [number, found.row(found.line.rows[point.position])]
 
 
 def _drawn(number: int, line: Line, touches: list[Touch]) -> _Drawn:
