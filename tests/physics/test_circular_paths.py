@@ -466,3 +466,11 @@ def test_what_does_not_fit_is_refused(case):
     make, words = BAD[case]
     with pytest.raises(st.ArgumentError, match=words):
         make()
+
+
+def test_contacts_of_a_record_may_be_in_another_order():
+    system = riders(on_a_circle(20.0, 3.0, cutoff=2e3), abscissas=(0.0, 0.1))
+    run = st.simulate(system, 2e-3, sample_rate=5e4, probes=[])
+    expected = redriven(run, system).accelerations
+    np.testing.assert_array_equal(redriven(run.isel(contact=[1, 0]), system).accelerations, expected)
+    assert np.abs(expected).max() > 0.0

@@ -81,7 +81,7 @@ def redriven(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = Non
         If the record is not usable or not one of the system.
     """
     given = record("run", run)
-    points = by_point(given)
+    points = by_point(given, ("normal_force", "tangential_force"))
     if "map_time" in given.dims and points is given:
         words = "have the forces at all points of surfaces at every sample"
         raise ArgumentError("run", words, run, got="a record of maps alone: leave surface_rate out")
@@ -98,9 +98,9 @@ def redriven(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = Non
     times = first + interval * np.arange(samples + 2 * LEAD)
     rows, signals = _of_contacts(flat, normal, tangential)
     if any(one.circle is not None for one in flat.contacts):
-        rows, signals = _gone_round(flat, rows, signals, _places(run, system))
+        rows, signals = _gone_round(flat, rows, signals, _places(given, system))
     if bodies is not None and flat.coupled:
-        own = _on_paths(flat, system, _places(_in_order(points, system), system), normal, tangential)
+        own = _on_paths(flat, system, _places(given, system), normal, tangential)
         rows, signals = np.concatenate([rows, np.eye(len(own))]), np.concatenate([signals, own])
     loads = _of_drives(flat, start, interval, min(steps, MOST_STEPS), samples)
     if system.initial_equilibrium is not None:
@@ -139,14 +139,18 @@ def _only(flat: Assembly, names: Sequence[str]) -> Assembly:
 def _in_order(points: xr.Dataset, system: System) -> xr.Dataset:
     """Return a record with its contacts in the order of the system, as it is where they have other names."""
     names = list(system.contact_names)
-    if "contact" not in points.dims or sorted(points["contact"].values.tolist()) != sorted(names):
-        return points
-    return points.sel(contact=names)
+    shown = points["contact"].values.tolist() if "contact" in points.dims else names
+    return points if shown == names or sorted(shown) != sorted(names) else points.sel(contact=names)
 
 
 def _places(run: xr.Dataset, system: System) -> Array:
-    """Return abscissas of the contacts of a system [m], shape (contacts, samples), zero of the points of surfaces."""
+    """Return abscissas of the contacts of a system in the middle of each interval [m], shape (contacts, samples).
+
+    They are zero of the points of surfaces.
+    """
+    run = _in_order(run, system)
     *_, (places,) = sampled(run, "contact_position")
+    places = places - 0.5 * np.diff(places, axis=-1, prepend=places[..., :1])
     if len(places) == len(system.contacts):
         return places[:, 0] if places.ndim == 3 else places
     found = np.zeros((len(system.contacts), places.shape[-1]))
@@ -183,7 +187,7 @@ def _of_contacts(flat: Assembly, normal: Array, tangential: Array) -> tuple[Arra
 def _gone_round(flat: Assembly, rows: Array, signals: Array, places: Array) -> tuple[Array, Array]:
     """Return rows and forces where contacts on circles push each pair of modes by itself, as it is where they are.
 
-    `places` are their abscissas at the end of each interval [m], shape (contacts, samples).
+    `places` are their abscissas in the middle of each interval [m], shape (contacts, samples).
     """
     rows, own = rows.copy(), np.zeros((rows.shape[1], signals.shape[1]))
     owners = [one for one in flat.contacts for _ in range(1 if one.is_second else 2)]
@@ -192,8 +196,7 @@ def _gone_round(flat: Assembly, rows: Array, signals: Array, places: Array) -> t
         if one.circle is None:
             continue
         first, second = one.circle.pairs.T
-        middle = places[number] - 0.5 * np.diff(places[number], prepend=places[number, :1])
-        angle = np.multiply.outer(one.circle.orders, (middle - one.contact.at) * one.rate)
+        angle = np.multiply.outer(one.circle.orders, (places[number] - one.contact.at) * one.rate)
         cosine, sine = np.cos(angle) * signal, np.sin(angle) * signal
         own[first] += row[first, None] * cosine - row[second, None] * sine
         own[second] += row[second, None] * cosine + row[first, None] * sine
@@ -211,10 +214,10 @@ def _on_paths(flat: Assembly, system: System, places: Array, normal: Array, tang
             continue
         first, last = flat.spans[system.body_name(body)]
         if first < last:
-            path, middle = body.path(), place - 0.5 * np.diff(place, prepend=place[:1])
+            path = body.path()
             axial = first + len(path.normal.multiples)
-            found[first:axial] -= path.normal.along(path, middle) * pressed
-            found[axial:last] += path.tangential.along(path, middle) * rubbed
+            found[first:axial] -= path.normal.along(path, place) * pressed
+            found[axial:last] += path.tangential.along(path, place) * rubbed
     return found
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 
@@ -26,15 +28,18 @@ def counted(share: Array) -> Array:
     return found.astype(np.uint8)
 
 
-def by_point(run: xr.Dataset) -> xr.Dataset:
+def by_point(run: xr.Dataset, names: Sequence[str] = OF_POINTS) -> xr.Dataset:
     """Return a record with all points of its surfaces as contacts; itself where they are, or were not recorded.
 
-    It has the forces, the shares of the status and the landings of all contacts, and all that is not of contacts.
+    It has the forces, the shares of the status and the landings of all contacts, or those of these that are named, and
+    all that is not of contacts.
 
     Parameters
     ----------
     run : xarray.Dataset
         A record, or a part of one.
+    names : sequence of str, optional
+        Which variables of contacts are taken, all that are recorded of points if left out.
     """
     if POINT + OF_POINTS[0] not in run.variables:
         return run
@@ -45,7 +50,7 @@ def by_point(run: xr.Dataset) -> xr.Dataset:
         return run
     alone = [number for number, name in enumerate(shown) if name not in surfaces]
     found = {}
-    for name in OF_POINTS:
+    for name in names:
         points = run[POINT + name].transpose("time", "point", ...)[:, chosen]
         values = points.values.astype(np.int64 if name == "landings" else float)
         if name == STATUS_SHARE.name:
@@ -54,8 +59,8 @@ def by_point(run: xr.Dataset) -> xr.Dataset:
             others = run[name].transpose("time", "contact", ...).values[:, alone]
             values = np.concatenate([others, values], axis=1)
         found[name] = (("time", "contact", *points.dims[2:]), values, run[name].attrs)
-    names = [shown[number] for number in alone] + [str(name) for name in run["point"].values[chosen]]
+    called = [shown[number] for number in alone] + [str(name) for name in run["point"].values[chosen]]
     of_contacts = [name for name in OF_CONTACTS if name in run.variables]
     rest = run.drop_vars([*of_contacts, "contact", "surface"], errors="ignore").drop_dims("point")
     of = ["" for _ in alone] + surfaces[chosen].tolist()
-    return rest.assign(found).assign_coords(contact=names, surface=("contact", of))
+    return rest.assign(found).assign_coords(contact=called, surface=("contact", of))
