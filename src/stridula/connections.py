@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar
 
-import numpy as np
-
 from .arrays import Array
 from .bodies import BodyPoint
 from .checks import ArgumentError, brief, instance
-from .declared import Axis, Number, Position, Velocity, check_declared
+from .declared import Axis, Number, Position, Velocity, Way, check_declared
 from .histories import HISTORIES, Constant, History
 
 
@@ -121,10 +119,7 @@ CONNECTIONS = (Spring, Dashpot)
 
 def unit(connection: Connection) -> Array:
     """Return the world direction of a connection, a unit vector, shape (3,)."""
-    if isinstance(connection.direction, str):
-        return np.eye(3)["xyz".index(connection.direction)]
-    components = np.array(connection.direction)
-    return np.asarray(components / np.linalg.norm(components))
+    return Way().along(connection.direction)
 
 
 def pushes(connection: Connection) -> list[tuple[History, BodyPoint, Array]]:

@@ -12,6 +12,7 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 
+from .arrays import Array
 from .checks import ArgumentError, at_least, at_most, choice, count, finite, instance, one_or_each
 
 _UNIT = re.compile(r"\s*\[([^\]]*)\]")
@@ -144,6 +145,12 @@ class Way:
         if len(found) != 3 or not any(found):
             raise ArgumentError(name, allowed, value)
         return found
+
+    def along(self, value: str | Sequence[float], **own: Array) -> Array:
+        """Return a direction as a unit vector, shape (3,); `own` are those of the words beyond the world's axes."""
+        if isinstance(value, str):
+            return np.asarray(own[value] if value in own else np.eye(3)["xyz".index(value)])
+        return np.asarray(np.array(value) / np.linalg.norm(value))
 
 
 @dataclass(frozen=True)

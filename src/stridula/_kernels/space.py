@@ -166,16 +166,16 @@ def slip_under(c, s, normal, tangential, slips, w):
 
 
 @numba.njit(**STRICT)
-def turns_on_its_line(free, law, laws, number, last):
+def turns_on_its_line(free, law, laws, number, size, came):
     """Return whether friction along the last slip turns it round with nothing but rounding across.
 
     The velocity passes zero then, near which every direction has none across it.
     """
     gap, slips, _, w = free
-    size = math.hypot(last[0], last[1])
     if size == 0.0 or not set_valued(law):
         return False
-    c, s, ratio = last[0] / size, last[1] / size, sliding_ratio(law, laws, number, 0.0)
+    c, s = came
+    ratio = sliding_ratio(law, laws, number, 0.0)
     clear = w[0] - ratio * (c * w[1] + s * w[2])
     if clear <= 0.0:
         return False
@@ -200,8 +200,8 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
     may_hold = law != at.COULOMB or held <= laws[number, 0] or laws[number, 0] == 0.0
     was, last, guess = before[0], before[1], before[6]
     if not may_hold:
-        mu, size = laws[number, 0], math.hypot(guess[0], guess[1])
-        near = (guess[0] / size, guess[1] / size) if size > 0.0 else (first, second)
+        mu, strength = laws[number, 0], math.hypot(guess[0], guess[1])
+        near = (guess[0] / strength, guess[1] / strength) if strength > 0.0 else (first, second)
         carried_on = carried_on_by(before, let_go, first, second)
         c, s, found = sliding_direction(gap, slips, w, mu, carried_on, near)
         if found:
@@ -213,20 +213,21 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
                 return normal, mu * normal * c, mu * normal * s, 2.0, 0.0
             first, second = c, s
     free = (gap, slips, strays, w)
-    if was > SLIDING - 0.5 and let_go == 0.0 and turns_on_its_line(free, law, laws, number, last):
-        size = math.hypot(last[0], last[1])
-        c, s = last[0] / size, last[1] / size
+    size = math.hypot(last[0], last[1])
+    came = (last[0] / size, last[1] / size) if size > 0.0 else (1.0, 0.0)
+    slid = was > SLIDING - 0.5 and let_go == 0.0
+    if slid and turns_on_its_line(free, law, laws, number, size, came):
+        c, s = came
         normal, tangential, status, jammed = solve_along(c, s, free, law, laws, number, before, let_go, step)
         return normal, tangential * c, tangential * s, status, jammed
     c, s, normal, tangential, status, jammed = searched(
         first, second, may_hold, free, law, laws, number, before, let_go, step
     )
-    if was > SLIDING - 0.5 and let_go == 0.0 and abs(status - SLIDING) < 0.5:
+    if slid and abs(status - SLIDING) < 0.5:
         slip, swerve = slip_under(c, s, normal, tangential, slips, w)
-        size = math.hypot(last[0], last[1])
         if size > 0.0 and tangential * (c * slip + s * swerve) < 0.0:
             # It comes to rest within the step, or turns round: along the line that it came.
-            c, s = last[0] / size, last[1] / size
+            c, s = came
             normal, tangential, status, jammed = solve_along(c, s, free, law, laws, number, before, let_go, step)
     return normal, tangential * c, tangential * s, status, jammed
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from ..checks import ArgumentError, within
 
@@ -79,6 +79,12 @@ class Air:
         compressibility = 1.0 - p / kelvin * first + (p / kelvin) ** 2 * (1.83e-11 - 0.765e-8 * w**2)
         mass = 3.48349e-3 + 1.44e-3 * (CARBON_DIOXIDE - 0.0004)
         return mass * p / (compressibility * kelvin) * (1.0 - 0.3780 * w)
+
+    @property
+    def attributes(self) -> dict[str, float]:
+        """What a sound says of the air that it goes through."""
+        given = {f"air_{name}": value for name, value in asdict(self).items()}
+        return given | {"air_speed": self.speed, "air_density": self.density}
 
     @property
     def impedance(self) -> float:

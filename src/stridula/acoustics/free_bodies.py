@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -85,9 +84,7 @@ def free_sound(
         "distance": distances.min(axis=0).tolist(),
         "bodies": [system.body_name(body) for body in heard],
         "fit_error": list(errors.values()),
-        **{f"air_{name}": value for name, value in asdict(air).items()},
-        "air_speed": air.speed,
-        "air_density": air.density,
+        **air.attributes,
         "notes": "; ".join(notes),
     }
     return sounding, moved.start + times, places, attributes

@@ -7,7 +7,7 @@ image behind the wall would hear.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,6 @@ import xarray as xr
 from ..arrays import Array
 from ..checks import ArgumentError, instance, listed
 from ..lines import Outline, outlines_of
-from ..records.by_point import by_point
 from ..records.checked import record
 from ..system import System
 from .air import Air
@@ -73,7 +72,7 @@ def plane_sound(
     """
     air = Air() if air is None else air
     instance("air", air, Air)
-    run = by_point(record("run", run))
+    run = record("run", run)
     tracks = _tracks(system)
     beams = [body for body in system.bodies if body not in tracks and _is_slim(body)]
     heard, silent = chosen(system, bodies, [*tracks, *beams])
@@ -94,8 +93,7 @@ def plane_sound(
         parts.append(_of_beams(run, system, slim, outlines, seen, wall, air, sample_rate, silent))
     pressure, attributes = _added(parts)
     attributes["bodies"] = [system.body_name(body) for body in heard]
-    attributes |= {f"air_{name}": value for name, value in asdict(air).items()}
-    attributes |= {"air_speed": air.speed, "air_density": air.density}
+    attributes |= air.attributes
     if silent and not slim:
         attributes["notes"] = "; ".join(filter(None, [attributes["notes"], f"not heard: {listed(silent)}"]))
     return pressure, parts[0][1], places, attributes

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -80,9 +79,7 @@ def track_sound(
         "modes": len(kept),
         "baffled": int(baffled),
         "distance": distances.tolist(),
-        **{f"air_{name}": value for name, value in asdict(air).items()},
-        "air_speed": air.speed,
-        "air_density": air.density,
+        **air.attributes,
         "notes": "; ".join(notes),
     }
     return pressure, pressed.start + time, listeners, attributes

@@ -110,7 +110,7 @@ def facts_of(record: xr.Dataset, system: System | None = None) -> dict[str, str]
 
 
 def _force_over_time(record: xr.Dataset) -> Array:
-    force = by_point(record)["normal_force"].transpose("time", ...).values
+    force = record["normal_force"].transpose("time", ...).values
     total = force.sum(axis=tuple(range(1, force.ndim)))
     parts = [part for part in np.array_split(total, COLUMNS) if part.size]
     return np.array([[part.min(), part.max()] for part in parts]).reshape(-1, 2)
@@ -177,9 +177,10 @@ def _strings(record: xr.Dataset, system: System | None) -> dict[str, str]:
 
 def _contact(record: xr.Dataset) -> dict[str, str]:
     """Return what came of the contact; of several, of all together and of each one or each surface on its own line."""
-    if "contact" in by_point(record).dims:
-        lines = {"regime": _regime(record)}
-        for name, part in _parts(record):
+    points = by_point(record)
+    if "contact" in points.dims:
+        lines = {"regime": _regime(points)}
+        for name, part in _parts(record, points):
             alone = _one_contact(part) if "contact" not in part.dims else _surface(part)
             lines[name] = "; ".join(words for words in alone.values() if words[:4] != "none")
         unsolved = int(record["unsolved_steps"].sum())
@@ -188,9 +189,8 @@ def _contact(record: xr.Dataset) -> dict[str, str]:
     return _one_contact(record)
 
 
-def _parts(record: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
+def _parts(record: xr.Dataset, points: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
     """Yield the record of each contact, those of the points of a surface as one, and what it is called."""
-    points = by_point(record)
     names = [str(name) for name in points["contact"].values]
     surfaces = [str(name) for name in points["surface"].values] if "surface" in points.coords else []
     for members in groups(names, surfaces):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,20 @@ from ..records.by_point import OF_POINTS, POINT, WHOLE, counted
 from ..records.dataset import OVER_TIME
 from ..records.variables import STATUS_SHARE, attributes_of
 
-# Bytes of a point in a sample: three forces, three shares, landings.
-BYTES = 16
+
+def kinds_of(steps: int) -> dict[str, tuple[tuple[int, ...], Any]]:
+    """Return shape and kind of what is recorded of a point in a sample interval of so many steps."""
+    return {
+        "normal_force": ((), np.float32),
+        "tangential_force": ((2,), np.float32),
+        STATUS_SHARE.name: ((3,), np.uint8),
+        "landings": ((), np.min_scalar_type(steps)),
+    }
+
+
+def bytes_of(steps: int) -> int:
+    """Return how many bytes that takes."""
+    return sum(math.prod(after) * np.dtype(kind).itemsize for after, kind in kinds_of(steps).values())
 
 
 class PointRecord:
@@ -29,14 +42,8 @@ class PointRecord:
     """
 
     def __init__(self, samples: int, points: int, steps: int) -> None:
-        kinds: dict[str, tuple[tuple[int, ...], Any]] = {
-            "normal_force": ((), np.float32),
-            "tangential_force": ((2,), np.float32),
-            STATUS_SHARE.name: ((3,), np.uint8),
-            "landings": ((), np.min_scalar_type(steps)),
-        }
         self._kept: dict[str, Array] = {
-            name: np.empty((samples, points, *after), kind) for name, (after, kind) in kinds.items()
+            name: np.empty((samples, points, *after), kind) for name, (after, kind) in kinds_of(steps).items()
         }
         self._done = 0
 

@@ -18,7 +18,7 @@ from ..records.by_surface import groups
 from ..system import System
 from .contact_solve import GaussSeidel
 from .marches import March
-from .point_records import BYTES, PointRecord
+from .point_records import PointRecord, bytes_of
 from .run import Run
 from .schemes import CentralDifference, ExactModal, Scheme
 from .stepping import Stepping
@@ -197,7 +197,7 @@ class Asked:
         rows, more = len(system.contacts), 0
         if every:
             points = sum(map(bool, system.surface_names))
-            more = BYTES * points if self.surface_rate is None else 0
+            more = bytes_of(timing.ratio) * points if self.surface_rate is None else 0
             rows = len(groups(system.contact_names, system.surface_names)) + -(-rows // every)
         size = 8 * (len(arrays.probes) + ENERGIES + COLUMNS * rows) + more
         if size > LARGEST_RECORD / max(timing.samples, 1):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import binascii
 import math
+import re
 import zlib
 
 import numpy as np
@@ -16,6 +17,8 @@ KINDS = {"float64": "<f8", "float32": "<f4"}
 LARGEST = 4000 * 4000
 # Up to this many numbers a list is easier to read.
 LONGEST_LIST = 64
+# What `packed` writes: no character of it needs to be escaped.
+PACKED = re.compile(rf"(?:{'|'.join(KINDS)}) [\dx]* [\w+/=]*", re.ASCII)
 
 
 def packed(array: Array) -> str:

@@ -41,11 +41,8 @@ class _Motion:
     @property
     def along(self) -> Array:
         """World components of its direction, a unit vector, shape (3,)."""
-        if not isinstance(self.direction, str):
-            return np.asarray(np.array(self.direction) / np.linalg.norm(self.direction))
         first, second = (np.pad(axis, (0, 3))[:3] for axis in self.body.axes[:2])
-        own = {"axial": first, "transverse": second}
-        return np.asarray(own[self.direction] if self.direction in own else np.eye(3)["xyz".index(self.direction)])
+        return DIRECTION.along(self.direction, axial=first, transverse=second)
 
     @property
     def place(self) -> str:

@@ -21,14 +21,14 @@ from ..contact import PointContact
 from ..drives import Drive
 from ..histories import Constant
 from ..system import System
-from .packed import LONGEST_LIST, packed
+from .packed import LONGEST_LIST, PACKED, packed
 from .probes import Probe
 
 # Bytes of the surface of a body that a record keeps for films, at most.
 LARGEST_DRAWN = 20_000_000
-# A packed array, and what stands for it while the rest is written, of a character that no text of a scenario has.
-_PACKED, ASIDE = re.compile(r"float\d\d [\dx]* [\w+/=]*", re.ASCII), "\ue000packed array "
-_PUT_ASIDE = re.compile(f'"{ASIDE}(\\d+)"')
+# What stands for a packed array while the rest is written, of a character that no text of a scenario has.
+_ASIDE = "\ue000packed array "
+_PUT_ASIDE = re.compile(f'"{_ASIDE}(\\d+)"')
 # A list as tomli_w writes it, one number on a line; texts are on one line each and never match.
 _LIST_OF_NUMBERS = re.compile(r"\[\n((?:\s*[-+.\dinfaeE]+,\n)+)\s*\]")
 
@@ -60,10 +60,10 @@ def _without_arrays(value: Any, arrays: list[str]) -> Any:
         return {key: _without_arrays(one, arrays) for key, one in value.items()}
     if isinstance(value, (list, tuple)):
         return [_without_arrays(one, arrays) for one in value]
-    if not isinstance(value, str) or not _PACKED.fullmatch(value):
+    if not isinstance(value, str) or not PACKED.fullmatch(value):
         return value
     arrays.append(value)
-    return f"{ASIDE}{len(arrays) - 1}"
+    return f"{_ASIDE}{len(arrays) - 1}"
 
 
 def _on_one_line(found: re.Match[str]) -> str:
