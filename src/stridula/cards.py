@@ -158,10 +158,16 @@ def edges_seen(place: Array, polygons: Array, normals: Array) -> Array:
 
 def _view() -> Array:
     """Return the directions to the right, up and to the eye, shape (3, 3)."""
-    elevation, azimuth = VIEW
+    azimuth, eye = VIEW[1], eye_of(VIEW)
     right = np.array([np.cos(azimuth), 0.0, -np.sin(azimuth)])
-    eye = np.array([np.cos(elevation) * np.sin(azimuth), np.sin(elevation), np.cos(elevation) * np.cos(azimuth)])
     return np.stack([right, np.cross(eye, right), eye])
+
+
+def eye_of(view: tuple[float, float]) -> Array:
+    """Return the direction from which the eye looks; y is up."""
+    elevation, azimuth = view
+    across = np.cos(elevation)
+    return np.array([across * np.sin(azimuth), np.sin(elevation), across * np.cos(azimuth)])
 
 
 def spoken(number: float, unit: str) -> str:

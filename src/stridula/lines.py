@@ -71,6 +71,11 @@ class Touch:
     tip: tuple[int, int]
     touched: tuple[int, int] | None
 
+    @property
+    def fixed(self) -> tuple[int, int] | None:
+        """The point that it touches wherever the tip goes, None of a track along which the tip slides."""
+        return self.touched if self.contact.path_body is None else None
+
 
 @dataclass(frozen=True, eq=False)
 class _Joint:
@@ -126,10 +131,7 @@ def lines_of(system: Any) -> tuple[list[Line], list[Touch]]:
     ValueError
         If bodies are in space.
     """
-    if system.is_spatial:
-        kinds = sorted({type(body).__name__ for body in system.bodies if body.is_spatial})
-        words = "be in the plane, or have a SolidBody or an AxisymmetricBody, to be filmed"
-        raise ArgumentError("system", words, system, got=", ".join(kinds))
+    check_in_plane(system)
     joints = list(_joints(system))
     points = [point for joint in joints for point in (joint.first, joint.second) if point is not None]
     points += [point for one in system.connections for point in ends(one)]
@@ -146,6 +148,14 @@ def lines_of(system: Any) -> tuple[list[Line], list[Touch]]:
         touched = _touched(contact)
         touches.append(Touch(contact, found(contact.tip), None if touched is None else found(touched)))
     return lines, touches
+
+
+def check_in_plane(system: Any) -> None:
+    """Raise ValueError if bodies of a system are in space."""
+    if system.is_spatial:
+        kinds = sorted({type(body).__name__ for body in system.bodies if body.is_spatial})
+        words = "be in the plane, or have a SolidBody or an AxisymmetricBody, to be filmed"
+        raise ArgumentError("system", words, system, got=", ".join(kinds))
 
 
 def _touched(contact: PointContact) -> BodyPoint | None:

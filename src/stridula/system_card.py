@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array
 from .bodies.cards import mass_words, modes_words, surface_stroke
 from .cards import Stroke, card, drawing, flattened
 from .connections import ends
@@ -92,11 +91,5 @@ def _in_the_plane(system: Any) -> list[Stroke]:
 def _in_space(system: Any) -> list[Stroke]:
     drawn = [body.drawn_at_rest for body in system.bodies if hasattr(body, "drawn_at_rest")]
     strokes = [surface_stroke(surface) for surface in drawn if surface is not None]
-    touched = [place for contact in system.contacts if (place := _place(contact)) is not None]
+    touched = [end.place for contact in system.contacts if (end := contact.placed_end) is not None]
     return [*strokes, Stroke([flattened(np.array(touched))], width=0.8, dots=True)] if strokes and touched else strokes
-
-
-def _place(contact: Any) -> Array | None:
-    """Return where in space a contact is [m], None if neither of its ends knows."""
-    points = [point for point in (contact.tip, contact.touched_point) if point is not None]
-    return next((point.place for point in points if point.place is not None), None)

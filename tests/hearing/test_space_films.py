@@ -13,10 +13,11 @@ from PIL import Image
 import stridula as st
 from stridula import plot
 from stridula.bodies.drawn_surfaces import drawn_of, drawn_table
+from stridula.cards import VIEW
 from stridula.plot import mode_films, space_films
 from stridula.plot.colours import STATUS_COLOURS
 from stridula.plot.motion import ModalMotion, Timing, motion_of
-from stridula.plot.scenes import VIEW, Scene, surfaces_of
+from stridula.plot.scenes import Scene, surfaces_of
 from stridula.plot.space_films import SpacePicture
 from stridula.records import provenance
 from stridula.records.variables import STATUS_WORDS

@@ -160,8 +160,8 @@ class Lines:
             "touched": None,
             "passes": bool(contact.surface_velocities[0]) or touch.touched is None,
         }
-        if touch.touched is not None and contact.path_body is None:
-            on, place = touch.touched
+        if touch.fixed is not None:
+            on, place = touch.fixed
             told["touched"] = [on, self.lines[on].row(place)]
         return told
 
@@ -181,10 +181,5 @@ def _drawn(number: int, line: Line, touches: list[Touch]) -> _Drawn:
     """Return a line with at most so many points, with those that touch or are joined."""
     along = np.unique(np.linspace(0, line.count - 1, min(line.count, MOST_POINTS)).round().astype(int))
     kept = np.concatenate([along, np.arange(line.count, len(line.place))])
-    slides = [k for k, one in enumerate(touches) if one.tip[0] == number and _travels(one)]
+    slides = [k for k, one in enumerate(touches) if one.tip[0] == number and one.fixed is None]
     return _Drawn(line, kept, slides[0] if slides else None)
-
-
-def _travels(touch: Touch) -> bool:
-    """Return whether the tip of a contact goes along a track."""
-    return touch.touched is None or touch.contact.path_body is not None

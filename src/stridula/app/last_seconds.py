@@ -14,6 +14,7 @@ import xarray as xr
 from ..acoustics.wav import encoded, normalised_scale, scale_comment
 from ..arrays import Array
 from ..checks import ArgumentError
+from ..records.dataset import probe_label
 from ..records.variables import (
     CONTACT,
     PROBES,
@@ -226,5 +227,5 @@ def _labels(played: Playable) -> tuple[tuple[str, ...], tuple[tuple[str, str], .
     system = played.system
     if played.before is None:
         return system.contact_names, (("acceleration", "track centre y"),)
-    probes = tuple((probe.quantity, f"{system.body_name(probe.body)} {probe.place}") for probe in played.probes)
+    probes = tuple((probe.quantity, probe_label(probe, system)) for probe in played.probes)
     return system.contact_names, probes

@@ -9,7 +9,7 @@ import numpy as np
 from .beside import Beside
 from .messages import Axis, Map
 from .playable import Playable
-from .turned import expanded
+from .turned import keys_of
 
 # What each point of a map is marched for at most [s].
 DURATION = 1.0
@@ -20,7 +20,7 @@ async def rows(beside: Beside, played: Playable, wanted: Map) -> AsyncIterator[t
     across, along = values_of(wanted.x, wanted.points), values_of(wanted.y, wanted.points)
     simulation = {**played.tables["simulation"], "duration": min(played.scenario.duration, DURATION), "probes": []}
     tables = played.tables | {"simulation": simulation}
-    across_keys, along_keys = (list(expanded({side.key: 0.0}, tables)) for side in (wanted.x, wanted.y))
+    across_keys, along_keys = (keys_of(side.key, tables) for side in (wanted.x, wanted.y))
     for row in rough_first(wanted.points):
         # A key that means several places sets all of them.
         keys = [*across_keys, *along_keys]

@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ..acoustics.levels import REFERENCE, decibels
 from ..arrays import Array
 
-# Sound pressure of 0 dB [Pa].
-QUIETEST = 2e-5
 # Frequency from which a tone is a squeal in plain words [Hz].
 SHRILL = 1000.0
 
@@ -71,8 +70,8 @@ def words(found: dict[str, Any], level: float | None) -> str:
 
 def level_of(pressure: Array) -> float | None:
     """Return the level of a sound pressure [dB], None of silence."""
-    size = float(np.sqrt(np.mean(np.square(pressure, dtype=float)))) if len(pressure) else 0.0
-    return 20.0 * math.log10(size / QUIETEST) if size > QUIETEST else None
+    mean = float(np.mean(np.square(pressure, dtype=float))) if len(pressure) else 0.0
+    return float(decibels(np.asarray(mean))) if mean > REFERENCE**2 else None
 
 
 def _verb(regime: str, frequency: float | None, impacts: float | None) -> str:

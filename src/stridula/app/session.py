@@ -24,7 +24,7 @@ from .messages import Listen, Map, Message, NoMap, Pull, Repeat, Restart, Save, 
 from .parts import Stop, packed
 from .playable import Playable
 from .presets import presets
-from .turned import expanded
+from .turned import keys_of
 
 # A page may be ahead of time by so much [s], and play at most so much faster than time goes.
 AHEAD, FASTEST = 1.0, 1.5
@@ -296,7 +296,7 @@ def _described(instrument: Instrument, speed: float | None) -> dict[str, Any]:
         "description": played.scenario.description,
         "values": played.turned.values,
         "turned": None if played.before is None else played.turned.described,
-        "places": {} if played.before is None else _places(played),
+        "places": _places(played),
         "toml": played.toml,
         "sources": {name: vars(source) for name, source in played.sources.items()},
         "source": instrument.name,
@@ -311,4 +311,4 @@ def _described(instrument: Instrument, speed: float | None) -> dict[str, Any]:
 def _places(played: Playable) -> dict[str, list[str]]:
     """Return the keys that a key with a ``*`` means."""
     several = [key for key in played.turned.values if "*" in key]
-    return {key: list(expanded({key: 0.0}, played.tables)) for key in several}
+    return {key: keys_of(key, played.tables) for key in several}

@@ -15,6 +15,7 @@ from ..bodies import ModalBeam, ModalPlate
 from ..connections import ends
 from ..integration.live import LiveChunk, LiveMarch
 from ..records import Probe
+from ..records.dataset import probe_label
 from ..records.variables import PROBES
 from ..system import System
 
@@ -81,7 +82,7 @@ def sources_of(system: System, probes: tuple[Probe, ...]) -> dict[str, Source]:
 
 def _of_probe(probe: Any, system: System) -> Source:
     variable = PROBES[probe.quantity]
-    name = f"{probe.quantity.replace('_', ' ').capitalize()}, {system.body_name(probe.body)} {probe.place}"
+    name = f"{probe.quantity.replace('_', ' ').capitalize()}, {probe_label(probe, system)}"
     unit = variable.units.replace("m/s2", "m/s²")
     return Source(name, unit, FULL_SCALES.get(variable.units, 1.0), f"A probe of the scenario: {variable.long_name}.")
 

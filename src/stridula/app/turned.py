@@ -71,10 +71,12 @@ def expanded(overrides: Mapping[str, Any], tables: dict[str, Any]) -> dict[str, 
     tables : dict
         The scenario in full.
     """
-    found: dict[str, Any] = {}
-    for key, value in overrides.items():
-        found |= {".".join(map(str, path)): value for path in places_of(key, tables)} if "*" in key else {key: value}
-    return found
+    return {one: value for key, value in overrides.items() for one in keys_of(key, tables)}
+
+
+def keys_of(key: str, tables: dict[str, Any]) -> list[str]:
+    """Return the keys that a key means: itself, or with a ``*`` all that it stands for."""
+    return [".".join(map(str, path)) for path in places_of(key, tables)] if "*" in key else [key]
 
 
 def places_of(key: str, tables: Any) -> list[Path]:

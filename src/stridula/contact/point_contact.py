@@ -220,6 +220,12 @@ class PointContact:
         return self.track if isinstance(self.track, RigidTrack) else None
 
     @property
+    def placed_end(self) -> BodyPoint | None:
+        """The end whose place in the world is known, its tip first; None if neither is."""
+        ends = (self.tip, self.touched_point)
+        return next((one for one in ends if one is not None and one.place is not None), None)
+
+    @property
     def touched_point(self) -> BodyPoint | None:
         """The point that the tip touches, on a circle that at the start; None where it moves along a track."""
         if self.circle is not None:

@@ -8,16 +8,17 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
+from ..cards import VIEW
 from ..checks import instance, positive
 from ..integration.schemes import Scheme
-from ..lines import lines_of
+from ..lines import check_in_plane
 from ..records.variables import STATUS_WORDS
 from ..system import System
 from .motion import SAMPLE_RATE, Timing, motion_of
 from .plane_motion import PlaneMotion, plane_motion
 from .plane_scenes import PlaneScene
 from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Drawn, Film, rounded, still, write_film, writer_for
-from .scenes import VIEW, checked_view, has_surfaces
+from .scenes import checked_view, has_surfaces
 from .space_films import SpacePicture, exaggeration_of
 from .timelines import draw_contact
 
@@ -104,7 +105,7 @@ def animate(
         positive("exaggeration", exaggeration)
     seen, in_space = checked_view(view), has_surfaces(system)
     if not in_space:
-        lines_of(system)
+        check_in_plane(system)
     writer = writer_for(out)
     frame, timing = 1.0 / (FRAMES_PER_SECOND * slowdown), Timing(scheme, step, sample_rate)
     motion = motion_of(system, (start, duration), frame, timing, velocities=in_space)
@@ -112,7 +113,7 @@ def animate(
     slowed = 1.0 / (FRAMES_PER_SECOND * interval)
     picture: Drawn
     if in_space:
-        times = exaggeration_of(system, motion.modes, exaggeration, seen)
+        times = exaggeration_of(system, motion.modes, exaggeration)
         picture = SpacePicture(system, motion, times, slowed, title, seen)
     else:
         flat = plane_motion(system, motion)

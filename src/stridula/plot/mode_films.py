@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from ..arrays import Array
 from ..assembly import assemble
+from ..cards import VIEW
 from ..checks import ArgumentError, count, instance
 from ..lines import lines_of
 from ..system import System
@@ -20,7 +21,7 @@ from .plane_motion import extent_of as flat_extent_of
 from .plane_motion import surfaces_slid_on
 from .plane_scenes import PlaneScene
 from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Drawn, Film, still, write_film, writer_for
-from .scenes import VIEW, Scene, checked_view, extent_of, has_surfaces, surfaces_of
+from .scenes import Scene, checked_view, extent_of, has_surfaces, surfaces_of
 
 # Frames of a period.
 FRAMES = 32

@@ -121,8 +121,7 @@ class PlaneScene:
 
     def _mark(self, touch: Touch, frame: int) -> Array:
         """Return where a contact is marked: at the point that is touched, else at the tip that slides."""
-        frozen = touch.touched is not None and touch.contact.path_body is None
-        line, row = touch.touched if frozen and touch.touched is not None else touch.tip
+        line, row = touch.fixed or touch.tip
         found: Array = self.places[line][frame, row]
         return found
 

@@ -17,6 +17,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from ..arrays import Array
 from ..bodies import BodyPoint
 from ..bodies.drawn_surfaces import DrawnSurface
+from ..cards import eye_of
 from ..checks import STATUS_WORDS, ArgumentError, finite, instance
 from ..contact import PointContact
 from ..system import System
@@ -24,8 +25,6 @@ from .colours import STATUS_COLOURS
 from .motion import ModalMotion
 from .rigid_surfaces import rigid_surfaces
 
-# Elevation above the plane across y and azimuth from z towards x: 30 and 35 degrees [rad].
-VIEW = (np.pi / 6.0, 7.0 * np.pi / 36.0)
 VELOCITIES = "RdBu_r"
 # Of units of velocity, and what they stand for.
 PREFIXES = (("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9))
@@ -86,14 +85,14 @@ class Scene:
         exaggeration: float,
         view: tuple[float, float],
     ) -> None:
-        eye = _eye(view)
+        eye = eye_of(view)
         self._figure, self._room = figure, room
         self.motion, self.exaggeration, self.bodies = motion, exaggeration, surfaces_of(system, eye)
-        self.points = [_Place(contact, system) for contact in system.contacts if _known_end(contact) is not None]
-        self.numbers = [k for k, contact in enumerate(system.contacts) if _known_end(contact) is not None]
+        self.points = [_Place(contact, system) for contact in system.contacts if contact.placed_end is not None]
+        self.numbers = [k for k, contact in enumerate(system.contacts) if contact.placed_end is not None]
         self.mean = {name: values.mean(axis=0) for name, values in motion.displacement.items()}
         self.axes = _axes_in_space(figure, room)
-        light = _eye((view[0] + 0.5, view[1] - 0.5))
+        light = eye_of((view[0] + 0.5, view[1] - 0.5))
         normals = np.concatenate([one.surface.normals[one.seen] for one in self.bodies])
         self._shade = DARK + (1.0 - DARK) * np.clip(normals @ light, 0.0, 1.0)
         self.scale = Normalize(-1.0, 1.0)
@@ -205,7 +204,7 @@ class _Place:
 
     @property
     def _end(self) -> BodyPoint:
-        end = _known_end(self.contact)
+        end = self.contact.placed_end
         assert end is not None
         return end
 
@@ -275,16 +274,3 @@ def checked_view(view: Any) -> tuple[float, float]:
 
 def _axes_in_space(figure: Figure, room: tuple[float, float, float, float]) -> Any:
     return figure.add_axes(room, projection="3d", computed_zorder=False)
-
-
-def _known_end(contact: PointContact) -> BodyPoint | None:
-    """Return the end of a contact whose place in the world is known, None if neither is."""
-    ends = (contact.tip, contact.touched_point)
-    return next((one for one in ends if one is not None and one.place is not None), None)
-
-
-def _eye(view: tuple[float, float]) -> Array:
-    """Return the direction from which the eye looks; y is up."""
-    elevation, azimuth = view
-    across = np.cos(elevation)
-    return np.array([across * np.sin(azimuth), np.sin(elevation), across * np.cos(azimuth)])

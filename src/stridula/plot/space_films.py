@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from ..cards import VIEW
 from ..checks import positive
 from ..integration.schemes import Scheme
 from ..system import System
 from .motion import SAMPLE_RATE, ModalMotion, Motion, Timing, motion_of
 from .reels import DPI, HEIGHT, WIDTH, rounded
-from .scenes import VIEW, Scene, check_surfaces, checked_view, extent_of, largest_departure, surfaces_of
+from .scenes import Scene, check_surfaces, checked_view, extent_of, largest_departure, surfaces_of
 from .timelines import draw_contact
 
 # Without a number, the largest vibration is drawn as this share of the bodies' extent.
@@ -74,13 +75,13 @@ def bodies(
     frame = min(FRAME, 0.5 * duration)
     start = max(time - duration, 0.0)
     motion = motion_of(system, (start, duration), frame, Timing(scheme, step, sample_rate), velocities=True)
-    times = exaggeration_of(system, motion.modes, exaggeration, seen)
+    times = exaggeration_of(system, motion.modes, exaggeration)
     picture = SpacePicture(system, motion, times, None, title, seen)
     picture.show(picture.frames - 1)
     return picture.figure
 
 
-def exaggeration_of(system: System, modes: ModalMotion, given: float | None, view: tuple[float, float]) -> float:
+def exaggeration_of(system: System, modes: ModalMotion, given: float | None) -> float:
     """Return how many times larger than life vibration is drawn: as given, else near `SHARE` of the bodies' extent."""
     if given is not None:
         return positive("exaggeration", given)
