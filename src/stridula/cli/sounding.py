@@ -8,15 +8,17 @@ from typing import Any
 
 import xarray as xr
 
-from ..acoustics.heard_system import heard
+from ..acoustics.hearable import body_named
 from ..acoustics.listeners import FARTHEST
+from ..acoustics.radiate import radiate
 from ..acoustics.wav import NORMALISED, RATES, SUBTYPES, write_wav
-from ..checks import ArgumentError, at_most, suggestion
-from ..records.changes import played
+from ..checks import ArgumentError, at_most, listed, suggestion
+from ..records.changes import check_one_system, played
 from ..records.files import load
 from ..scenarios.load import Scenario, load_scenario, scenario_of_tables
 from ..scenarios.quantities import quantity
 from ..scenarios.read import tables_of_text
+from ..system import System
 from .hearing import loudest, print_levels
 from .outputs import check_outputs
 
@@ -29,12 +31,13 @@ OPTIONS = {"full_scale": "--full-scale", "sample_rate": "--sample-rate", "subtyp
 def sound_of_record(
     name: str,
     listeners: Sequence[str],
+    bodies: Sequence[str],
     wav: str | None,
     plot: str | None,
     sample_rate: str,
     full_scale: str,
     subtype: str,
-    baffled: bool,
+    baffled: bool | None,
 ) -> None:
     """Print what is heard of a record, and write it as a sound file and as a spectrogram if asked to.
 
@@ -55,7 +58,9 @@ def sound_of_record(
     places: Any = [place_of(text) for text in listeners] or None
     record = load(name)
     scenario = _played(record)
-    pressure = heard(record, scenario.system, places, baffled)
+    system = scenario.system
+    chosen = [_body_of(system, name) for name in bodies] or _left_alone(record, system)
+    pressure = radiate(record, system, places, bodies=chosen, baffled=baffled)
     figure = None if plot is None else _figure(pressure, record, scenario.title or Path(name).stem)
     if wav is not None:
         print(_written(wav, pressure, options))
@@ -74,9 +79,9 @@ def _played(record: xr.Dataset) -> Scenario:
     return scenario_of_tables(tables_of_text(changes[-1][1], "changes")) if changes else load_scenario(record)
 
 
-def write_sound(record: xr.Dataset, system: Any, wav: str) -> str:
+def write_sound(record: xr.Dataset, system: System, wav: str) -> str:
     """Write what two ears a metre above what sounds hear of a record; return what was written and how loud it is."""
-    pressure = heard(record, system, None, True)
+    pressure = radiate(record, system)
     words = [str(write_wav(wav, pressure)), loudest(pressure), pressure.attrs["notes"]]
     return "\n".join(word for word in words if word)
 
@@ -85,6 +90,27 @@ def check_ending(wav: str) -> None:
     """Raise ValueError unless the name of a sound file ends as its format."""
     if not wav.lower().endswith(".wav"):
         raise ArgumentError("--wav", "end in .wav", wav)
+
+
+def _left_alone(record: xr.Dataset, system: System) -> list[Any] | None:
+    """Return the tracks of a record on which bodies or drives were changed, for these alone are in it; else None."""
+    try:
+        check_one_system(record)
+    except ArgumentError:
+        tracks = list(dict.fromkeys(contact.path_body for contact in system.contacts if contact.path_body is not None))
+        if tracks:
+            names = listed([system.body_name(track) for track in tracks])
+            print(f"{names} alone: the record was changed while it was played")
+        return tracks or None
+    return None
+
+
+def _body_of(system: System, name: str) -> Any:
+    """Return the body of a name; errors name the option."""
+    try:
+        return body_named(system, name)
+    except ArgumentError as error:
+        raise error.renamed("--body") from None
 
 
 def _written(wav: str, pressure: xr.DataArray, options: dict[str, Any]) -> str:
