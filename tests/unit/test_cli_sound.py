@@ -138,7 +138,8 @@ def test_a_spectrogram_is_drawn_and_named_after_the_case(stridula, tmp_path, mon
     titles = []
     draw = plot.spectrogram
     monkeypatch.setattr(plot, "spectrogram", lambda *args, title: titles.append(title) or draw(*args, title=title))
-    assert stridula("sound", "run.nc", "--plot", "a.png")[0] == 0
+    assert stridula("sound", "run.nc", "--plot", "a.png", "--bands", "b.png")[0] == 0
+    assert (tmp_path / "b.png").read_bytes().startswith(b"\x89PNG")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
     assert titles == ["Squeal"]
 
@@ -224,6 +225,9 @@ BAD = [
     ((*IN, "--wav", "run.nc"), "--wav must be another file than the record"),
     ((*IN, "--wav", "a.png", "--plot", "a.png"), "--plot must be another file than --wav"),
     ((*IN, *WAV, "--plot", "a.xyz"), "--plot must end in one of"),
+    ((*IN, "--bands", "a.xyz"), "--bands must end in one of"),
+    ((*IN, "--wav", "a.wav", "--bands", "a.wav"), "--bands must be another file than --wav"),
+    ((*IN, "--plot", "a.png", "--bands", "a.png"), "--bands must be another file than --plot"),
     (("sound", "open.nc", *WAV, "--plot", "a.png"), "--plot must have a sound of at least 0.02 s, got 0.005 s"),
     ((*IN, *WAV, "--full-scale", "1e-6"), "--full-scale must be at least "),
     ((*IN, *WAV, "--full-scale", "0"), "--full-scale must be above 0 Pa, got '0'"),

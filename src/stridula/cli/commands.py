@@ -150,6 +150,9 @@ def sound(
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw the spectrogram at the first listener.")
     ] = None,
+    bands: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw levels in third-octave bands, a line for each listener.")
+    ] = None,
     sample_rate: Annotated[
         str, typer.Option(metavar="HZ", help="Sample rate of the sound file: 44.1, 48 or 96 kHz.")
     ] = "48 kHz",
@@ -165,7 +168,8 @@ def sound(
     from .sounding import sound_of_record
 
     baffled = False if unbaffled else None
-    sound_of_record(record, listener or [], body or [], wav, plot, sample_rate, full_scale, subtype, baffled)
+    figures = {"--plot": plot, "--bands": bands}
+    sound_of_record(record, listener or [], body or [], wav, figures, sample_rate, full_scale, subtype, baffled)
 
 
 @app.command()

@@ -33,13 +33,13 @@ def sound_of_record(
     listeners: Sequence[str],
     bodies: Sequence[str],
     wav: str | None,
-    plot: str | None,
+    figures: dict[str, str | None],
     sample_rate: str,
     full_scale: str,
     subtype: str,
     baffled: bool | None,
 ) -> None:
-    """Print what is heard of a record, and write it as a sound file and as a spectrogram if asked to.
+    """Print what is heard of a record, and write it as a sound file and as figures, by their options, if asked to.
 
     Raises
     ------
@@ -48,8 +48,11 @@ def sound_of_record(
     OSError
         If an output cannot be written.
     """
-    check_outputs(wav, plot, "--wav")
-    for option, path in (("--wav", wav), ("--plot", plot)):
+    wanted = {option: path for option, path in figures.items() if path is not None}
+    check_outputs(wav, figures["--plot"], "--wav")
+    check_outputs(wav, figures["--bands"], "--wav", "--bands")
+    check_outputs(figures["--plot"], figures["--bands"], "--plot", "--bands")
+    for option, path in (("--wav", wav), *figures.items()):
         if path is not None and Path(path).resolve() == Path(name).resolve():
             raise ArgumentError(option, "be another file than the record", path, got=f"{path!r} for both")
     if wav is not None:
@@ -61,13 +64,15 @@ def sound_of_record(
     system = scenario.system
     chosen = [_body_of(system, name) for name in bodies] or _left_alone(record, system)
     pressure = radiate(record, system, places, bodies=chosen, baffled=baffled)
-    figure = None if plot is None else _figure(pressure, record, scenario.title or Path(name).stem)
+    title = scenario.title or Path(name).stem
+    drawn = {path: FIGURES[option](pressure, record, title) for option, path in wanted.items()}
     if wav is not None:
         print(_written(wav, pressure, options))
-    if plot is not None:
+    if drawn:
         from ..plot import save
 
-        save(figure, plot)
+        for path, figure in drawn.items():
+            save(figure, path)
     if pressure.attrs["notes"]:
         print(pressure.attrs["notes"])
     print_levels(pressure)
@@ -155,10 +160,20 @@ def wav_options(sample_rate: str, full_scale: str, subtype: str) -> dict[str, An
     return {"sample_rate": int(rate), "full_scale": scale, "subtype": subtype}
 
 
-def _figure(pressure: xr.DataArray, record: xr.Dataset, title: str) -> Any:
+def _spectrogram(pressure: xr.DataArray, record: xr.Dataset, title: str) -> Any:
     from ..plot import spectrogram
 
     lasts = pressure.sizes["time"] * float(record.attrs["sample_interval"])
     if lasts < SHORTEST_FIGURE:
         raise ArgumentError("--plot", f"have a sound of at least {SHORTEST_FIGURE:g} s", got=f"{at_most(lasts, 3)} s")
     return spectrogram(pressure.isel(listener=0), record if "contact" not in record.dims else None, title=title)
+
+
+def _bands(pressure: xr.DataArray, _record: xr.Dataset, title: str) -> Any:
+    from ..plot import third_octaves
+
+    return third_octaves(pressure, title=title)
+
+
+# How a figure is drawn, by its option.
+FIGURES = {"--plot": _spectrogram, "--bands": _bands}

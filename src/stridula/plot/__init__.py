@@ -24,6 +24,7 @@ _HOME = {
     "spectrum": "spectra",
     "squeal_map": "squeals",
     "surface": "surfaces",
+    "third_octaves": "bands",
     "timeline": "timelines",
 }
 __all__ = list(_HOME)
