@@ -231,11 +231,6 @@ def test_schemes_change_on_the_way():
     assert after["normal_force"].max() < 3.0 * before["normal_force"].max()
 
 
-def test_what_it_cannot_march_is_refused_in_one_line():
-    with pytest.raises(ValueError, match="system must lie in the plane to march without end, got one in space"):
-        LiveMarch(system("pin-on-disc"), ())
-
-
 @pytest.mark.parametrize("case", ["violin", "belt", "lugre"])
 def test_several_contacts_and_rigid_tracks_are_the_run_bit_for_bit(case):
     what = system(case)

@@ -10,7 +10,6 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 import stridula as st
-from stridula.integration.live import LiveMarch
 
 from .into_space import IntoSpace
 
@@ -232,7 +231,6 @@ REFUSED = {
     "one vector": (lambda: replace(BEAM, plane=(1.0, 0.0, 0.0)), "plane must be unit vectors"),
     "a normal": (lambda: replace(SYSTEM.contact, normal=(0.0, 1.0, 0.0)), "normal must be left out on a beam"),
     "a tangent": (lambda: replace(SYSTEM.contact, tangent=(1.0, 0.0, 0.0)), "tangent must be left out on a beam"),
-    "the page": (lambda: LiveMarch(SYSTEM, ()), "system must lie in the plane"),
     "a film": (lambda: st.plot.animate(SYSTEM, "film.gif"), "system must be in the plane, or have a SolidBody"),
 }
 

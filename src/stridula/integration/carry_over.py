@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import singledispatch
 from typing import Any
 
@@ -11,12 +11,14 @@ import numpy as np
 from .._kernels import layout as at
 from ..arrays import Array
 from ..assembly import Assembly
-from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate
+from ..bodies import AxisymmetricBody, BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate
 from ..contact import PointContact
 from ..records.state import State
 from ..system import System
 from .schemes import Scheme
 
+# Of a body of revolution, what has no share in its modes.
+NO_SHAPE = ("damping", "turning", "turning_history")
 SAME_MESH = ("elements", "root_support", "tip_support")
 
 
@@ -53,6 +55,10 @@ class Before:
             and all(carries_over(*pair) for pair in zip(before.bodies, system.bodies, strict=True))
         )
 
+    def has_modes_of(self, system: System) -> bool:
+        """Return whether the bodies of another system have the same modes, however damped and turning."""
+        return all(map(_has_same_modes, self.system.bodies, system.bodies))
+
     def motion_as(self, system: System, arrays: Assembly, state: State, time: float) -> tuple[Array, Array]:
         """Return modal positions and velocities as those of another system."""
         position, velocity = np.zeros((2, arrays.mode_count))
@@ -71,6 +77,17 @@ class Before:
 def _root_velocity(system: System, time: float) -> float:
     imposed = system.imposed_velocity
     return 0.0 if imposed is None else imposed.velocity * float(imposed.history.factor(np.array([time]))[0])
+
+
+@singledispatch
+def _has_same_modes(before: Any, now: Any) -> bool:
+    """Return whether a body has the modes of another, shapes and frequencies."""
+    return bool(before == now)
+
+
+@_has_same_modes.register
+def _whatever_its_speed(before: AxisymmetricBody, now: AxisymmetricBody) -> bool:
+    return replace(before, **{name: getattr(now, name) for name in NO_SHAPE}) == now
 
 
 def _is_like_contact(before: PointContact, now: PointContact) -> bool:
@@ -99,7 +116,7 @@ def carries_over(before: Any, now: Any) -> bool:
 @singledispatch
 def _is_like(before: Any, now: Any) -> bool:
     """Return whether the motion of a body means something for another of its kind."""
-    return bool(before == now)
+    return _has_same_modes(before, now)
 
 
 @_is_like.register(ModalBeam)
@@ -132,7 +149,7 @@ def carried_over(before: Any, now: Any, held: bool, values: Array) -> Array:
     -------
     ndarray, shape (modes now,)
     """
-    return values if before == now else _carried(before, now, held, values)
+    return values if _has_same_modes(before, now) else _carried(before, now, held, values)
 
 
 @singledispatch

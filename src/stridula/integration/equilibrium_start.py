@@ -20,7 +20,9 @@ def in_equilibrium(system: System, arrays: Assembly) -> Assembly:
     asked = system.initial_equilibrium
     if asked is None:
         return arrays
-    start = start_of(system, asked)
+    if "start" not in system.kept:
+        system.kept["start"] = start_of(system, asked)
+    start = system.kept["start"]
     return replace(
         arrays,
         position=arrays.position + start.position,

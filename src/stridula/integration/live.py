@@ -13,10 +13,12 @@ from .._kernels import layout as at
 from .._kernels.contact import SEPARATED
 from ..arrays import Array
 from ..assembly import Assembly, Signal, assemble, with_travel
-from ..checks import ArgumentError, instance, positive
+from ..checks import instance, positive
 from ..contact import PointContact
+from ..histories import Constant
 from ..records import Probe
 from ..records.state import State
+from ..records.variables import ALONG_TANGENTS
 from ..system import System
 from .belief import Belief
 from .blocks import Blocks, blocks_of
@@ -25,10 +27,10 @@ from .contact_solve import GaussSeidel
 from .decimation import Decimator
 from .equilibrium_start import in_equilibrium
 from .marches import Impositions, March
-from .run import CONTACT_COLUMN, ENERGY_COLUMN
+from .run import CONTACT_COLUMN, ENERGY_COLUMN, along_both
 from .schemes import ExactModal, Scheme
 from .simulate import choose_timing
-from .start import rows_at, state_at_start
+from .start import rows_at, state_at_start, stored_in_contacts
 from .stops import ENDED
 
 # Share of the lowest frequency of vibration below which a mode yields as a free one does.
@@ -45,13 +47,15 @@ class LiveChunk:
     time : ndarray, shape (samples,)
         Time since the start of the stroke at the end of every sample interval [s].
     contacts : dict of ndarray, shape (contacts, samples)
-        Record of the contacts, by the names of records.
+        Record of the contacts, by the names of records; in space along the first tangent.
     status_shares : ndarray, shape (contacts, samples, 3)
         Share of each interval separated, sticking and sliding.
     energies : dict of ndarray, shape (samples,)
         Energies since the start or the last change, by the names of records.
     probes : ndarray, shape (samples, probes)
         Probes, later than the rest by `LiveMarch.delay` samples.
+    along_tangents : dict of ndarray, shape (contacts, samples, 2)
+        What contacts in space have along both tangents, by the names of records; nothing in the plane.
     """
 
     time: Array
@@ -59,6 +63,7 @@ class LiveChunk:
     status_shares: Array
     energies: dict[str, Array]
     probes: Array
+    along_tangents: dict[str, Array]
 
     @property
     def contact(self) -> dict[str, Array]:
@@ -73,7 +78,7 @@ class LiveChunk:
 
 
 class LiveMarch:
-    """A system in the plane on the march, sample by sample, for as long as one likes.
+    """A system on the march, sample by sample, for as long as one likes.
 
     What it is may change on the way: its motion goes on from where it is. Friction and forces change at once, and so do
     the velocities of rigid tracks and of surfaces; bodies that change keep their deflections, contacts their opening
@@ -82,18 +87,13 @@ class LiveMarch:
     Parameters
     ----------
     system : System
-        What marches, without bodies in space.
+        What marches.
     probes : sequence of Displacement, Velocity, Acceleration, Reaction, SupportForce, ModalDisplacement, ModalVelocity
         What is recorded beside the contact.
     scheme : CentralDifference or ExactModal, optional
         Time scheme, the exact modal one if left out.
     sample_rate : float, optional
         Samples per second [Hz].
-
-    Raises
-    ------
-    ValueError
-        If the system has bodies in space.
     """
 
     # What marches and where it is; set again at every change.
@@ -113,7 +113,7 @@ class LiveMarch:
         self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None, sample_rate: float = 48e3
     ) -> None:
         self.interval = 1.0 / positive("sample_rate", sample_rate)
-        self._take(system, probes, ExactModal() if scheme is None else scheme, assembled(system, probes))
+        self._take(system, probes, ExactModal() if scheme is None else scheme)
         self.restart()
 
     @property
@@ -128,8 +128,14 @@ class LiveMarch:
 
     @property
     def position(self) -> Array:
-        """Modal positions now, shape (modes,); those of the slider and of the track lie where `spans` says."""
-        return np.asarray(self._march.states[0].modal[at.Q])
+        """Modal displacements now, shape (modes,); those of each body lie where `spans` says."""
+        return self._of_bodies(self._march.states[0].modal[at.Q])
+
+    @property
+    def motion(self) -> tuple[Array, Array]:
+        """Modal displacements and velocities now, both as `position`."""
+        modal = self._march.states[0].modal
+        return self._of_bodies(modal[at.Q]), self._of_bodies(modal[at.D] / self.step)
 
     @property
     def spans(self) -> dict[str, tuple[int, int]]:
@@ -139,7 +145,7 @@ class LiveMarch:
     @property
     def passed(self) -> Array:
         """How far what each contact slides on has been moved along itself by now, shape (contacts,) [m]."""
-        return self._imposed_now()[:, at.TRACK_MOTION]
+        return self._imposed_now()[self._arrays.firsts, at.TRACK_MOTION]
 
     def restart(self) -> None:
         """Put everything back to the start."""
@@ -170,12 +176,16 @@ class LiveMarch:
         done, ended = self._belief.of(chunk)
         time = (self._sample + np.arange(1, done + 1)) * self.interval
         self._sample += done
-        record, energy = chunk.contacts[:done].transpose(1, 2, 0), chunk.energies[:done].T
+        pairs, energy = chunk.contacts[:done].transpose(1, 2, 0), chunk.energies[:done].T
+        firsts = self._arrays.firsts
+        record = pairs[firsts]
         self._gaps = record[:, at.CONTACT_GAP, -1].copy() if done else self._gaps
         contacts = {name: record[:, column].copy() for name, column in CONTACT_COLUMN.items()}
         energies = {name: energy[column].copy() for name, column in ENERGY_COLUMN.items()}
         shares = record[:, at.SEPARATED : at.SLIDING + 1].transpose(0, 2, 1).copy()
-        return LiveChunk(time, contacts, shares, energies, self._low_passed(chunk.raw, done)), ENDED[ended]
+        doubled = () if firsts.all() else ALONG_TANGENTS
+        tangents = {name: along_both(pairs[:, CONTACT_COLUMN[name]], firsts) for name in doubled}
+        return LiveChunk(time, contacts, shares, energies, self._low_passed(chunk.raw, done), tangents), ENDED[ended]
 
     def begin(self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None) -> None:
         """Start anew as another system, whatever became of the march before.
@@ -195,7 +205,7 @@ class LiveMarch:
             As at the start; then all stays as it was.
         """
         with self._as_it_was_if_refused():
-            self._take(system, probes, self.scheme if scheme is None else scheme, assembled(system, probes))
+            self._take(system, probes, self.scheme if scheme is None else scheme)
             self.restart()
 
     def change(self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None) -> bool:
@@ -235,29 +245,36 @@ class LiveMarch:
 
     def _change(self, system: System, probes: Sequence[Probe], scheme: Scheme | None) -> bool:
         before, state = Before(self.system, self.scheme, self.spans, self.step), deepcopy(self._march.states[0])
-        arrays = assembled(system, probes)
-        self._travel = self._root_at(self._arrays) - self._root_at(arrays)
-        self._take(system, probes, before.scheme if scheme is None else scheme, arrays)
+        root = self._root_at(self._arrays)
+        self._take(system, probes, before.scheme if scheme is None else scheme)
+        arrays, firsts = self._described, self._arrays.firsts
+        self._travel = root - self._root_at(arrays)
         self._begin_probes()
         if not before.goes_on_as(system):
             self.restart()
             return False
         pairs = zip(before.system.contacts, system.contacts, strict=True)
         moved = np.array([now.at - then.at for then, now in pairs])
-        places = state.carried[:, at.ABSCISSA] + moved
+        places = state.carried[firsts, at.ABSCISSA] + moved
         if not all(map(_is_on_track, system.contacts, places)):
             self.restart()
             return False
         position, velocity = before.motion_as(system, arrays, state, self.time)
-        has_same_modes = system.bodies == before.system.bodies and self.step == before.step
-        if has_same_modes and self.scheme == before.scheme and not moved.any():
+        if before.has_modes_of(system) and (self.step, self.scheme) == (before.step, before.scheme) and not moved.any():
             self._go_on(state, places, position, velocity, before.system)
-        else:
-            is_closed = state.carried[:, at.STATUS] != SEPARATED
-            self._start_from(position, velocity, places, np.where(is_closed, 0.0, self._gaps))
+            return True
+        if any(type(one.turning.history) is not Constant for one in arrays.turning):
+            # What turns at a speed of its own would begin with that of the start.
+            self.restart()
+            return False
+        yields = np.array([contact.yields is not None for contact in system.contacts])
+        is_closed = state.carried[firsts, at.STATUS] != SEPARATED
+        self._start_from(position, velocity, places, np.where(is_closed & ~yields, 0.0, self._gaps))
         return True
 
-    def _take(self, system: System, probes: Sequence[Probe], scheme: Scheme, arrays: Assembly) -> None:
+    def _take(self, system: System, probes: Sequence[Probe], scheme: Scheme) -> None:
+        instance("system", system, System)
+        arrays = assemble(system, probes)
         timing = choose_timing(arrays, scheme, self.interval, None, 1.0 / self.interval)
         self.system, self.probes, self.scheme = system, tuple(probes), scheme
         self._described, self.step, self.ratio = arrays, timing.step, timing.ratio
@@ -273,7 +290,8 @@ class LiveMarch:
     def _go(self, state: State) -> None:
         """March on from a state."""
         state.energies[:] = 0.0
-        state.energies[at.STORED] = self._blocks.modes.stored_energy(state.modal)
+        in_contacts = stored_in_contacts(self._arrays, state.carried)
+        state.energies[at.STORED] = self._blocks.modes.stored_energy(state.modal) + in_contacts
         stored = float(state.energies[at.STORED])
         self._belief = Belief(self.system, self._arrays, self._blocks, state.energies, stored)
         self._march = March([self._blocks], [state], self.step, self.ratio)
@@ -287,6 +305,12 @@ class LiveMarch:
         self._waiting = waiting[samples:]
         return waiting[:samples]
 
+    def _of_bodies(self, modal: Array) -> Array:
+        """Return numbers of the modes that march as those of the modes of the bodies."""
+        blend, found = self._arrays.blend, np.array(modal)
+        found[: len(blend)] = blend @ found[: len(blend)]
+        return found
+
     def _root_at(self, arrays: Assembly) -> float:
         """Return how far an imposed velocity has moved the root of a system by now [m]."""
         return float(arrays.signals[-3](np.array([self.time]), self.step)[0])
@@ -299,13 +323,13 @@ class LiveMarch:
         moved = with_travel(self._described, self.system, self._travel)
         described, now = moved.motion, np.array([self.time])
         imposed, offset, contacts = described(now, self.step)[0], np.zeros(before.shape), []
-        for number, one in enumerate(moved.contacts):
-            if one.contact.path_body is None:
+        for number, (one, place) in enumerate(zip(moved.contacts, places[moved.contact_numbers], strict=True)):
+            if one.contact.path_body is None or one.is_second:
                 offset[number] = before[number] - imposed[number]
                 contacts.append(one)
                 continue
             offset[number, at.TIP_MOTION] = -imposed[number, at.TIP_MOTION] - one.fixed[1] @ position
-            contacts.append(replace(one, contact=replace(one.contact, at=float(places[number]))))
+            contacts.append(replace(one, contact=replace(one.contact, at=float(place))))
         return replace(moved, contacts=contacts, motion=lambda times, step: described(times, step) + offset)
 
     def _imposed_now(self) -> Array:
@@ -316,17 +340,19 @@ class LiveMarch:
         """March on in the same modes, under other forces and another friction."""
         self._lay_out(self._shifted(places, position, self._imposed_now()))
         state.modal[at.D] = velocity * self.step
-        for own, now, then in zip(state.carried, self.system.contacts, before.contacts, strict=True):
-            if type(now.friction) is not type(then.friction):
-                own[at.FRICTION_STATE] = now.friction.state_at_start
+        firsts, numbers = self._arrays.firsts, self._arrays.contact_numbers
+        for own, number, is_first in zip(state.carried, numbers, firsts, strict=True):
+            law = self.system.contacts[number].friction
+            if type(law) is not type(before.contacts[number].friction):
+                own[at.FRICTION_STATE] = law.states_at_start[0 if is_first else 1]
         self._put(state, places)
 
     def _start_from(self, position: Array, velocity: Array, places: Array, gaps: Array) -> None:
         """March on in other modes or at other places on the track, contacts opened by their gaps."""
         imposed, now = self._imposed_now(), self.time
         shifted = self._shifted(places, position, imposed)
-        raised = shifted.motion(np.array([now]), self.step)[0, :, at.GAP_MOTION]
-        position = position + _opening(shifted, position, gaps - raised)
+        raised = shifted.motion(np.array([now]), self.step)[0, shifted.firsts, at.GAP_MOTION]
+        position = position + _opening(shifted, places, position, gaps - raised)
         self._lay_out(self._shifted(places, position, imposed))
         arrays = replace(
             self._arrays,
@@ -339,7 +365,8 @@ class LiveMarch:
 
     def _put(self, state: State, places: Array) -> None:
         """March on from a state whose tips are at some places on the track."""
-        for own, contact, place in zip(state.carried, self.system.contacts, places, strict=True):
+        for row, contact, place in zip(np.flatnonzero(self._arrays.firsts), self.system.contacts, places, strict=True):
+            own = state.carried[row]
             if contact.path_body is not None:
                 own[list(ON_THE_TRACK)] += place - own[at.ABSCISSA]
         self._go(state)
@@ -353,30 +380,17 @@ def _is_on_track(contact: PointContact, place: float) -> bool:
     return bool(low < place < high)
 
 
-def _opening(arrays: Assembly, position: Array, gaps: Array) -> Array:
+def _opening(arrays: Assembly, places: Array, position: Array, gaps: Array) -> Array:
     """Return the displacement that opens contacts to gaps as forces on them would, rigid motions first."""
-    rows = np.array([rows_at(one, one.contact.at)[0] for one in arrays.contacts])
+    firsts = [one for one in arrays.contacts if not one.is_second]
+    rows = np.array([rows_at(one, place)[0] for one, place in zip(firsts, places, strict=True)])
     squared = arrays.all_stiffness
     vibrating = np.diag(squared)[np.diag(squared) > 0.0]
     squared += SOFT**2 * (vibrating.min() if vibrating.size else 1.0) * np.eye(rows.shape[1])
     yielded = np.linalg.solve(squared, rows.T)
-    missing = gaps - np.array([one.contact.gap for one in arrays.contacts]) - rows @ position
+    missing = gaps - np.array([one.contact.gap for one in firsts]) - rows @ position
     return np.asarray(yielded @ np.linalg.lstsq(rows @ yielded, missing)[0])
 
 
 def _later(signal: Signal, now: float) -> Signal:
     return lambda times, step: signal(times + now, step)
-
-
-def assembled(system: System, probes: Sequence[Probe]) -> Assembly:
-    """Return a system in the plane as flat arrays.
-
-    Raises
-    ------
-    ValueError
-        If it is in space.
-    """
-    instance("system", system, System)
-    if system.is_spatial:
-        raise ArgumentError("system", "lie in the plane to march without end", system, got="one in space")
-    return assemble(system, probes)

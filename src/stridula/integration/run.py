@@ -221,7 +221,7 @@ class Run:
         columns = {name: record[column] for name, column in CONTACT_COLUMN.items()}
         if not firsts.all():
             doubled = (*ALONG_TANGENTS, FRICTION_STATE.name) if self.system.has_state_vectors else ALONG_TANGENTS
-            columns |= {name: _along_both(pairs[CONTACT_COLUMN[name]], firsts) for name in doubled}
+            columns |= {name: along_both(pairs[CONTACT_COLUMN[name]], firsts) for name in doubled}
         sums = {name: energies[column] for name, column in ENERGY_COLUMN.items()}
         if "impact_loss" in self.wanted:
             sums["impact_loss"] = sums["convection_work"] - sums["friction_loss"] - sums["contact_work"]
@@ -277,7 +277,7 @@ class Run:
         return scenario_toml(self.system, self.probes, simulation)
 
 
-def _along_both(pairs: Array, firsts: Array) -> Array:
+def along_both(pairs: Array, firsts: Array) -> Array:
     """Return what contacts have along both tangents, (contacts, samples, 2), from pairs of rows; 0 of a missing one."""
     found = np.zeros((int(firsts.sum()), pairs.shape[1], 2))
     found[..., 0] = pairs[firsts]

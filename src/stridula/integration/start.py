@@ -54,11 +54,11 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
         carried[pressed, at.CLOSED_SHARE] = 1.0
         carried[pressed, at.STATUS] = np.where(start.slip_speeds[pressed] == 0.0, STICKING, SLIDING)
     modal, energies = np.stack([arrays.position, first]), np.zeros(at.ENERGIES)
-    energies[at.STORED] = modes.stored_energy(modal) + _stored_in_contacts(arrays, carried)
+    energies[at.STORED] = modes.stored_energy(modal) + stored_in_contacts(arrays, carried)
     return State(modal, np.zeros_like(modal), carried, energies)
 
 
-def _stored_in_contacts(arrays: Assembly, carried: Array) -> float:
+def stored_in_contacts(arrays: Assembly, carried: Array) -> float:
     """Return the energy that contacts which yield store half a step before the start [J]."""
     energy = 0.0
     for one, own in zip(arrays.contacts, carried, strict=True):
