@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -77,6 +77,13 @@ class Playable:
         """What one turns."""
         return turned_of_pair(self.tables) if self.before is None else turned_of_system(self.tables, self.before)
 
+    def stepped(self, step: float) -> Playable:
+        """Return the same with a time step of its own [s]."""
+        simulation = {**self.tables["simulation"], "step": step}
+        return replace(
+            self, scenario=replace(self.scenario, step=step), tables={**self.tables, "simulation": simulation}
+        )
+
     @cached_property
     def toml(self) -> str:
         """The scenario as TOML, to run with `stridula run`."""
@@ -136,7 +143,9 @@ def _given(case: str, text: str | None) -> tuple[dict[str, Any], dict[str, Any] 
 
 def _in_full(scenario: Scenario) -> dict[str, Any]:
     """Return a scenario in full and in SI."""
-    simulation = {"duration": scenario.duration, "scheme": scenario.scheme.name}
+    simulation: dict[str, Any] = {"duration": scenario.duration, "scheme": scenario.scheme.name}
+    if scenario.step is not None:
+        simulation["step"] = scenario.step
     return tomllib.loads(scenario_toml(scenario.system, scenario.probes or (), simulation))
 
 

@@ -153,7 +153,7 @@ class Session:
             # Fast enough on any machine that is not busy with something else.
             self.speed = None
         elif not goes_on:
-            self.speed = self.instrument.speed()
+            self.speed = self.instrument.keep_up()
         return self.instrument, goes_on
 
     async def _now(self) -> None:
@@ -304,6 +304,7 @@ def _described(instrument: Instrument, speed: float | None) -> dict[str, Any]:
         "modes": len(live.position),
         "step": live.step,
         "steps": live.ratio,
+        "longer": instrument.longer is not None,
         "speed": speed,
     }
 

@@ -113,7 +113,7 @@ function shown(message) {
   map.follow();
   showCase(message);
   showToml();
-  write("numbers", `${message.modes} modes, ${message.steps} steps of ${short(1e6 * message.step)} µs a sample. `);
+  write("numbers", `${message.modes} modes, ${message.steps} steps of ${short(1e6 * message.step)} µs a sample${message.longer ? ", twice as long as usual, to keep up with the sound" : ""}. `);
 }
 
 // Systems have controls of their own.
