@@ -29,6 +29,7 @@ class Seen:
 
     regimes: list[dict] = field(default_factory=list)
     levels: list[float] = field(default_factory=list)
+    sounds: list[np.ndarray] = field(default_factory=list)
     shares: list[np.ndarray] = field(default_factory=list)
 
     def all(self, name: str) -> list:
@@ -48,6 +49,7 @@ def seen(title: str, compared: bool = False) -> Seen:
         told = {name: now.said(values) for name, values in variables.items()}
         found.regimes.append(now.measured(TOGETHER / RATE, instrument.played.system.contact_names, told))
         found.levels.append(now.level_of(pressure))
+        found.sounds.append(pressure)
     return found
 
 
@@ -90,6 +92,9 @@ def test_it_squeals_near_the_tone_that_is_named():
     assert squeals.all("regime") == ["squeal"] * SECONDS
     assert squeals.all("frequency") == pytest.approx([number("Squeal", r"near (\d+) Hz")] * SECONDS, rel=0.05)
     assert least("Squeal", STICKING) > 0.5
+    assert all(share > 0.6 for share in map(stripes, squeals.sounds))
+    # A sound that goes on has no stripes.
+    assert stripes(np.random.default_rng(1).normal(size=RATE)) < 0.3
 
 
 def test_it_judders_as_often_as_is_said():
@@ -117,6 +122,13 @@ def test_what_stops_point_at_is_on_the_page():
     for stop in STOPS:
         assert f'<canvas id="{stop.look}"' in page
         assert 2 <= len(re.findall(r"[.] ", stop.words + " ")) <= 4
+
+
+def stripes(sound: np.ndarray) -> float:
+    """Return the share of what is above 1 kHz that the loudest fifth of the columns of a spectrogram have."""
+    columns = np.lib.stride_tricks.sliding_window_view(sound, 1024)[::256] * np.hanning(1024)
+    power = (np.abs(np.fft.rfft(columns)[:, 1000 * 1024 // RATE :]) ** 2).sum(axis=1)
+    return float(np.sort(power)[-len(power) // 5 :].sum() / power.sum())
 
 
 def values(stop: TourStop) -> dict:

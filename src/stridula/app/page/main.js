@@ -184,6 +184,7 @@ function showCase(message) {
   $("case").value = own ? "" : scene.now.case;
   gallery.show($("case").value);
   write("case-words", own ? message.description || message.title : preset.description);
+  $("case-words").title = $("case-words").textContent;
 }
 
 // What was refused goes back to what is played; why it was is said beside its control, or above all where there is none.

@@ -115,7 +115,7 @@ export class RegimeMap {
 
   done() {
     this.pending = null;
-    this.words.textContent = "each point marched for up to 1 s from the start";
+    this.words.textContent = "up to 1 s from the start";
   }
 
   #frame() {

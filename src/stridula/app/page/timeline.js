@@ -51,6 +51,7 @@ export class Timeline {
     paintAxes(draw, { left: LEFT, top: ABOVE, width: inner, height: tall }, { x: { low: 0, high: 0, title: "" }, y: { low: 0, high: top, title: "force [N]" } }, colours);
     const under = { left: LEFT, top: ABOVE, width: inner, height: tall + lanes };
     paintAxes(draw, under, { x: { low: -span * scale, high: 0, title: `time before now [${unit}]` }, y: { low: 0, high: 0, title: "" } }, colours);
+    draw.fillStyle = colours.line;
     states.forEach((_, state) => draw.fillRect(LEFT, ABOVE + tall + 14 + LANE * state, inner, 0.5));
   }
 }

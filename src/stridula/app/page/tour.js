@@ -24,7 +24,7 @@ export class Tour {
     if (compared) this.slots.set(played, { ...played, overrides: { ...compared } });
     else this.scene.set(played);
     this.#mark(document.getElementById(look).closest("figure"));
-    this.title.focus({ preventScroll: true });
+    this.next.focus({ preventScroll: true });
   }
 
   // What is played stays.
