@@ -6,6 +6,7 @@ import asyncio
 import time as clock
 from collections.abc import Coroutine
 from contextlib import suppress
+from dataclasses import asdict
 from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -24,6 +25,7 @@ from .messages import Listen, Map, Message, NoMap, Pull, Repeat, Restart, Save, 
 from .parts import Stop, packed
 from .playable import Playable
 from .presets import presets
+from .tour import STOPS
 from .turned import keys_of
 
 # A page may be ahead of time by so much [s], and play at most so much faster than time goes.
@@ -72,6 +74,7 @@ class Session:
             rate=RATE,
             kept=KEPT,
             presets=presets(),
+            tour=[asdict(stop) for stop in STOPS],
             regimes=REGIME_COLOURS,
             **controls.turned_of_pair({}).described,
         )
