@@ -1,4 +1,4 @@
-"""Figures from Datasets (matplotlib lives here and nowhere else)."""
+"""Figures from Datasets and views of systems (matplotlib and pyvista live here and nowhere else)."""
 
 from __future__ import annotations
 
@@ -25,6 +25,8 @@ _HOME = {
     "squeal_map": "squeals",
     "surface": "surfaces",
     "timeline": "timelines",
+    "view": "views",
+    "view_mode": "views",
 }
 __all__ = list(_HOME)
 
