@@ -198,6 +198,7 @@ def _with_slider(plotter: Any, seen: tuple[float, float], frames: _Frames) -> An
         pointa=(0.25, 0.06),
         pointb=(0.75, 0.06),
         style="modern",
+        interaction_event="always",
     )
 
     def step(by: int) -> None:
