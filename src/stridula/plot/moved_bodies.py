@@ -24,7 +24,17 @@ BALL = 0.03
 
 @dataclass(frozen=True)
 class ShownBody:
-    """A body with a surface: its name, the surface, and which of its polygons can be seen."""
+    """A body with a surface.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    surface : DrawnSurface
+        The surface.
+    seen : ndarray of bool, shape (polygons,)
+        Which of its polygons can be seen.
+    """
 
     name: str
     surface: DrawnSurface
@@ -89,7 +99,15 @@ class MovedBodies:
 
 @dataclass(frozen=True)
 class PlacedContact:
-    """Where a contact is: a place of a body whose place is known."""
+    """Where a contact is: a place of a body whose place is known.
+
+    Attributes
+    ----------
+    contact : PointContact
+        The contact.
+    system : System
+        Its system.
+    """
 
     contact: PointContact
     system: System
