@@ -15,6 +15,12 @@ from .conversation import RATE
 FRICTION, LOAD, VELOCITY = "contact.friction.coefficient", "drives.0.normal_load", "drives.0.velocity"
 NOW = "stridula.scene.now"
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
+WRITTEN = """window.written = new Set();
+const write = OffscreenCanvasRenderingContext2D.prototype.fillText;
+OffscreenCanvasRenderingContext2D.prototype.fillText = function (words, ...where) {
+  written.add(words);
+  return write.call(this, words, ...where);
+};"""
 PICTURES = ("beams", "timeline", "phase", "spectrogram", "map")
 
 
@@ -274,14 +280,7 @@ def test_the_note_is_named_where_there_is_a_tone(browsing):
 
 
 def test_a_tip_that_sticks_has_words_in_place_of_a_portrait(browsing):
-    browsing.context.add_init_script(
-        """window.written = new Set();
-        const write = OffscreenCanvasRenderingContext2D.prototype.fillText;
-        OffscreenCanvasRenderingContext2D.prototype.fillText = function (words, ...where) {
-          written.add(words);
-          return write.call(this, words, ...where);
-        };"""
-    )
+    browsing.context.add_init_script(WRITTEN)
     stick = STOPS[0]
     values = "&".join(f"{key}={value}" for key, value in stick.overrides.items())
     page = browsing.open(f"#case={stick.case}&{values}")
@@ -289,3 +288,19 @@ def test_a_tip_that_sticks_has_words_in_place_of_a_portrait(browsing):
     written = page.evaluate("[...written].map(String)")
     assert {"time before now [s]", "force [N]", "frequency [kHz]", "level [dB]"} <= set(written)
     assert [one for one in written if "NaN" in one or "undefined" in one] == []
+
+
+def test_what_is_silent_has_words_in_place_of_a_spectrogram(browsing):
+    browsing.context.add_init_script(WRITTEN)
+    page = browsing.open()
+    draw = """(hears) => import('./spectrogram.js').then(({ Spectrogram }) => {
+      written.clear();
+      const draw = document.createElement('canvas').getContext('2d');
+      new Spectrogram().draw([draw, 300, 200], hears, [], { line: '#000', soft: '#000' }, false);
+      return [...written].map(String);
+    })"""
+    assert page.evaluate(draw, False) == ["Slow motion is silent."]
+    assert "frequency [kHz]" in page.evaluate(draw, True)
+    # What is computed slower than it sounds says how much, first of all.
+    page.evaluate("stridula.keepUp(0.1)")
+    assert page.locator("#speed option:checked").text_content() == "Slow, 1 : 11, as fast as it can"

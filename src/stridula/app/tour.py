@@ -83,7 +83,7 @@ STOPS = (
         "Pressure",
         "Setting A presses with 2 N: the tip flies and lands a few hundred times a second. Setting B presses with "
         "100 N: it has no time to fly, sticks, and what is left is the fast vibration of beams in touch, above "
-        "800 Hz. Press b to go from one to the other.",
+        "800 Hz. The buttons A and B, or the key b, go from one to the other.",
         "spectrogram",
         "strong-pressure",
         {"drives.0.normal_load": 2.0},

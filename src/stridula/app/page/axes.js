@@ -61,6 +61,17 @@ export function paintAxes(draw, { left, top, width, height }, { x, y }, colours)
   draw.textAlign = "left";
 }
 
+// Say in place of a picture why there is none.
+export function inWords(draw, { left, top, width, height }, words, colours) {
+  draw.strokeStyle = colours.line;
+  draw.strokeRect(left + 0.5, top + 0.5, width - 1, height - 1);
+  draw.font = "13px system-ui, sans-serif";
+  draw.fillStyle = colours.soft;
+  draw.textAlign = "center";
+  words.forEach((line, i) => draw.fillText(line, left + width / 2, top + height / 2 + 18 * (i - (words.length - 1) / 2) + 4));
+  draw.textAlign = "left";
+}
+
 // What is drawn once for what it depends on.
 export class Layer {
   draw(onto, width, height, depends, paint) {

@@ -167,7 +167,7 @@ function keepUp(speed) {
   own?.remove();
   slowest = needed;
   if (needed > 1) {
-    const option = new Option(`As fast as it can, 1 : ${needed}`, String(needed));
+    const option = new Option(`Slow, 1 : ${needed}, as fast as it can`, String(needed));
     option.dataset.own = "1";
     $("speed").append(option);
     option.selected = $("speed").value === "1" || wasSlow;

@@ -1,5 +1,5 @@
 // The phase portrait of the tip: its velocity over its displacement.
-import { Layer, paintAxes, roof } from "./axes.js";
+import { inWords, Layer, paintAxes, roof } from "./axes.js";
 
 const PORTRAIT = 0.06; // Time shown live [s]
 const SHORTEST = 4e-4; // and at least.
@@ -58,14 +58,4 @@ export class Phase {
 
 function follow(before, wanted) {
   return before && before > wanted ? Math.max(wanted, SHRINK * before) : wanted;
-}
-
-function inWords(draw, { left, top, width, height }, words, colours) {
-  draw.strokeStyle = colours.line;
-  draw.strokeRect(left + 0.5, top + 0.5, width - 1, height - 1);
-  draw.font = "13px system-ui, sans-serif";
-  draw.fillStyle = colours.soft;
-  draw.textAlign = "center";
-  words.forEach((line, i) => draw.fillText(line, left + width / 2, top + height / 2 + 18 * (i - (words.length - 1) / 2) + 4));
-  draw.textAlign = "left";
 }

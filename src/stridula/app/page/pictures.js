@@ -82,7 +82,7 @@ export class Pictures {
     if (this.turn) this.timeline.draw(this.#begin("timeline"), this.history, this.slow, this.colours, STATES);
     else {
       this.phase.draw(this.#begin("phase"), this.history, this.slow, this.colours, STATES, this.dark);
-      this.spectrogram.draw(this.#begin("spectrogram"), this.modes, this.colours, this.dark);
+      this.spectrogram.draw(this.#begin("spectrogram"), this.slow === 1, this.modes, this.colours, this.dark);
     }
   }
 

@@ -1,5 +1,5 @@
 // The spectrogram of what is heard, with its axes and the scale of its colours.
-import { Layer, paintAxes, ticks, told } from "./axes.js";
+import { inWords, Layer, paintAxes, ticks, told } from "./axes.js";
 import { hann, spectrum, strongestTone } from "./spectrum.js";
 
 const RATE = 48000;
@@ -9,7 +9,7 @@ const HEARD = 1 << 14; // Samples in which the strongest tone is looked for: bin
 const HIGHEST = 12000; // Highest frequency shown [Hz].
 const DEEP = 60; // Level shown below the loudest [dB].
 const KEPT = 2000; // Spectra that are kept.
-const FORGETS = 0.9995; // How fast the loudest is forgotten, for each spectrum.
+const FORGETS = 0.995; // How fast the loudest is forgotten, for each spectrum.
 const [LEFT, RIGHT, ABOVE, BELOW] = [42, 56, 6, 32];
 const BAR = 10; // Width of the scale of colours [px].
 
@@ -47,8 +47,12 @@ export class Spectrogram {
     return this.heard.length === HEARD ? strongestTone(this.heard, RATE) : null;
   }
 
-  draw([draw, width, height], modes, colours, dark) {
+  draw([draw, width, height], hears, modes, colours, dark) {
     const box = { left: LEFT, top: ABOVE, width: Math.max(1, width - LEFT - RIGHT), height: Math.max(1, height - ABOVE - BELOW) };
+    if (!this.columns.length && !hears) {
+      this.axes.draw(draw, width, height, [colours.line, "silent"], (paint) => inWords(paint, box, ["Slow motion is silent."], colours));
+      return;
+    }
     this.#paint(box, dark);
     this.axes.draw(draw, width, height, [colours.line, colours.soft], (paint) => axes(paint, box, width, colours, dark));
     draw.drawImage(this.image, box.left, box.top, box.width, box.height);
