@@ -30,8 +30,8 @@ export class Gallery {
 function card({ name, title, description }) {
   const label = Object.assign(document.createElement("label"), { className: "card", title: description });
   const input = Object.assign(document.createElement("input"), { type: "radio", name: "instrument", value: name });
-  const picture = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-  for (const [key, value] of Object.entries({ viewBox: "0 0 64 40", class: "sketch", "aria-hidden": "true" })) picture.setAttribute(key, value);
+  const picture = document.getElementById("instrument").cloneNode();
+  picture.removeAttribute("id");
   draw(picture, name);
   label.append(input, picture, Object.assign(document.createElement("strong"), { textContent: title }));
   const { like } = sketchOf(name);

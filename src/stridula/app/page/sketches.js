@@ -51,6 +51,10 @@ const BRAKE = {
   like: "a brake",
   paths: [["", "M30 4a16 16 0 100 32 16 16 0 100-32z M30 14a6 6 0 100 12 6 6 0 100-12z"], ["tip", "M40 9h9q5 11 0 22h-9q4-11 0-22z"], ["heard", "M8 13q-5 7 0 14"]],
 };
+const PAD = {
+  like: "a pad on a turning disc",
+  paths: [["", "M32 16c15 0 26 4.5 26 10s-11 10-26 10S6 31.5 6 26s11-10 26-10z M32 23.5c4 0 6 1 6 2.5s-2 2.5-6 2.5-6-1-6-2.5 2-2.5 6-2.5z"], ["tip", "M40 13l13 3v6l-13-3z M40 13l5-2.5 13 3-5 2.5 M58 13.5v6l-5 2.5 M49 4v7"], ["heard", "M13 25q2-4 9-5.5 M19.5 18l3 1.5-1.5 3"]],
+};
 const GLASS = {
   like: "a wet finger on a wine glass",
   paths: [["", "M19 10q-1 15 11 16 12-1 11-16 M19 10q11 4.5 22 0q-11-4.5-22 0 M30 26v10 M22 37h16"], ["tip", "M41 9l9-6q4-1 4 2.5l-11 7q-2.5 0-2-3.5z"], ["heard", "M14 8q-3 5-1 10 M10 7q-3 6-1 12"]],
@@ -78,7 +82,7 @@ const KNOWN = {
   belt: BELT,
   lugre: PULL,
   brake: BRAKE,
-  "pad-on-disc": BRAKE,
+  "pad-on-disc": PAD,
   glass: GLASS,
   wheel: WHEEL,
   "pin-on-disc": PIN,
@@ -93,7 +97,7 @@ export function sketchOf(name) {
 export function draw(svg, name) {
   svg.replaceChildren(
     ...sketchOf(name).paths.map(([kind, d]) => {
-      const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
+      const path = document.createElementNS(svg.namespaceURI, "path");
       path.setAttribute("d", d);
       if (kind) path.setAttribute("class", kind);
       return path;
