@@ -24,8 +24,8 @@ PATIENCE = 0.5
 TRUST = 0.5
 # Time in which a jump of what is heard dies away [s]: a stroke that begins anew does not click.
 BLEND = 0.004
-# Moments of so many samples by which it is found how fast it can be played.
-MOMENTS, MOMENT = 5, 480
+# Moments of so many samples by which it is found how fast it can be played; short ones where they take so long [s].
+MOMENTS, MOMENT, SHORT, LONG = 5, 480, 48, 0.01
 
 
 class Instrument:
@@ -101,18 +101,22 @@ class Instrument:
 
     def speed(self) -> float:
         """Return how many seconds are played in one, from some moments, and begin again at the start."""
-        taken = []
-        for _ in range(MOMENTS):
-            began = clock.perf_counter()
-            chunk, _ended = self.live.advance(MOMENT)
-            if len(chunk.time):
-                self.source.heard(chunk)
-                self.drawing.shapes(self.live, chunk)
-            taken.append(clock.perf_counter() - began)
+        # The first may compile.
+        self._moment(SHORT)
+        samples = SHORT if self._moment(SHORT) > LONG else MOMENT
+        taken = [self._moment(samples) for _ in range(MOMENTS)]
         self.live.restart()
         self.source.begin()
-        # The first may compile.
-        return MOMENT / RATE / sorted(taken)[MOMENTS // 2]
+        return samples / RATE / sorted(taken)[MOMENTS // 2]
+
+    def _moment(self, samples: int) -> float:
+        """Play a moment that nobody hears or sees and return how long it takes [s]."""
+        began = clock.perf_counter()
+        chunk, _ended = self.live.advance(samples)
+        if len(chunk.time):
+            self.source.heard(chunk)
+            self.drawing.shapes(self.live, chunk)
+        return clock.perf_counter() - began
 
     def restart(self) -> None:
         """Begin a stroke at the start."""

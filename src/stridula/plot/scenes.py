@@ -16,7 +16,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from ..arrays import Array
 from ..bodies import BodyPoint
-from ..bodies.drawn_surfaces import DrawnSurface
+from ..bodies.drawn_surfaces import DrawnSurface, is_drawn
 from ..cards import eye_of
 from ..checks import STATUS_WORDS, ArgumentError, finite, instance
 from ..contact import PointContact
@@ -224,7 +224,7 @@ def surfaces_of(system: System, eye: Array) -> list[_Body]:
 
     Those that have a surface, and rigid bodies that are joined to one of them.
     """
-    surfaces = {body: body.drawn.swept for body in system.bodies if _is_drawn(body)}
+    surfaces = {body: body.drawn.swept for body in system.bodies if is_drawn(body)}
     places = np.concatenate([surface.place for surface in surfaces.values()])
     surfaces |= rigid_surfaces(system, BALL * float(np.ptp(places, axis=0).max()))
     return [_Body(system.body_name(body), surface, surface.normals @ eye > AWAY) for body, surface in surfaces.items()]
@@ -233,7 +233,7 @@ def surfaces_of(system: System, eye: Array) -> list[_Body]:
 def has_surfaces(system: System) -> bool:
     """Return whether a system has bodies whose surface is known."""
     instance("system", system, System)
-    return any(_is_drawn(body) for body in system.bodies)
+    return any(is_drawn(body) for body in system.bodies)
 
 
 def check_surfaces(system: System) -> None:
@@ -242,11 +242,6 @@ def check_surfaces(system: System) -> None:
         kinds = sorted({type(body).__name__ for body in system.bodies})
         words = "have a SolidBody or an AxisymmetricBody, whose surface is drawn"
         raise ArgumentError("system", words, system, got=", ".join(kinds))
-
-
-def _is_drawn(body: Any) -> bool:
-    """Return whether the surface of a body is known, without making it."""
-    return hasattr(type(body), "drawn") and getattr(body, "is_drawn", True)
 
 
 def largest_departure(bodies: list[_Body], motion: ModalMotion) -> float:
