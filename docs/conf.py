@@ -101,6 +101,8 @@ FIGURES = (
     "animate",
     "animate_surface",
     "animate_mode",
+    "view",
+    "view_mode",
     "Film",
     "save",
 )

@@ -86,7 +86,7 @@ _HOME = {
     "analysis.stability": ("sliding_stability",),
     "analysis": ("regime",),
     "analysis.record_card": ("RecordCard", "card"),
-    "acoustics": ("Air", "radiate", "radiation_damping", "radiation_efficiency"),
+    "acoustics": ("Air", "Bridge", "radiate", "radiation_damping", "radiation_efficiency"),
     "studies": (
         "CalibrationProgress",
         "Grid",

@@ -48,6 +48,21 @@ def test_axe_finds_nothing_grave(shown):
     assert grave(page) == []
 
 
+def test_axe_finds_nothing_grave_in_a_system_on_tour_and_among_instruments(shown):
+    page = shown.open("#case=violin")
+    assert grave(page) == []
+    page.locator("#record").click()
+    page.locator("#tour-begin").click()
+    page.locator("#slot-b").click()
+    page.locator("#record").click()
+    page.locator("#recording").wait_for(state="visible")
+    assert grave(page) == []
+    page.locator("#tour-leave").click()
+    page.locator("#instruments").click()
+    assert page.locator("#gallery").is_visible()
+    assert grave(page) == []
+
+
 def test_axe_finds_nothing_grave_in_the_introduction(shown):
     page = shown.open(intro=True)
     assert page.locator("#intro").is_visible()
@@ -107,6 +122,8 @@ def test_all_frames_are_as_wide_as_the_page(chromium, server, width):
 def test_the_keyboard_reaches_everything(browsing):
     page = browsing.open()
     page.locator("#scenario summary").click()
+    page.locator("#tour-begin").click()
+    page.locator("#tour-next").click()
     page.evaluate("document.activeElement.blur()")
     page.evaluate(f"window.wanted = ({SEEN})()")
     count = page.evaluate("wanted.length")

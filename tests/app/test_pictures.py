@@ -6,7 +6,7 @@ import pytest
 
 from .scripting import result_of
 
-TOP = """import { Top } from "./pictures.js";
+TOP = """import { Top } from "./timeline.js";
 const top = new Top();
 result = given.map(([largest, now]) => top.follow(largest, now));"""
 BESIDE = """import { besideTip } from "./pictures.js";

@@ -268,3 +268,52 @@ def test_what_is_slower_than_it_sounds_is_shown_slowly_and_that_is_said(browsing
     words = "This machine computes it 2.2 times slower than it sounds: it is shown at that speed, without sound."
     assert slow == ["2.2", words]
     assert fast == ["1", ""]
+
+
+def slow(monkeypatch, *speeds):
+    """Let an instrument seem to play so many seconds in one, one measurement after the other."""
+    found = iter(speeds)
+    monkeypatch.setattr(Instrument, "speed", lambda self: (self.live.restart(), next(found))[1])
+
+
+def test_steps_are_longer_where_that_keeps_up_with_the_sound(monkeypatch):
+    slow(monkeypatch, 0.8, 1.4)
+    instrument = Instrument(playable("violin", None, {}))
+    assert instrument.live.ratio == 14
+    assert instrument.keep_up() == 1.4
+    assert instrument.live.ratio == 7
+    # As TOML it is the run of the command line, bit for bit.
+    text = instrument.played.toml
+    part, *_ = (part for part in instrument.play(480) if isinstance(part, Part))
+    again = st.simulate(*told(text), duration=480 / RATE, sample_rate=RATE, step=1.0 / RATE / 7, probes=())
+    assert np.array_equal(again.normal_force.values[:, 0], part.chunk.contacts["normal_force"][0])
+    # So it stays while something is turned, and not for another case.
+    assert instrument.change(playable("violin", None, {BOW_FORCE: 0.25}), 1)
+    assert instrument.live.ratio == 7
+    instrument.change(playable("lugre", None, {}), 2)
+    assert instrument.longer is None
+    instrument.change(playable("violin", None, {}), 3)
+    assert instrument.live.ratio == 14
+
+
+def told(text):
+    """Return the system that a text describes, as `simulate` takes it."""
+    return (playable("", text, {}).system,)
+
+
+@pytest.mark.parametrize("speeds", [(1.2,), (0.8, 0.9)])
+def test_steps_are_the_usual_ones_where_they_do_or_none_would(monkeypatch, speeds):
+    slow(monkeypatch, *speeds)
+    instrument = Instrument(playable("violin", None, {}))
+    assert instrument.keep_up() == speeds[0]
+    assert (instrument.live.ratio, instrument.longer) == (14, None)
+    assert "step" not in instrument.played.tables["simulation"]
+
+
+def test_a_step_of_a_scenario_is_taken_as_it_is(monkeypatch):
+    slow(monkeypatch, 0.5)
+    text = TWO_RODS + "step = 5e-6\n"
+    instrument = Instrument(playable("", text, {}))
+    assert instrument.keep_up() == 0.5
+    assert instrument.live.ratio == 5
+    assert instrument.played.tables["simulation"]["step"] == 5e-6

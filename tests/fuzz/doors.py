@@ -39,6 +39,8 @@ SLOW = {
     "loudness_over_time",
     "roughness",
     "sharpness",
+    "view",
+    "view_mode",
 }
 
 

@@ -118,6 +118,25 @@ def test_bands_are_lines_and_half_a_circle_stays_open():
     assert lines[0].get_xdata().size == half.sizes["listener"]
 
 
+def test_a_tone_stands_in_its_band():
+    """1 Pa at 1 kHz is 91 dB, of its two listeners the second hears half."""
+    time = np.arange(24_000) / 48e3
+    tone = np.sqrt(2.0) * np.sin(2.0 * np.pi * 1000.0 * time)
+    (axes,) = plot.third_octaves(heard(np.stack([tone, 0.5 * tone], axis=1))).axes
+    for stairs, level in zip(axes.patches, (93.98, 87.96), strict=True):
+        values, edges, _ = stairs.get_data()
+        band = int(np.flatnonzero((edges[:-1] < 1000.0) & (edges[1:] > 1000.0))[0])
+        assert values[band] == pytest.approx(level, abs=0.05)
+        assert values.argmax() == band
+    words = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert ["LAeq 94.0 dB" in words[0], "LAeq 88.0 dB" in words[1]] == [True, True]
+    # A short sound has no low bands.
+    (short,) = plot.third_octaves(heard(tone[:2400])).axes
+    assert short.patches[0].get_data()[1][0] > 80.0
+    with pytest.raises(ValueError, match="pressure must hold a sound, got silence"):
+        plot.third_octaves(heard(0.0 * tone))
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [

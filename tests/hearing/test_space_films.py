@@ -17,7 +17,8 @@ from stridula.cards import VIEW
 from stridula.plot import mode_films, space_films
 from stridula.plot.colours import STATUS_COLOURS
 from stridula.plot.motion import ModalMotion, Timing, motion_of
-from stridula.plot.scenes import Scene, surfaces_of
+from stridula.plot.moved_bodies import surfaces_of
+from stridula.plot.scenes import Scene
 from stridula.plot.space_films import SpacePicture
 from stridula.records import provenance
 from stridula.records.variables import STATUS_WORDS
@@ -88,7 +89,7 @@ def still_scene(body, speed):
     modal = body.modal_coordinates(uniform)
     motion = ModalMotion({body.name: np.stack([0.0 * modal, 1e-3 * modal])}, {body.name: np.stack([modal, modal])})
     scene = Scene(Figure(), ROOM, on_plane(body), motion, 10.0, VIEW)
-    scene.colour_bar(scene.axes.figure.add_axes((0.9, 0.1, 0.02, 0.8)), scene.largest_velocity)
+    scene.colour_bar(scene.axes.figure.add_axes((0.9, 0.1, 0.02, 0.8)), scene.moved.largest_velocity)
     return scene
 
 
@@ -106,7 +107,7 @@ def test_colours_are_velocities_out_of_the_surface():
     red, _, blue, _ = scene.sides.get_facecolor().T
     assert np.count_nonzero(red > 2.0 * blue) == np.count_nonzero(top)
     np.testing.assert_allclose(red[red <= 2.0 * blue], blue[red <= 2.0 * blue], rtol=0.01)
-    assert scene.largest_velocity == pytest.approx(0.3)
+    assert scene.moved.largest_velocity == pytest.approx(0.3)
     sinking = still_scene(block(), (0.0, -0.3, 0.0))
     sinking.show(0)
     red, _, blue, _ = sinking.sides.get_facecolor().T
@@ -121,7 +122,7 @@ def test_the_scale_of_colours_is_in_the_picture(speed, unit):
     scene = still_scene(block(), (0.0, speed, 0.0))
     axes = figure.add_axes(space_films.COLOUR_BAR)
     scene._figure = figure
-    scene.colour_bar(axes, scene.largest_velocity)
+    scene.colour_bar(axes, scene.moved.largest_velocity)
     figure.draw_without_rendering()
     assert axes.get_ylabel() == f"velocity out of the surface [{unit}]"
     assert axes.yaxis.label.get_window_extent().x1 < 960 - 5

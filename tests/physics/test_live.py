@@ -231,6 +231,22 @@ def test_schemes_change_on_the_way():
     assert after["normal_force"].max() < 3.0 * before["normal_force"].max()
 
 
+def test_steps_are_as_long_as_asked_for_and_the_run_bit_for_bit():
+    """A sample has a whole number of steps, none longer than asked for."""
+    what = system("weak-pressure")
+    live = LiveMarch(what, probes(what), step=9e-6)
+    assert live.ratio == 3
+    run = st.simulate(what, 960 / RATE, step=1.0 / RATE / 3, sample_rate=RATE)
+    found = marched(live, 2)["normal_force"]
+    assert np.array_equal(run.normal_force.values, found)
+    usual = LiveMarch(what, probes(what))
+    assert usual.ratio > 3
+    assert live.change(what, probes(what))
+    assert (live.ratio, live.step) == (usual.ratio, usual.step)
+    with pytest.raises(ValueError, match="step must be below the exact modal scheme's limit"):
+        LiveMarch(what, probes(what), sample_rate=100.0, step=1e-2)
+
+
 @pytest.mark.parametrize("case", ["violin", "belt", "lugre"])
 def test_several_contacts_and_rigid_tracks_are_the_run_bit_for_bit(case):
     what = system(case)

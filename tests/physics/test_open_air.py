@@ -13,13 +13,16 @@ import pytest
 
 import stridula as st
 from stridula.acoustics.fits import fits_of
+from stridula.acoustics.flat_patches import patch_integrals
 from stridula.acoustics.free_responses import free_responses
 from stridula.acoustics.redriven import redriven
 from stridula.acoustics.ring_sources import RingSources
 from stridula.acoustics.surface_pressures import SurfacePressures
 from stridula.assembly import assemble
 from stridula.bodies import ring_surfaces
-from stridula.bodies.body_surfaces import RingSurface
+from stridula.bodies.body_surfaces import RingSurface, surface_of
+from stridula.bodies.cut_elements import cut_into_tetrahedra
+from stridula.bodies.solid_surfaces import cut_faces
 from stridula.verification import open_air
 
 from .test_turning import HERE, disc, rubbed, struck
@@ -212,6 +215,67 @@ def test_a_mesh_without_points_within_falls_short_at_a_resonance(monkeypatch):
     monkeypatch.setattr(SurfacePressures, "within", np.zeros((0, 3)))
     alone = open_air.heard(SurfacePressures(sphere.surface), wave, place)[:, :1]
     assert np.abs(alone - known) > 3.0 * np.abs(found - known)
+
+
+def meshed_disc(thickness, divisions, cut):
+    """Return a ring of 30 and 100 mm that moves along its axis, as a mesh of hexahedra or tetrahedra."""
+    mesh = st.SolidMesh.sector((0.03, 0.1), (0.0, 2.0 * pi), thickness, divisions, axis="z")
+    if cut:
+        parts = cut_into_tetrahedra(mesh.nodes, [("hexahedron20", mesh.elements)])
+        mesh = st.SolidMesh(parts.nodes, parts.elements, "tetra10")
+    along = np.tile([0.0, 0.0, 1.0], (len(mesh.nodes), 1))[:, :, None]
+    return SurfacePressures(cut_faces(mesh, along, 0.0035))
+
+
+@pytest.mark.parametrize(
+    ("thickness", "divisions", "cut"),
+    [(0.003, (4, 24, 1), False), (0.003, (10, 64, 2), False), (0.01, (4, 24, 1), True)],
+)
+def test_thin_meshed_bodies_sound_as_the_same_bodies_of_revolution(thickness, divisions, cut):
+    """Patches of 9 mm on a disc of 3 mm, some of many small pieces, against rings."""
+    profile = st.RectangleProfile({"disc": ((0.03, 0.1), (0.0, thickness))}).mesh(lambda size, name: 0.1)
+    places, normals, widths = ring_surfaces.cut_outline(profile, 0.0125)
+    orders = np.zeros(1, dtype=int)
+    rings = RingSources(RingSurface(places, normals, widths, normals[:, 1:], orders, orders, np.eye(3), np.zeros(3)))
+    mesh, ears = meshed_disc(thickness, divisions, cut), np.array([[0.3, 0.1, 0.5], [0.2, 0.05, 0.1]])
+    for wavenumber in (10.0, 60.0):
+        known, found = (open_air.heard(one, wavenumber, ears) for one in (rings, mesh))
+        # 0.3 dB: both meet edges to some 3 %.
+        np.testing.assert_allclose(np.abs(found), np.abs(known), rtol=0.035)
+
+
+def test_patches_in_closed_form_are_the_integral_over_points():
+    """Over a square and a triangle, seen from aside, from below and from one's own plane."""
+    square = np.array([[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.9, 0.8, 0.0], [0.0, 0.7, 0.0]])
+    triangle = square[[0, 1, 2, 2]]
+    nodes, weights = np.polynomial.legendre.leggauss(120)
+    u, v = np.meshgrid(0.5 * (nodes + 1.0), 0.5 * (nodes + 1.0))
+    share = np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v], axis=-1)
+    for corners in (square, triangle):
+        points = share @ corners
+        along = (1 - v)[..., None] * (corners[1] - corners[0]) + v[..., None] * (corners[2] - corners[3])
+        across = (1 - u)[..., None] * (corners[3] - corners[0]) + u[..., None] * (corners[2] - corners[1])
+        area = np.cross(along, across)[..., 2] * 0.25 * np.multiply.outer(weights, weights)
+        for place in ([0.6, 0.3, 0.2], [2.0, 1.0, 0.0], [0.6, 0.3, -0.3], [-0.4, 0.2, 0.4]):
+            apart = points - np.array(place)
+            away = np.linalg.norm(apart, axis=-1)
+            inverse, angle = patch_integrals(np.array([place]), corners[None])
+            assert inverse[0] == pytest.approx((area / away).sum(), rel=1e-9)
+            assert angle[0] == pytest.approx((area * apart[..., 2] / away**3).sum(), rel=1e-9, abs=1e-12)
+
+
+def test_a_surface_without_its_pieces_is_read_as_squares():
+    """As files have it that were written before there were pieces."""
+    whole = open_air.meshed_sphere(4).surface
+    names = ("points", "normals", "areas", "shapes")
+    bare = surface_of({name: getattr(whole, name).tolist() for name in names})
+    corners = bare.corners.reshape(-1, 4, 3)
+    np.testing.assert_allclose(corners.mean(axis=1), whole.points, atol=1e-12)
+    vectors = 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    np.testing.assert_allclose(vectors, whole.areas[:, None] * whole.normals, atol=1e-12)
+    places, wave = open_air.PLACES, 1.0 / open_air.RADIUS
+    known, found = (open_air.heard(SurfacePressures(one), wave, places) for one in (whole, bare))
+    np.testing.assert_allclose(found, known, atol=0.01 * np.abs(known).max())
 
 
 def test_a_response_is_delayed_by_the_way_to_the_surface():

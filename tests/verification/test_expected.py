@@ -7,6 +7,7 @@ from math import atan, pi, radians
 import numpy as np
 import pytest
 
+import stridula as st
 from stridula.verification import (
     frequencies,
     impacts,
@@ -15,6 +16,7 @@ from stridula.verification import (
     laws,
     partial_slip,
     sliders,
+    sounding_spheres,
     stability,
     strings,
 )
@@ -168,3 +170,16 @@ def test_cattaneo():
     """The numbers of CONTACT's case, printed to a radius of 1 mm."""
     known = partial_slip.closed_form()
     assert known == pytest.approx((1e-3, 2e-5, 4.390480e6, 8.172412e-6, 5e-4), rel=2e-7)
+
+
+def test_nafems_levels_are_effective_values():
+    for frequency, level in sounding_spheres.LEVELS.items():
+        assert sounding_spheres.level_of_nafems(frequency) == pytest.approx(level, abs=6e-4)
+
+
+def test_elastic_sphere(monkeypatch):
+    """Printed for Poisson's ratio 1/4 (Love 1927, section 195) as 0.8160 pi and 0.840 pi."""
+    monkeypatch.setattr(sounding_spheres, "STEEL", st.Material(1.0, 1.0, 0.25))
+    size = 2.0 * pi * sounding_spheres.RADIUS
+    assert sounding_spheres.breathing() * size / 1.2**0.5 == pytest.approx(0.8160 * pi, abs=5e-5 * pi)
+    assert sounding_spheres.oblate() * size / 0.4**0.5 == pytest.approx(0.840 * pi, abs=5e-4 * pi)

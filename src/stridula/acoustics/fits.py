@@ -23,7 +23,7 @@ from .surface_pressures import SurfacePressures
 # By the form of the surface.
 RADIATORS: dict[str, Callable[[Any], Radiator]] = {"rings": RingSources, "points": SurfacePressures}
 # What fits depend on beside a surface and a wavenumber.
-SOURCES = ("equivalent_sources.py", "ring_sources.py", "surface_pressures.py", "fits.py")
+SOURCES = ("equivalent_sources.py", "ring_sources.py", "surface_pressures.py", "flat_patches.py", "fits.py")
 # Time that making fits takes from which on they are kept [s].
 WORTH = 1.0
 

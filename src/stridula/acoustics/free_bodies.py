@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -33,6 +33,12 @@ def bodies_heard(system: System) -> list[Any]:
     return [body for body in system.bodies if getattr(body, "has_surface", False)]
 
 
+def check_in_open_air(baffled: bool | None) -> None:
+    """Raise ValueError if bodies in space are wanted in a baffle."""
+    if baffled:
+        raise ArgumentError("baffled", "be False, or left out, for bodies in space", baffled)
+
+
 def free_sound(
     run: xr.Dataset,
     system: System,
@@ -48,26 +54,53 @@ def free_sound(
     ValueError
         If a body has no surface, a listener is in a body, or the record is not usable.
     """
+    heard, silent = chosen(system, bodies, bodies_heard(system))
+    normal, tangent = (np.resize(one, 3) * (np.arange(3) < len(one)) for one in system.contacts[0].frame[:2])
+    named = {system.body_name(body): body for body in heard}
+    pressure, time, places, attributes, moved = bodies_sound(
+        lambda: redriven(run, system), named, (normal, tangent), listener, air, sample_rate
+    )
+    notes = [attributes["notes"], *lacks(system, heard, silent, moved)]
+    return pressure, time, places, attributes | {"notes": "; ".join(filter(None, notes))}
+
+
+def bodies_sound(
+    motion: Callable[[], Moved],
+    heard: dict[str, Any],
+    above: tuple[Array, Array],
+    listener: Any,
+    air: Air | None,
+    sample_rate: float | None,
+) -> tuple[Array, Array, Array, dict[str, Any], Moved]:
+    """Return pressures (listeners, samples), their times, the listeners, attributes and the motion, of bodies by name.
+
+    Listeners left out are two ears along the first of the directions `above` from their middle, side by side along the
+    second one.
+
+    Raises
+    ------
+    ValueError
+        If a listener is in a body, or there is no such motion.
+    """
     air = Air() if air is None else air
     instance("air", air, Air)
-    heard, silent = chosen(system, bodies, bodies_heard(system))
-    surfaces = [body.surface() for body in heard]
-    places = listeners_of(_ears(system, surfaces) if listener is None else listener)
+    surfaces = [body.surface() for body in heard.values()]
+    places = listeners_of(_ears(above, surfaces) if listener is None else listener)
     distances = np.array([_distances(surface, places) for surface in surfaces])
-    moved = redriven(run, system)
+    moved = motion()
     recorded = 1.0 / moved.interval
     ratio = ratio_of(sample_rate, recorded, moved.samples)
     bandwidth = min(bandwidth_of(ratio, recorded), HIGHEST)
     shift = (moved.first - moved.start) / moved.interval
     pressure, notes, errors = np.zeros((len(places), moved.samples)), [], {}
-    for body, surface, away in zip(heard, surfaces, distances, strict=True):
-        first, _ = moved.spans[system.body_name(body)]
+    for (name, body), surface, away in zip(heard.items(), surfaces, distances, strict=True):
+        first, _ = moved.spans[name]
         modes = first + np.flatnonzero(~body.modes().massless)
         sent = free_responses(surface, places, away, air, moved.interval, shift, bandwidth)
         pressure += convolved(sent.responses, moved, modes)
-        said, worst = _doubts(system.body_name(body), body.modes().frequency[: modes.size], sent)
+        said, worst = _doubts(name, body.modes().frequency[: modes.size], sent)
         notes += said
-        errors[system.body_name(body)] = worst
+        errors[name] = worst
     sounding = resample(pressure, ratio)
     times = np.arange(sounding.shape[1]) * moved.interval / float(ratio)
     arrival = distances.min(axis=0) / air.speed
@@ -76,18 +109,17 @@ def free_sound(
         notes.append("silence: nothing pushes")
     elif (arrival + moved.pushed > times[-1]).any():
         notes.append("silence: the sound does not arrive within the record")
-    notes += lacks(system, heard, silent, moved)
     attributes = {
         "bandwidth": bandwidth,
         "modes": int(sum(surface.shapes.shape[1] for surface in surfaces)),
         "baffled": 0,
         "distance": distances.min(axis=0).tolist(),
-        "bodies": [system.body_name(body) for body in heard],
+        "bodies": list(heard),
         "fit_error": list(errors.values()),
         **air.attributes,
         "notes": "; ".join(notes),
     }
-    return sounding, moved.start + times, places, attributes
+    return sounding, moved.start + times, places, attributes, moved
 
 
 def chosen(system: System, bodies: Sequence[Any] | None, heard: list[Any]) -> tuple[list[Any], list[str]]:
@@ -112,9 +144,9 @@ def chosen(system: System, bodies: Sequence[Any] | None, heard: list[Any]) -> tu
     return list(dict.fromkeys(bodies)), []
 
 
-def _ears(system: System, surfaces: Sequence[BodySurface]) -> list[list[float]]:
-    """Return two ears above the middle of what is heard, on the side of the first contact's tip, along its tangent."""
-    normal, tangent = (np.resize(one, 3) * (np.arange(3) < len(one)) for one in system.contacts[0].frame[:2])
+def _ears(above: tuple[Array, Array], surfaces: Sequence[BodySurface]) -> list[list[float]]:
+    """Return two ears above the middle of what is heard, along a normal and side by side along a tangent."""
+    normal, tangent = above
     points = np.concatenate([surface.as_points.points for surface in surfaces])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     above = middle + (float((points @ normal).max()) + HEIGHT - float(middle @ normal)) * normal

@@ -73,8 +73,7 @@ def plane_sound(
     air = Air() if air is None else air
     instance("air", air, Air)
     run = record("run", run)
-    tracks = _tracks(system)
-    beams = [body for body in system.bodies if body not in tracks and _is_slim(body)]
+    tracks, beams = _tracks(system), _beams(system)
     heard, silent = chosen(system, bodies, [*tracks, *beams])
     outlines = {one.body: one for one in outlines_of(system)[0]}
     wall = _wall(tracks, outlines, baffled)
@@ -99,11 +98,22 @@ def plane_sound(
     return pressure, parts[0][1], places, attributes
 
 
+def plane_bodies(system: System) -> list[Any]:
+    """Return the bodies of a system in the plane that can be heard, its tracks first."""
+    return [*_tracks(system), *_beams(system)]
+
+
 def _tracks(system: System) -> list[Any]:
     """Return the tracks that contacts move along and that can be heard."""
     unknown = panel_of.dispatch(object)
     found = [contact.path_body for contact in system.contacts if contact.path_body is not None]
     return [body for body in dict.fromkeys(found) if panel_of.dispatch(type(body)) is not unknown]
+
+
+def _beams(system: System) -> list[Any]:
+    """Return the beams whose section is known, but for tracks."""
+    tracks = _tracks(system)
+    return [body for body in system.bodies if body not in tracks and _is_slim(body)]
 
 
 def _is_slim(body: Any) -> bool:
@@ -160,10 +170,14 @@ def _of_track(
 ) -> Part:
     on_it = [number for number, contact in enumerate(system.contacts) if contact.path_body == track]
     pressing = run.isel(contact=on_it) if "contact" in run.dims else run
+    if system.initial_equilibrium is not None:
+        # It has stood so for long.
+        pressing = pressing.assign(normal_force=pressing["normal_force"] - pressing["normal_force"].isel(time=0))
     places = _axes(track).listeners(seen - [outline.place[0], 0.0, outline.place[1]])
     pressure, time, _, attributes = track_sound(pressing, track, places, baffled, air, sample_rate)
+    name = system.body_name(track)
+    attributes["notes"] = attributes["notes"].replace("silence: ", f"{name} is silent: ")
     if any(contact.touched_point and contact.touched_point.body == track for contact in system.contacts):
-        name = system.body_name(track)
         attributes["notes"] += f"; what touches {name} at one point does not drive it here"
     return pressure, time, attributes
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import singledispatch
 from typing import Any
 
 import numpy as np
@@ -14,14 +15,15 @@ from ..checks import ArgumentError, instance
 from ..records.variables import described
 from ..system import System
 from .air import Air
-from .free_bodies import free_sound
+from .bridges import Bridge, bridged_sound
+from .free_bodies import check_in_open_air, free_sound
 from .plane_sound import plane_sound
 from .track_sound import track_sound
 
 
 def radiate(
     run: xr.Dataset,
-    track: ModalBeam | ModalPlate | System,
+    track: ModalBeam | ModalPlate | System | Bridge,
     listener: Any = None,
     *,
     bodies: Sequence[Any] | None = None,
@@ -44,10 +46,10 @@ def radiate(
     ----------
     run : xarray.Dataset
         A record, with or without probes. All its contacts press on the track: choose with ``run.sel(contact=[...])``.
-    track : ModalBeam, ModalPlate or System
+    track : ModalBeam, ModalPlate, System or Bridge
         What is heard. A track need not be the body of the run, but must be as long as where it is pressed. Of a system,
         that of the run, the sum over its bodies is heard: in space over all that have a surface, in the plane over
-        tracks and beams.
+        tracks and beams. Of a bridge, the body that the recorded force on the support of a string drives.
     listener : tuple of float, or sequence of tuples, optional
         Where one listens, x, y, z [m]: x along the track from its left end, y across it in its surface, from the axis
         of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above the
@@ -85,16 +87,34 @@ def radiate(
     """
     if baffled is not None:
         instance("baffled", baffled, bool)
-    what: Any = track
-    if hasattr(what, "contacts") and not what.is_spatial:
-        return _labelled(*plane_sound(run, what, listener, bodies, baffled, air, sample_rate))
-    if hasattr(what, "contacts"):
-        if baffled:
-            raise ArgumentError("baffled", "be False, or left out, for bodies in space", baffled)
-        return _labelled(*free_sound(run, what, listener, bodies, air, sample_rate))
-    if bodies is not None:
+    if bodies is not None and not hasattr(track, "contacts"):
         raise ArgumentError("bodies", "be left out but for a System", bodies)
-    return _labelled(*track_sound(run, what, listener, baffled is not False, air, sample_rate))
+    return _labelled(*_sound(track, run, listener, bodies, baffled, air, sample_rate))
+
+
+Sound = tuple[Array, Array, Array, dict[str, Any]]
+
+
+@singledispatch
+def _sound(track: Any, run: Any, listener: Any, _bodies: Any, baffled: Any, air: Any, sample_rate: Any) -> Sound:
+    return track_sound(run, track, listener, baffled is not False, air, sample_rate)
+
+
+@_sound.register
+def _of_a_system(
+    system: System, run: Any, listener: Any, bodies: Any, baffled: Any, air: Any, sample_rate: Any
+) -> Sound:
+    if not system.is_spatial:
+        return plane_sound(run, system, listener, bodies, baffled, air, sample_rate)
+    check_in_open_air(baffled)
+    return free_sound(run, system, listener, bodies, air, sample_rate)
+
+
+@_sound.register
+def _of_a_bridge(
+    bridge: Bridge, run: Any, listener: Any, _bodies: Any, baffled: Any, air: Any, sample_rate: Any
+) -> Sound:
+    return bridged_sound(run, bridge, listener, baffled, air, sample_rate)
 
 
 def _labelled(pressure: Array, time: Array, listeners: Array, attributes: dict[str, Any]) -> xr.DataArray:

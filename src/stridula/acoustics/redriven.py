@@ -23,6 +23,7 @@ from ..arrays import Array
 from ..assembly import Assembly, TurningModes, assemble
 from ..checks import ArgumentError
 from ..records.by_point import by_point
+from ..records.changes import check_one_system
 from ..records.checked import record
 from ..system import System
 from .driven import FASTEST, LEAD, respond, steady
@@ -81,6 +82,7 @@ def redriven(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = Non
         If the record is not usable or not one of the system.
     """
     given = record("run", run)
+    check_one_system(given)
     points = by_point(given, ("normal_force", "tangential_force"))
     if "map_time" in given.dims and points is given:
         words = "have the forces at all points of surfaces at every sample"

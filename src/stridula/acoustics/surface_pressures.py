@@ -6,8 +6,7 @@ Helmholtz's integral over the surface of a body, n outward, with the normal acce
 
 is an equation for the pressure p there; beyond the body the same integral is the pressure itself, within it is zero. At
 frequencies at which the inside resonates only this last statement tells the pressure: it is asked for at some points
-within, in least squares (Schenck 1968, J. Acoust. Soc. Am. 44, 41-58). Unlike sources that lie within, a pressure is
-finite at edges, so that patches need not get smaller towards them.
+within, in least squares (Schenck 1968, J. Acoust. Soc. Am. 44, 41-58).
 """
 
 from __future__ import annotations
@@ -20,9 +19,46 @@ import numpy as np
 from ..arrays import Array
 from ..bodies.body_surfaces import PointSurface, inscribed_radius
 from .equivalent_sources import Fit, least_squares
+from .flat_patches import patch_integrals
 
-# Points of the surface for one within, and the ball around these, over the side of a patch, that is free of surface.
-POINTS_TO_ONE_WITHIN, FREE = 12, 1.5
+# Points of the surface for one within, and the ball around these, over the reach of a patch, that is free of surface.
+POINTS_TO_ONE_WITHIN, FREE = 12, 2.0
+# Distance over the reach of a patch up to which it is no point.
+NEAR = 4.0
+# Share of a turn whose multiples fill it evenly.
+GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+
+
+@dataclass(frozen=True)
+class _Static:
+    """What patches give at places at the frequency zero, shape (places, points) each, taken as points.
+
+    Attributes
+    ----------
+    away : ndarray
+        Distances [m]; zero of a patch from itself.
+    double, single : ndarray
+        Integrals over the patches of -dG/dn and of G, of a patch at its own place in truth.
+    near : tuple of ndarray, shape (pairs,)
+        Numbers of places and of patches near to each other.
+    more_double, more_single : ndarray, shape (pairs,)
+        By how much the integrals over these differ from those over points.
+    """
+
+    away: Array
+    double: Array
+    single: Array
+    near: tuple[Array, Array]
+    more_double: Array
+    more_single: Array
+
+    @property
+    def rounded(self) -> _Static:
+        """The same in single precision: matrices are better conditioned than that by far."""
+        away, double, single, *more = (
+            one.astype(np.float32) for one in (self.away, self.double, self.single, self.more_double, self.more_single)
+        )
+        return _Static(away, double, single, self.near, *more)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,35 +80,42 @@ class SurfacePressures:
 
     @cached_property
     def within(self) -> Array:
-        """Points within the body, away from its surface [m], shape (points, 3): middles of balls that fit into it."""
+        """Points within the body, away from its surface [m], shape (points, 3).
+
+        In balls that fit into it, at all depths up to their middles: a sphere has but one, where many of the fields at
+        which the inside resonates are zero.
+        """
         points, normals = self.surface.points, self.surface.normals
-        ball = inscribed_radius(points, normals, points)
-        wide = np.flatnonzero(np.isfinite(ball) & (ball > FREE * np.sqrt(self.surface.areas)))
+        ball, least = inscribed_radius(points, normals, points), FREE * self._reach
+        wide = np.flatnonzero(np.isfinite(ball) & (ball > least))
         chosen = wide[:: max(1, POINTS_TO_ONE_WITHIN * wide.size // len(points))]
-        return np.asarray(points[chosen] - ball[chosen, None] * normals[chosen])
+        share = GOLDEN * np.arange(1, chosen.size + 1) % 1.0
+        depth = least[chosen] + share * (ball - least)[chosen]
+        return np.asarray(points[chosen] - depth[:, None] * normals[chosen])
 
     @cached_property
-    def still(self) -> Array:
-        """What each patch adds at its own place: all together see half of all directions, shape (points,)."""
-        away, slopes = self._on_surface
-        seen = (self.surface.areas / (4.0 * np.pi) * slopes / away).sum(axis=1, dtype=float)
-        return np.asarray(-0.5 + seen)
+    def _reach(self) -> Array:
+        """Distances of the farthest corners of patches from their points [m]."""
+        surface = self.surface
+        away = surface.corners.reshape(-1, 4, 3) - surface.points[surface.owners, None]
+        found = np.zeros(len(surface.points))
+        np.maximum.at(found, surface.owners, np.linalg.norm(away, axis=2).max(axis=1))
+        return found
 
     def fit(self, wavenumber: float) -> Fit:
         """Return the pressures on the surface at a wavenumber of the sound [rad/m].
 
         Errors are those of the equations together, on the surface and within, over what the motion gives there.
         """
-        areas, shapes = self.surface.areas, self.surface.shapes.astype(np.float32)
-        double, single = self._layers(wavenumber, *self._on_surface)
-        # A patch at its own middle, as a disc.
-        own = 0.5 * np.sqrt(areas / np.pi) - 1j * wavenumber * areas / (4.0 * np.pi)
-        single[np.diag_indices_from(single)] = own
+        shapes = self.surface.shapes.astype(np.float32)
+        double, single = _layers(wavenumber, self._on_surface)
+        itself = np.diag_indices_from(single)
+        single[itself] -= 1j * wavenumber * self.surface.areas / (4.0 * np.pi)
         matrix = -double
-        matrix[np.diag_indices_from(matrix)] = 0.5 - self.still
+        matrix[itself] += 0.5
         aims = single @ shapes
         if len(self.within):
-            double, single = self._layers(wavenumber, *self._inside)
+            double, single = _layers(wavenumber, self._inside)
             matrix, aims = np.concatenate([matrix, -double]), np.concatenate([aims, single @ shapes])
         pressures = least_squares(matrix, aims)
         size = np.linalg.norm(aims, axis=0)
@@ -81,47 +124,70 @@ class SurfacePressures:
 
     def heard(self, fit: Fit, wavenumber: float, places: Array) -> Array:
         """Return the pressures at places (listeners, 3) [m] for unit modal accelerations, shape (listeners, modes)."""
-        double, single = self._layers(wavenumber, *self._apart(places))
+        double, single = _layers(wavenumber, self._apart(places))
         return np.asarray(double @ fit.strengths[0] + single @ self.surface.shapes)
 
     @cached_property
-    def _on_surface(self) -> tuple[Array, Array]:
-        """What `_apart` tells of the patches themselves, without the share of each at its own place."""
-        away, slopes = self._apart(self.surface.points)
-        slopes[np.diag_indices_from(slopes)] = 0.0
-        # Patches are better conditioned than single precision by far, and right to percents.
-        return away.astype(np.float32), slopes.astype(np.float32)
+    def _on_surface(self) -> _Static:
+        """What patches give at their own points: all together see half of all directions."""
+        static = self._apart(self.surface.points)
+        place, patch = static.near
+        static.more_double[place == patch] = 0.0
+        static.double[np.diag_indices_from(static.double)] = (
+            0.5 - static.double.sum(axis=1) - np.bincount(place, static.more_double, len(static.double))
+        )
+        return static.rounded
 
     @cached_property
-    def _inside(self) -> tuple[Array, Array]:
-        """What `_apart` tells of the points within."""
-        away, slopes = self._apart(self.within)
-        return away.astype(np.float32), slopes.astype(np.float32)
+    def _inside(self) -> _Static:
+        """What patches give at the points within."""
+        return self._apart(self.within).rounded
 
-    def _apart(self, places: Array) -> tuple[Array, Array]:
-        """Return distances of the patches from places, and their slopes along the normals over themselves.
-
-        Shape (places, points) each; no distance is zero.
-        """
-        square, toward = np.zeros((2, len(places), len(self.surface.areas)))
+    def _apart(self, places: Array) -> _Static:
+        """Return what patches give at places: near ones in closed form, others as points."""
+        surface = self.surface
+        square, toward = np.zeros((2, len(places), len(surface.areas)))
         for axis in range(3):
-            apart = self.surface.points[:, axis] - places[:, axis, None]
+            apart = surface.points[:, axis] - places[:, axis, None]
             square += apart**2
-            toward += apart * self.surface.normals[:, axis]
-        square[square == 0.0] = 1.0
-        return np.sqrt(square), toward / square
+            toward += apart * surface.normals[:, axis]
+        away = np.sqrt(square)
+        square[square == 0.0] = np.inf
+        single = surface.areas / (4.0 * np.pi) / np.sqrt(square)
+        double = single * toward / square
+        place, patch = np.nonzero(away < NEAR * self._reach)
+        near = place, patch
+        more_double, more_single = self._pieces(places, *near)
+        return _Static(away, double, single, near, more_double - double[near], more_single - single[near])
 
-    def _layers(self, wavenumber: float, away: Array, slopes: Array) -> tuple[Array, Array]:
-        """Return what unit pressures and unit accelerations of the patches give at places, shape (places, points) each.
-
-        In the precision of the distances.
-        """
-        phase = away.dtype.type(wavenumber) * away
-        size = (self.surface.areas / (4.0 * np.pi)).astype(away.dtype) / away
-        cosine, sine = size * np.cos(phase), size * np.sin(phase)
-        single = np.empty(away.shape, dtype=np.result_type(away.dtype, np.complex64))
-        double = np.empty_like(single)
-        single.real, single.imag = cosine, -sine
-        # -(1 + i k R) exp(-i k R)
-        double.real, double.imag = -slopes * (cosine + phase * sine), slopes * (sine - phase * cosine)
+    def _pieces(self, places: Array, place: Array, patch: Array) -> tuple[Array, Array]:
+        """Return the integrals over patches at places in closed form, of -dG/dn and of G, shape (pairs,) each."""
+        owners = self.surface.owners
+        order, many = np.argsort(owners, kind="stable"), np.bincount(owners, minlength=len(self.surface.points))
+        # The pieces of the patch of each pair, one after the other.
+        count = many[patch]
+        pair = np.repeat(np.arange(patch.size), count)
+        first = np.cumsum(many) - many
+        number = np.arange(pair.size) - np.repeat(np.cumsum(count) - count, count)
+        piece = order[first[patch[pair]] + number]
+        inverse, angle = patch_integrals(places[place[pair]], self.surface.corners[piece].reshape(-1, 4, 3))
+        double, single = (np.bincount(pair, one, patch.size) / (4.0 * np.pi) for one in (angle, inverse))
         return double, single
+
+
+def _layers(wavenumber: float, static: _Static) -> tuple[Array, Array]:
+    """Return what unit pressures and unit accelerations of the patches give at places, shape (places, points) each.
+
+    In the precision of the distances.
+    """
+    phase = static.away.dtype.type(wavenumber) * static.away
+    cosine, sine = np.cos(phase), np.sin(phase)
+    single = np.empty(phase.shape, dtype=np.result_type(phase.dtype, np.complex64))
+    double = np.empty_like(single)
+    single.real, single.imag = static.single * cosine, -static.single * sine
+    # -(1 + i k R) exp(-i k R)
+    double.real, double.imag = -static.double * (cosine + phase * sine), static.double * (sine - phase * cosine)
+    # What is singular does not know of waves.
+    double[static.near] -= static.more_double
+    single[static.near] += static.more_single
+    return double, single

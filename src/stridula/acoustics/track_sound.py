@@ -45,14 +45,34 @@ def track_sound(
     ValueError
         If the record is not usable, the track cannot be heard so, or a listener is where it cannot be heard.
     """
+
+    def pressed(panel: Panel) -> tuple[Pressing, Panel]:
+        found = pressing(run, panel)
+        check_one_track(run)
+        return found, panel
+
+    return panel_sound(pressed, track, listener, baffled, air, sample_rate)
+
+
+def panel_sound(
+    press: Callable[[Panel], tuple[Pressing, Panel]],
+    track: ModalBeam | ModalPlate,
+    listener: Any,
+    baffled: bool,
+    air: Air | None,
+    sample_rate: float | None,
+) -> tuple[Array, Array, Array, dict[str, Any]]:
+    """Return the sound of a track under forces: `press` takes its panel and returns them with the panel they press on.
+
+    Other arguments, results and errors are those of `track_sound`.
+    """
     air = Air() if air is None else air
     instance("air", air, Air)
     surface: Callable[[Any], Panel] = panel_of if baffled else line_of
     panel = surface(track)
     listeners = listeners_of(ears(track) if listener is None else listener)
     check_listeners(listeners, track, baffled)
-    pressed = pressing(run, panel)
-    check_one_track(run)
+    pressed, panel = press(panel)
     recorded = 1.0 / pressed.interval
     ratio = ratio_of(sample_rate, recorded, pressed.samples)
     bandwidth = bandwidth_of(ratio, recorded)

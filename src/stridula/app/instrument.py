@@ -24,6 +24,8 @@ PATIENCE = 0.5
 TRUST = 0.5
 # Time in which a jump of what is heard dies away [s]: a stroke that begins anew does not click.
 BLEND = 0.004
+# Seconds played in one from which on it keeps up with the sound.
+LIVE = 1.05
 # Moments of so many samples by which it is found how fast it can be played; short ones where they take so long [s].
 MOMENTS, MOMENT, SHORT, LONG = 5, 480, 48, 0.01
 
@@ -41,11 +43,13 @@ class Instrument:
 
     def __init__(self, played: Playable, source: str = "pressure") -> None:
         self.played, self.revision = played, 0
-        self.live = LiveMarch(played.system, played.probes, played.scenario.scheme, RATE)
+        self.live = LiveMarch(played.system, played.probes, played.scenario.scheme, RATE, played.scenario.step)
         self.wanted, self.name = source, _offered(source, played)
         self.source, self.drawing = source_of(self.name, self.live), drawing_of(played.system)
         self.repeats, self.stroke, self.played_samples = True, 1, 0
         self.ended = ""
+        # The step with which it keeps up with the sound [s], None where the usual one does.
+        self.longer: float | None = None
         self._still, self._blend, self._last = 0, 0.0, 0.0
         # Samples since a stroke last followed another by itself.
         self._since_repeat = round(TRUST * RATE)
@@ -58,8 +62,11 @@ class Instrument:
 
         Another case or text begins one, and so does whatever follows a stroke that has ended.
         """
+        self.longer = self.longer if played.origin == self.played.origin else None
+        if self.longer is not None and played.scenario.step is None:
+            played = played.stepped(self.longer)
         track, steps, contacts = self.live.system.track, self.live.ratio, len(self.live.system.contacts)
-        what = (played.system, played.probes, played.scenario.scheme)
+        what = (played.system, played.probes, played.scenario.scheme, played.scenario.step)
         goes_on = played.origin == self.played.origin and not self.ended
         if goes_on:
             goes_on = self.live.change(*what)
@@ -98,6 +105,26 @@ class Instrument:
     def heard_as(self) -> Source:
         """What is heard."""
         return self.played.sources[self.name]
+
+    def keep_up(self) -> float:
+        """Return how many seconds are played in one, from the start, with steps twice as long where that keeps up."""
+        usual, speed, steps = self.played, self.speed(), self.live.ratio
+        # Half the steps never make it three times as fast.
+        if not LIVE / 3.0 < speed < LIVE or usual.scenario.step is not None or steps == 1:
+            return speed
+        step = self.live.interval / ((steps + 1) // 2)
+        try:
+            self.change(usual.stepped(step), self.revision)
+        except ValueError:
+            # Beyond the limit of the scheme.
+            return speed
+        longer = self.speed()
+        if longer < LIVE:
+            self.change(usual, self.revision)
+            self.live.restart()
+            return speed
+        self.longer = step
+        return longer
 
     def speed(self) -> float:
         """Return how many seconds are played in one, from some moments, and begin again at the start."""

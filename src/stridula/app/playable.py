@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -82,6 +82,13 @@ class Playable:
         """What one turns."""
         return turned_of_pair(self.tables) if self.before is None else turned_of_system(self.tables, self.before)
 
+    def stepped(self, step: float) -> Playable:
+        """Return the same with a time step of its own [s]."""
+        simulation = {**self.tables["simulation"], "step": step}
+        return replace(
+            self, scenario=replace(self.scenario, step=step), tables={**self.tables, "simulation": simulation}
+        )
+
     @cached_property
     def toml(self) -> str:
         """The scenario as TOML, to run with `stridula run`."""
@@ -146,10 +153,12 @@ def _is_pair(system: System) -> bool:
 
 def _in_full(scenario: Scenario, tables: dict[str, Any]) -> dict[str, Any]:
     """Return a scenario in full and in SI; in space as it is described, without what its bodies come to as numbers."""
-    simulation = {"duration": scenario.duration, "scheme": scenario.scheme.name}
+    simulation: dict[str, Any] = {"duration": scenario.duration, "scheme": scenario.scheme.name}
+    if scenario.step is not None:
+        simulation["step"] = scenario.step
     if scenario.system.is_spatial:
         described = tables_in_si(tables)
-        return described | {"simulation": simulation | described.get("simulation", {})}
+        return described | {"simulation": described.get("simulation", {}) | simulation}
     return tomllib.loads(scenario_toml(scenario.system, scenario.probes or (), simulation))
 
 

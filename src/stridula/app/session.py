@@ -6,6 +6,7 @@ import asyncio
 import time as clock
 from collections.abc import Coroutine
 from contextlib import suppress
+from dataclasses import asdict
 from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -25,6 +26,7 @@ from .messages import Listen, Map, Message, NoMap, Pull, Repeat, Restart, Save, 
 from .parts import THINNED, Stop, packed
 from .playable import Playable
 from .presets import presets
+from .tour import STOPS
 from .turned import keys_of
 
 # A page may be ahead of time by so much [s], and play at most so much faster than time goes.
@@ -79,6 +81,7 @@ class Session:
             rate=RATE,
             kept=KEPT,
             presets=presets(),
+            tour=[asdict(stop) for stop in STOPS],
             regimes=REGIME_COLOURS,
             **controls.turned_of_pair({}).described,
         )
@@ -168,7 +171,7 @@ class Session:
             # Fast enough on any machine that is not busy with something else.
             self.speed = None
         elif not goes_on:
-            self.speed = self.instrument.speed()
+            self.speed = self.instrument.keep_up()
         return self.instrument, goes_on
 
     async def _now(self) -> None:
@@ -337,6 +340,7 @@ def _described(instrument: Instrument, speed: float | None) -> dict[str, Any]:
         "seconds_kept": instrument.last_seconds.seconds,
         "step": live.step,
         "steps": live.ratio,
+        "longer": instrument.longer is not None,
         "speed": speed,
     }
 

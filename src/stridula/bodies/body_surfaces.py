@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar
 
 import numpy as np
@@ -24,18 +24,22 @@ SIZES: dict[str, tuple[Any, ...]] = {
     "areas": ("rows",),
     "widths": ("rows",),
     "shapes": ("rows", "modes"),
+    "corners": ("pieces", 12),
+    "owners": ("pieces",),
     "orders": ("modes",),
     "sides": ("modes",),
     "frame": (3, 3),
     "origin": (3,),
 }
+# What surfaces need not tell.
+OPTIONAL = {"corners", "owners"}
 # Points round a body of revolution for one wave of its highest order, and at least.
 POINTS_A_WAVE, LEAST_ROUND = 8, 24
 
 
 @dataclass(frozen=True, eq=False)
 class PointSurface:
-    """The outer surface of a body as points.
+    """The outer surface of a body as points, each in the middle of a patch.
 
     Attributes
     ----------
@@ -47,6 +51,11 @@ class PointSurface:
         Areas that they stand for [m²].
     shapes : ndarray, shape (points, modes)
         By how much each mode moves them outwards [kg^(-1/2)]; without residual shapes.
+    corners : ndarray, shape (pieces, 12), optional
+        World places of the four corners of each flat piece of a patch, one after the other, round its outward normal
+        [m]; of a triangle the last one twice. Squares round the points if left out.
+    owners : ndarray of int, shape (pieces,), optional
+        Number of the point in whose patch a piece lies; one piece is the patch if left out.
     """
 
     form: ClassVar[str] = "points"
@@ -54,6 +63,14 @@ class PointSurface:
     normals: Array
     areas: Array
     shapes: Array
+    corners: Array = field(default=None)  # type: ignore[arg-type]
+    owners: Array = field(default=None)  # type: ignore[arg-type]
+
+    def __post_init__(self) -> None:
+        if self.corners is None:
+            object.__setattr__(self, "corners", _squares(self.points, self.normals, self.areas))
+        if self.owners is None:
+            object.__setattr__(self, "owners", np.arange(len(self.points)))
 
     @property
     def as_points(self) -> PointSurface:
@@ -136,9 +153,9 @@ def surface_of(values: Mapping[str, Any]) -> BodySurface:
     given = {name: np.asarray(value, dtype=float) for name, value in values.items() if value is not None}
     kind = RingSurface if "places" in given else PointSurface
     names = [one.name for one in fields(kind)]
-    if set(names) != set(given):
+    if not set(names) - OPTIONAL <= set(given) <= set(names):
         raise ArgumentError("outer_surface", f"have {listed(names)}", got=f"{listed(given)}")
-    for name in ("orders", "sides"):
+    for name in ("orders", "sides", "owners"):
         if name in given:
             given[name] = given[name].astype(int)
     found: BodySurface = kind(**given)
@@ -150,7 +167,8 @@ def check_surface(name: str, surface: BodySurface, modes: int) -> None:
     """Raise ValueError unless the numbers of a surface are finite, and fit each other and a number of modes."""
     for one in fields(surface):
         values = getattr(surface, one.name)
-        wanted = tuple({"rows": len(surface.normals), "modes": modes}.get(size, size) for size in SIZES[one.name])
+        sizes = {"rows": len(surface.normals), "modes": modes, "pieces": len(getattr(surface, "owners", ()))}
+        wanted = tuple(sizes.get(size, size) for size in SIZES[one.name])
         axes = surface.normals.shape[-1:]
         wanted = tuple(axes[0] if size == "axes" else size for size in wanted)
         if values.shape != wanted or not np.isfinite(values).all():
@@ -159,6 +177,16 @@ def check_surface(name: str, surface: BodySurface, modes: int) -> None:
 
 def _content(surface: BodySurface) -> tuple[bytes, ...]:
     return tuple(np.asarray(getattr(surface, one.name), dtype=float).tobytes() for one in fields(surface))
+
+
+def _squares(points: Array, normals: Array, areas: Array) -> Array:
+    """Return the corners of squares round points, which may lie in any direction across their normals."""
+    askew = np.eye(3)[np.abs(normals).argmin(axis=1)]
+    first = np.cross(normals, askew)
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    half = 0.5 * np.sqrt(areas)[:, None]
+    first, second = half * first, half * np.cross(normals, first)
+    return np.concatenate([points + a * first + b * second for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))], axis=1)
 
 
 def largest_part(frequency: float) -> float:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse
+from scipy.spatial import cKDTree
 
 from ..arrays import Array
 from .body_surfaces import PointSurface, inscribed_radius
@@ -22,6 +23,9 @@ PATCH_OF_BALL, PATCH_OF_PART = 1.0, 0.8
 MOST = 1000
 # Points at which thickness is looked for, about.
 SAMPLES = 300
+# Angle between normals from which on an edge is sharp [rad], and the share of a patch that is cut off along it, as
+# pressures change fast there.
+SHARP, AT_EDGE = 0.25 * np.pi, 0.3
 
 
 def cut_faces(mesh: SolidMesh, shapes: Array, largest: float) -> PointSurface:
@@ -46,23 +50,45 @@ def cut_faces(mesh: SolidMesh, shapes: Array, largest: float) -> PointSurface:
 
 
 def _cut(mesh: SolidMesh, shapes: Array, size: float) -> PointSurface:
-    """Return the middles of patches whose sides are about as long as a size."""
+    """Return the middles of patches whose sides are about as long as a size, finer along sharp edges."""
     kind, found = mesh.element_kind, []
-    for element, side in outer_faces(kind, mesh.elements):
+    outer = outer_faces(kind, mesh.elements)
+    for (element, side), sharp in zip(outer, _sharp_sides(mesh, outer).tolist(), strict=True):
         nodes = mesh.elements[element]
         ends = mesh.nodes[nodes[list(kind.faces[side])]]
         lengths = np.linalg.norm(ends - np.roll(ends, -1, axis=0), axis=1)
         lengths = np.maximum(lengths[:2], lengths[2:]) if len(ends) == 4 else lengths.max(keepdims=True)
         counts = tuple(np.maximum(1, np.round(lengths / size)).astype(int).tolist())
-        values, slopes, first, second, area = _patches(kind, int(side), counts)
+        values, slopes, apart = _patches(kind, int(side), counts, tuple(sharp))
         jacobian = np.einsum("pni,nj->pij", slopes, mesh.nodes[nodes])
-        vectors = area * np.cross(np.einsum("i,pij->pj", first, jacobian), np.einsum("i,pij->pj", second, jacobian))
+        corners = np.einsum("pci,pij->pcj", apart, jacobian)
+        vectors = 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
         areas = np.linalg.norm(vectors, axis=1)
-        normals = vectors / areas[:, None]
-        found.append(
-            (values @ mesh.nodes[nodes], normals, areas, np.einsum("pn,nxm,px->pm", values, shapes[nodes], normals))
-        )
+        normals, middles = vectors / areas[:, None], values @ mesh.nodes[nodes]
+        moved = np.einsum("pn,nxm,px->pm", values, shapes[nodes], normals)
+        found.append((middles, normals, areas, moved, (middles[:, None] + corners).reshape(-1, 12)))
     return PointSurface(*(np.concatenate(one) for one in zip(*found, strict=True)))
+
+
+def _sharp_sides(mesh: SolidMesh, outer: Array) -> Array:
+    """Return which sides of outer faces, from a corner to the next, are sharp edges, shape (faces, sides)."""
+    kind = mesh.element_kind
+    element, number = outer.T
+    corners = np.array(kind.faces)[number]
+    normals = np.empty((*corners.shape, 3))
+    for face, ours in enumerate(kind.faces):
+        places = kind.nodes[list(ours)]
+        _, slopes = shape_functions(kind, 0.5 * (places + np.roll(places, -1, axis=0)))
+        jacobian = np.einsum("sni,enj->esij", slopes, mesh.nodes[mesh.elements[element[number == face]]])
+        first, second = (np.einsum("i,esij->esj", place - places[0], jacobian) for place in (places[1], places[-1]))
+        across = np.cross(first, second)
+        normals[number == face] = across / np.linalg.norm(across, axis=2, keepdims=True)
+    ends = mesh.elements[element[:, None], corners]
+    pairs = np.sort(np.stack([ends, np.roll(ends, -1, axis=1)], axis=2), axis=2).reshape(-1, 2)
+    _, which, times = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
+    which = which.ravel()
+    mean = np.stack([np.bincount(which, one) for one in normals.reshape(-1, 3).T], axis=1) / times[:, None]
+    return np.asarray((np.linalg.norm(mean, axis=1) < np.cos(0.5 * SHARP))[which].reshape(corners.shape))
 
 
 def _merged(surface: PointSurface, size: float) -> PointSurface:
@@ -76,28 +102,48 @@ def _merged(surface: PointSurface, size: float) -> PointSurface:
     points, normals, shapes = (
         share @ one / areas[:, None] for one in (surface.points, surface.normals, surface.shapes)
     )
-    return PointSurface(points, normals / np.linalg.norm(normals, axis=1)[:, None], areas, shapes)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    owners = which.ravel()
+    # A middle that lies on the patch of another makes way for the nearest middle of its own.
+    astray = np.flatnonzero(owners[cKDTree(surface.points).query(points)[1]] != np.arange(len(points)))
+    for number in astray.tolist():
+        own = np.flatnonzero(owners == number)
+        points[number] = surface.points[own[np.linalg.norm(surface.points[own] - points[number], axis=1).argmin()]]
+    return PointSurface(points, normals, areas, shapes, surface.corners, owners)
 
 
-@lru_cache(maxsize=256)
-def _patches(kind: ElementKind, side: int, counts: tuple[int, ...]) -> tuple[Array, Array, Array, Array, float]:
+@lru_cache(maxsize=1024)
+def _patches(
+    kind: ElementKind, side: int, counts: tuple[int, ...], sharp: tuple[bool, ...]
+) -> tuple[Array, Array, Array]:
     """Return the patches of a face of the unit element.
 
-    Shares of the nodes in their middles, their slopes, the two sides of the face, and the area of a patch.
+    Shares of the nodes in their middles, their slopes, and the corners of the patches seen from their middles, shape
+    (patches, 4, 3), of triangles the last one twice.
     """
     corners = kind.nodes[list(kind.faces[side])]
     first, second = corners[1] - corners[0], corners[-1] - corners[0]
     if len(corners) == 4:
-        one, other = counts
-        u, v = (part.ravel() for part in np.meshgrid((np.arange(one) + 0.5) / one, (np.arange(other) + 0.5) / other))
-        area = 1.0 / (one * other)
+        one, other = _cuts(counts[0], sharp[3], sharp[1]), _cuts(counts[1], sharp[0], sharp[2])
+        u, v = (part.ravel() for part in np.meshgrid(one[:-1], other[:-1]))
+        wide, high = (part.ravel() for part in np.meshgrid(np.diff(one), np.diff(other)))
+        ends = np.stack([np.stack([u, u + wide, u + wide, u]), np.stack([v, v, v + high, v + high])])
+        middles = ends.mean(axis=1)
     else:
         # Triangles that stand and triangles on their heads.
         (count,) = counts
         i, j = (one.ravel() for one in np.meshgrid(np.arange(count), np.arange(count)))
         up, down = i + j < count, i + j < count - 1
-        u = np.concatenate([i[up] + 1.0 / 3.0, i[down] + 2.0 / 3.0]) / count
-        v = np.concatenate([j[up] + 1.0 / 3.0, j[down] + 2.0 / 3.0]) / count
-        area = 0.5 / count**2
-    values, slopes = shape_functions(kind, corners[0] + u[:, None] * first + v[:, None] * second)
-    return values, slopes, first, second, area
+        standing, turned = np.array([[0, 1, 0, 0], [0, 0, 1, 1]]), np.array([[1, 1, 0, 0], [0, 1, 1, 1]])
+        places = [np.stack([i, j])[:, those].T[:, :, None] + shape for those, shape in ((up, standing), (down, turned))]
+        ends = np.concatenate(places).transpose(1, 2, 0) / count
+        middles = ends[:, :3].mean(axis=1)
+    values, slopes = shape_functions(kind, corners[0] + np.einsum("ip,ij->pj", middles, np.stack([first, second])))
+    apart = np.einsum("icp,ij->pcj", ends - middles[:, None], np.stack([first, second]))
+    return values, slopes, apart
+
+
+def _cuts(count: int, low: bool, high: bool) -> Array:
+    """Return where a side of length 1 is cut into parts, its first and last in two where they are at sharp edges."""
+    cuts = np.arange(count + 1.0)
+    return np.unique(np.concatenate([cuts, [AT_EDGE] if low else [], [count - AT_EDGE] if high else []])) / count

@@ -140,11 +140,18 @@ def sound(
             metavar="X,Y,Z", help="Position of a listener, in m; may be repeated; default: two ears 1 m above."
         ),
     ] = None,
+    body: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="A body to be heard; may be repeated; default: all that can be heard."),
+    ] = None,
     wav: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the sound, one channel for each listener.")
     ] = None,
     plot: Annotated[
         str | None, typer.Option(metavar="FILE", help="Draw the spectrogram at the first listener.")
+    ] = None,
+    bands: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Draw levels in third-octave bands, a line for each listener.")
     ] = None,
     sample_rate: Annotated[
         str, typer.Option(metavar="HZ", help="Sample rate of the sound file: 44.1, 48 or 96 kHz.")
@@ -154,13 +161,15 @@ def sound(
     ] = "normalised",
     subtype: Annotated[str, typer.Option(metavar="WORD", help="Format of the samples: PCM_24 or FLOAT.")] = "PCM_24",
     unbaffled: Annotated[
-        bool, typer.Option("--unbaffled", help="Take the track as a slim beam in free air, without a baffle.")
+        bool, typer.Option("--unbaffled", help="Take tracks as slim beams in free air, without a baffle.")
     ] = False,
 ) -> None:
     """Print the sound levels of a record at listeners, and write the sound as WAV."""
     from .sounding import sound_of_record
 
-    sound_of_record(record, listener or [], wav, plot, sample_rate, full_scale, subtype, not unbaffled)
+    baffled = False if unbaffled else None
+    figures = {"--plot": plot, "--bands": bands}
+    sound_of_record(record, listener or [], body or [], wav, figures, sample_rate, full_scale, subtype, baffled)
 
 
 @app.command()

@@ -10,7 +10,7 @@ from ..checks import ArgumentError
 from ..disk import check_writable
 from ..integration import Diverged, Interrupted
 from ..plot.films import animate
-from ..plot.scenes import has_surfaces
+from ..plot.moved_bodies import has_surfaces
 from ..records.files import is_record, load
 from ..scenarios.load import load_scenario
 from ..scenarios.quantities import quantity

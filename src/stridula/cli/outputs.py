@@ -8,24 +8,24 @@ from ..checks import ArgumentError
 from ..disk import check_writable
 
 
-def check_outputs(out: str | None, plot: str | None, word: str = "--out") -> None:
+def check_outputs(out: str | None, plot: str | None, word: str = "--out", figure: str = "--plot") -> None:
     """Raise ValueError or OSError if a file and a figure cannot be written there; write nothing.
 
     Parameters
     ----------
     out, plot : str or None
         The files, None for one that is not asked for.
-    word : str, optional
-        The option of the first.
+    word, figure : str, optional
+        The options of both.
     """
     if out is not None and plot is not None and Path(out).resolve() == Path(plot).resolve():
-        raise ArgumentError("--plot", f"be another file than {word}", plot, got=f"{plot!r} for both")
+        raise ArgumentError(figure, f"be another file than {word}", plot, got=f"{plot!r} for both")
     if plot is not None:
         from matplotlib.figure import Figure
 
         formats = sorted(Figure().canvas.get_supported_filetypes())
         if _format(plot) not in formats:
-            raise ArgumentError("--plot", f"end in one of {', '.join(f'.{word}' for word in formats)}", plot)
+            raise ArgumentError(figure, f"end in one of {', '.join(f'.{word}' for word in formats)}", plot)
     for path in (out, plot):
         if path is not None:
             check_writable(path)

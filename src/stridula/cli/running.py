@@ -68,7 +68,7 @@ def run_scenario(
 
 
 def _check_wav(wav: str, name: str, out: str | None, plot: str | None, scenario: Scenario) -> None:
-    from ..acoustics.heard_system import check_heard
+    from ..acoustics.hearable import check_hearable
     from .sounding import check_ending
 
     for option, other in (("--out", out), ("--plot", plot)):
@@ -78,7 +78,7 @@ def _check_wav(wav: str, name: str, out: str | None, plot: str | None, scenario:
         raise ArgumentError("--wav", "be another file than what is run", wav, got=f"{wav!r} for both")
     check_writable(wav)
     check_ending(wav)
-    check_heard(scenario.system, scenario.surface_rate)
+    check_hearable(scenario.system, scenario.surface_rate)
     if scenario.duration * scenario.sample_rate < 1.5:
         words = f"be at least {at_least(2.0 / scenario.sample_rate)} s, two samples, to be heard"
         raise ArgumentError("duration", words, scenario.duration)

@@ -8,15 +8,17 @@ from typing import Any
 
 import xarray as xr
 
-from ..acoustics.heard_system import heard
+from ..acoustics.hearable import body_named
 from ..acoustics.listeners import FARTHEST
+from ..acoustics.radiate import radiate
 from ..acoustics.wav import NORMALISED, RATES, SUBTYPES, write_wav
-from ..checks import ArgumentError, at_most, suggestion
-from ..records.changes import played
+from ..checks import ArgumentError, at_most, listed, suggestion
+from ..records.changes import check_one_system, played
 from ..records.files import load
 from ..scenarios.load import Scenario, load_scenario, scenario_of_tables
 from ..scenarios.quantities import quantity
 from ..scenarios.read import tables_of_text
+from ..system import System
 from .hearing import loudest, print_levels
 from .outputs import check_outputs
 
@@ -29,14 +31,15 @@ OPTIONS = {"full_scale": "--full-scale", "sample_rate": "--sample-rate", "subtyp
 def sound_of_record(
     name: str,
     listeners: Sequence[str],
+    bodies: Sequence[str],
     wav: str | None,
-    plot: str | None,
+    figures: dict[str, str | None],
     sample_rate: str,
     full_scale: str,
     subtype: str,
-    baffled: bool,
+    baffled: bool | None,
 ) -> None:
-    """Print what is heard of a record, and write it as a sound file and as a spectrogram if asked to.
+    """Print what is heard of a record, and write it as a sound file and as figures, by their options, if asked to.
 
     Raises
     ------
@@ -45,8 +48,11 @@ def sound_of_record(
     OSError
         If an output cannot be written.
     """
-    check_outputs(wav, plot, "--wav")
-    for option, path in (("--wav", wav), ("--plot", plot)):
+    wanted = {option: path for option, path in figures.items() if path is not None}
+    check_outputs(wav, figures["--plot"], "--wav")
+    check_outputs(wav, figures["--bands"], "--wav", "--bands")
+    check_outputs(figures["--plot"], figures["--bands"], "--plot", "--bands")
+    for option, path in (("--wav", wav), *figures.items()):
         if path is not None and Path(path).resolve() == Path(name).resolve():
             raise ArgumentError(option, "be another file than the record", path, got=f"{path!r} for both")
     if wav is not None:
@@ -55,14 +61,18 @@ def sound_of_record(
     places: Any = [place_of(text) for text in listeners] or None
     record = load(name)
     scenario = _played(record)
-    pressure = heard(record, scenario.system, places, baffled)
-    figure = None if plot is None else _figure(pressure, record, scenario.title or Path(name).stem)
+    system = scenario.system
+    chosen = [_body_of(system, name) for name in bodies] or _left_alone(record, system)
+    pressure = radiate(record, system, places, bodies=chosen, baffled=baffled)
+    title = scenario.title or Path(name).stem
+    drawn = {path: FIGURES[option](pressure, record, title) for option, path in wanted.items()}
     if wav is not None:
         print(_written(wav, pressure, options))
-    if plot is not None:
+    if drawn:
         from ..plot import save
 
-        save(figure, plot)
+        for path, figure in drawn.items():
+            save(figure, path)
     if pressure.attrs["notes"]:
         print(pressure.attrs["notes"])
     print_levels(pressure)
@@ -74,9 +84,9 @@ def _played(record: xr.Dataset) -> Scenario:
     return scenario_of_tables(tables_of_text(changes[-1][1], "changes")) if changes else load_scenario(record)
 
 
-def write_sound(record: xr.Dataset, system: Any, wav: str) -> str:
+def write_sound(record: xr.Dataset, system: System, wav: str) -> str:
     """Write what two ears a metre above what sounds hear of a record; return what was written and how loud it is."""
-    pressure = heard(record, system, None, True)
+    pressure = radiate(record, system)
     words = [str(write_wav(wav, pressure)), loudest(pressure), pressure.attrs["notes"]]
     return "\n".join(word for word in words if word)
 
@@ -85,6 +95,27 @@ def check_ending(wav: str) -> None:
     """Raise ValueError unless the name of a sound file ends as its format."""
     if not wav.lower().endswith(".wav"):
         raise ArgumentError("--wav", "end in .wav", wav)
+
+
+def _left_alone(record: xr.Dataset, system: System) -> list[Any] | None:
+    """Return the tracks of a record on which bodies or drives were changed, for these alone are in it; else None."""
+    try:
+        check_one_system(record)
+    except ArgumentError:
+        tracks = list(dict.fromkeys(contact.path_body for contact in system.contacts if contact.path_body is not None))
+        if tracks:
+            names = listed([system.body_name(track) for track in tracks])
+            print(f"{names} alone: the record was changed while it was played")
+        return tracks or None
+    return None
+
+
+def _body_of(system: System, name: str) -> Any:
+    """Return the body of a name; errors name the option."""
+    try:
+        return body_named(system, name)
+    except ArgumentError as error:
+        raise error.renamed("--body") from None
 
 
 def _written(wav: str, pressure: xr.DataArray, options: dict[str, Any]) -> str:
@@ -129,10 +160,20 @@ def wav_options(sample_rate: str, full_scale: str, subtype: str) -> dict[str, An
     return {"sample_rate": int(rate), "full_scale": scale, "subtype": subtype}
 
 
-def _figure(pressure: xr.DataArray, record: xr.Dataset, title: str) -> Any:
+def _spectrogram(pressure: xr.DataArray, record: xr.Dataset, title: str) -> Any:
     from ..plot import spectrogram
 
     lasts = pressure.sizes["time"] * float(record.attrs["sample_interval"])
     if lasts < SHORTEST_FIGURE:
         raise ArgumentError("--plot", f"have a sound of at least {SHORTEST_FIGURE:g} s", got=f"{at_most(lasts, 3)} s")
     return spectrogram(pressure.isel(listener=0), record if "contact" not in record.dims else None, title=title)
+
+
+def _bands(pressure: xr.DataArray, _record: xr.Dataset, title: str) -> Any:
+    from ..plot import third_octaves
+
+    return third_octaves(pressure, title=title)
+
+
+# How a figure is drawn, by its option.
+FIGURES = {"--plot": _spectrogram, "--bands": _bands}

@@ -110,10 +110,15 @@ class LiveMarch:
     _belief: Belief
 
     def __init__(
-        self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None, sample_rate: float = 48e3
+        self,
+        system: System,
+        probes: Sequence[Probe],
+        scheme: Scheme | None = None,
+        sample_rate: float = 48e3,
+        step: float | None = None,
     ) -> None:
         self.interval = 1.0 / positive("sample_rate", sample_rate)
-        self._take(system, probes, ExactModal() if scheme is None else scheme)
+        self._take(system, probes, ExactModal() if scheme is None else scheme, step)
         self.restart()
 
     @property
@@ -187,7 +192,9 @@ class LiveMarch:
         tangents = {name: along_both(pairs[:, CONTACT_COLUMN[name]], firsts) for name in doubled}
         return LiveChunk(time, contacts, shares, energies, self._low_passed(chunk.raw, done), tangents), ENDED[ended]
 
-    def begin(self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None) -> None:
+    def begin(
+        self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None, step: float | None = None
+    ) -> None:
         """Start anew as another system, whatever became of the march before.
 
         Parameters
@@ -198,6 +205,8 @@ class LiveMarch:
             What is recorded beside the contact from now on.
         scheme : CentralDifference or ExactModal, optional
             Time scheme, as it was if left out.
+        step : float, optional
+            Longest time step [s], the scheme's default if left out.
 
         Raises
         ------
@@ -205,10 +214,12 @@ class LiveMarch:
             As at the start; then all stays as it was.
         """
         with self._as_it_was_if_refused():
-            self._take(system, probes, self.scheme if scheme is None else scheme)
+            self._take(system, probes, self.scheme if scheme is None else scheme, step)
             self.restart()
 
-    def change(self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None) -> bool:
+    def change(
+        self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None, step: float | None = None
+    ) -> bool:
         """Go on as another system.
 
         Parameters
@@ -219,6 +230,8 @@ class LiveMarch:
             What is recorded beside the contact from now on.
         scheme : CentralDifference or ExactModal, optional
             Time scheme, as it was if left out.
+        step : float, optional
+            Longest time step [s], the scheme's default if left out.
 
         Returns
         -------
@@ -232,7 +245,7 @@ class LiveMarch:
             As at the start; then all goes on as it was.
         """
         with self._as_it_was_if_refused():
-            return self._change(system, probes, scheme)
+            return self._change(system, probes, scheme, step)
 
     @contextmanager
     def _as_it_was_if_refused(self) -> Iterator[None]:
@@ -243,10 +256,10 @@ class LiveMarch:
             vars(self).update(kept)
             raise
 
-    def _change(self, system: System, probes: Sequence[Probe], scheme: Scheme | None) -> bool:
+    def _change(self, system: System, probes: Sequence[Probe], scheme: Scheme | None, step: float | None) -> bool:
         before, state = Before(self.system, self.scheme, self.spans, self.step), deepcopy(self._march.states[0])
         root = self._root_at(self._arrays)
-        self._take(system, probes, before.scheme if scheme is None else scheme)
+        self._take(system, probes, before.scheme if scheme is None else scheme, step)
         arrays, firsts = self._described, self._arrays.firsts
         self._travel = root - self._root_at(arrays)
         self._begin_probes()
@@ -272,10 +285,12 @@ class LiveMarch:
         self._start_from(position, velocity, places, np.where(is_closed & ~yields, 0.0, self._gaps))
         return True
 
-    def _take(self, system: System, probes: Sequence[Probe], scheme: Scheme) -> None:
+    def _take(self, system: System, probes: Sequence[Probe], scheme: Scheme, step: float | None) -> None:
         instance("system", system, System)
+        if step is not None:
+            step = self.interval / max(1.0, np.ceil(self.interval / positive("step", step) - 1e-9))
         arrays = assemble(system, probes)
-        timing = choose_timing(arrays, scheme, self.interval, None, 1.0 / self.interval)
+        timing = choose_timing(arrays, scheme, self.interval, step, 1.0 / self.interval)
         self.system, self.probes, self.scheme = system, tuple(probes), scheme
         self._described, self.step, self.ratio = arrays, timing.step, timing.ratio
 

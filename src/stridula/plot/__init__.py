@@ -1,4 +1,4 @@
-"""Figures from Datasets (matplotlib lives here and nowhere else)."""
+"""Figures from Datasets and views of systems (matplotlib and pyvista live here and nowhere else)."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ _HOME = {
     "spectrum": "spectra",
     "squeal_map": "squeals",
     "surface": "surfaces",
+    "third_octaves": "bands",
     "timeline": "timelines",
+    "view": "views",
+    "view_mode": "views",
 }
 __all__ = list(_HOME)
 

@@ -15,10 +15,11 @@ from ..lines import check_in_plane
 from ..records.variables import STATUS_WORDS
 from ..system import System
 from .motion import SAMPLE_RATE, Timing, motion_of
+from .moved_bodies import has_surfaces
 from .plane_motion import PlaneMotion, plane_motion
 from .plane_scenes import PlaneScene
 from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Drawn, Film, rounded, still, write_film, writer_for
-from .scenes import checked_view, has_surfaces
+from .scenes import checked_view
 from .space_films import SpacePicture, exaggeration_of
 from .timelines import draw_contact
 

@@ -17,11 +17,12 @@ from ..checks import ArgumentError, count, instance
 from ..lines import lines_of
 from ..system import System
 from .motion import ModalMotion
+from .moved_bodies import MovedBodies, extent_of, has_surfaces, surfaces_of
 from .plane_motion import extent_of as flat_extent_of
 from .plane_motion import surfaces_slid_on
 from .plane_scenes import PlaneScene
 from .reels import DPI, FRAMES_PER_SECOND, HEIGHT, WIDTH, Drawn, Film, still, write_film, writer_for
-from .scenes import Scene, checked_view, extent_of, has_surfaces, surfaces_of
+from .scenes import Scene, checked_view
 
 # Frames of a period.
 FRAMES = 32
@@ -74,7 +75,7 @@ def animate_mode(
     OSError
         If the file cannot be written.
     """
-    shapes = _shapes(system, theory, number)
+    shapes = shapes_of_mode(system, theory, number)
     seen = checked_view(view)
     frequency, growth = (float(theory[name].values[number]) for name in ("frequency", "growth_rate"))
     words = f"{frequency:.6g} Hz, growth {growth:.4g} /s"
@@ -96,21 +97,31 @@ def turned(shape: Array) -> Array:
     return np.multiply.outer(phases, shape).real
 
 
+def motion_of_mode(system: System, shapes: dict[str, Array], exponent: complex) -> ModalMotion:
+    """Return one period of a mode of a system in space, drawn as large as in films."""
+    bodies = surfaces_of(system, np.zeros(3))
+    moved = [np.abs(one.surface.shapes @ shapes[one.name]).max() for one in bodies]
+    factor = SHARE * extent_of(bodies) / float(max(moved))
+    return ModalMotion(
+        {name: turned(factor * shape) for name, shape in shapes.items()},
+        {name: turned(factor * exponent * shape) for name, shape in shapes.items()},
+    )
+
+
+def over_largest(moved: MovedBodies) -> ModalMotion:
+    """Return the motion of bodies with velocities over the largest one across their surfaces."""
+    largest = moved.largest_velocity or 1.0
+    return replace(moved.motion, velocity={name: v / largest for name, v in moved.motion.velocity.items()})
+
+
 class _InSpace:
     """A mode of a system in space, frame by frame."""
 
     def __init__(self, system: System, shapes: dict[str, Array], exponent: complex, view: tuple[float, float]) -> None:
         self.frames, self.figure = FRAMES, Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI)
-        bodies = surfaces_of(system, np.zeros(3))
-        moved = [np.abs(one.surface.shapes @ shapes[one.name]).max() for one in bodies]
-        factor = SHARE * extent_of(bodies) / float(max(moved))
-        motion = ModalMotion(
-            {name: turned(factor * shape) for name, shape in shapes.items()},
-            {name: turned(factor * exponent * shape) for name, shape in shapes.items()},
-        )
-        self.scene = Scene(self.figure, SCENE, system, motion, 1.0, view)
-        largest = self.scene.largest_velocity or 1.0
-        self.scene.motion = replace(motion, velocity={name: v / largest for name, v in motion.velocity.items()})
+        self.scene = Scene(self.figure, SCENE, system, motion_of_mode(system, shapes, exponent), 1.0, view)
+        moved = self.scene.moved
+        moved.motion = over_largest(moved)
         words = "velocity out of the surface over the largest"
         self.scene.colour_bar(self.figure.add_axes(COLOUR_BAR), 1.0, words, "1")
         self.show(0)
@@ -144,7 +155,7 @@ class _InPlane:
         self.scene.show(frame)
 
 
-def _shapes(system: System, theory: xr.Dataset, number: int) -> dict[str, Array]:
+def shapes_of_mode(system: System, theory: xr.Dataset, number: int) -> dict[str, Array]:
     """Return the complex shape of a mode of linear theory in the modes of each body, by its name."""
     instance("system", system, System)
     instance("theory", theory, xr.Dataset)

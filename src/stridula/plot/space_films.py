@@ -10,8 +10,9 @@ from ..checks import positive
 from ..integration.schemes import Scheme
 from ..system import System
 from .motion import SAMPLE_RATE, ModalMotion, Motion, Timing, motion_of
+from .moved_bodies import check_surfaces, extent_of, largest_departure, surfaces_of
 from .reels import DPI, HEIGHT, WIDTH, rounded
-from .scenes import Scene, check_surfaces, checked_view, extent_of, largest_departure, surfaces_of
+from .scenes import Scene, checked_view
 from .timelines import draw_contact
 
 # Without a number, the largest vibration is drawn as this share of the bodies' extent.
@@ -132,7 +133,7 @@ class SpacePicture:
         self.scales = f"{slowed}vibration drawn {exaggeration:.6g} times"
         self.figure = Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI)
         self.scene = Scene(self.figure, SCENE, system, motion.modes, exaggeration, view)
-        self.scene.colour_bar(self.figure.add_axes(COLOUR_BAR), self.scene.largest_velocity)
+        self.scene.colour_bar(self.figure.add_axes(COLOUR_BAR), self.scene.moved.largest_velocity)
         self.words = self.figure.text(0.01, 0.98, "", fontsize=9, verticalalignment="top")
         self.cursors = draw_contact(self.figure.add_axes(FORCE), self.figure.add_axes(STATUS), self.run)
         self.figure.suptitle(title, fontsize=11)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Callable
+from typing import Any
 
 import xarray as xr
 
@@ -37,19 +39,39 @@ def played(run: xr.Dataset) -> list[tuple[float, str]]:
 
 def check_one_track(run: xr.Dataset) -> None:
     """Raise ValueError if the track was changed within the times of a record."""
+    _check_same(run, "track", lambda tables: tables.get("track"))
+
+
+def check_one_system(run: xr.Dataset) -> None:
+    """Raise ValueError if more than friction was changed within the times of a record."""
+    _check_same(run, "bodies and drives", _but_friction)
+
+
+def _check_same(run: xr.Dataset, what: str, part: Callable[[dict[str, Any]], Any]) -> None:
     changes = played(run)
     if not changes:
         return
-    # What is played on the way is a beam on a beam: its track is a table of its own.
-    first, *others = (tomllib.loads(text).get("track") for _, text in changes)
-    for (time, _), track in zip(changes[1:], others, strict=True):
-        if track != first:
+    first, *others = (part(tomllib.loads(text)) for _, text in changes)
+    for (time, _), other in zip(changes[1:], others, strict=True):
+        if other != first:
             raise ArgumentError(
                 "run",
-                "have the same track all the time to be heard",
+                f"have the same {what} all the time to be heard",
                 run,
                 got=(
                     f"another one from {time:.6g} s on: choose the times of one with run.sel(time=slice(START, "
-                    "STOP)), and give its track"
+                    f"STOP)), and give its {what}"
                 ),
             )
+
+
+def _but_friction(tables: dict[str, Any]) -> dict[str, Any]:
+    """Return what of a scenario says how forces move its bodies."""
+    told = {key: value for key, value in tables.items() if key not in ("friction", "title", "description")}
+    return {key: _without_friction(value) for key, value in told.items()}
+
+
+def _without_friction(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_without_friction(one) for one in value]
+    return {key: one for key, one in value.items() if key != "friction"} if isinstance(value, dict) else value

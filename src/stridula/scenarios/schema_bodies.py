@@ -136,6 +136,10 @@ class OuterSurface(Table):
     """places of points [m]"""
     areas: is_.Vector | None = None
     """areas that points stand for [m²]"""
+    corners: is_.Rows | None = None
+    """x, y and z of the four corners of each piece of the patches round points [m], squares if left out"""
+    owners: is_.Vector | None = None
+    """number of the point in whose patch a piece lies, from 0, that of the piece if left out"""
     places: is_.Rows | None = None
     """r and z of rings, two over each part of the profile [m]"""
     widths: is_.Vector | None = None

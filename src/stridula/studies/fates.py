@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..acoustics.heard_system import heard, track_of
 from ..acoustics.levels import LOWEST_RATE, SHORTEST, equivalent_level
-from ..acoustics.panels import panel_of
+from ..acoustics.plane_sound import plane_bodies
+from ..acoustics.radiate import radiate
 from ..analysis.regimes import regime_of
-from ..arrays import Array
 from ..checks import ArgumentError
 from ..drives import InitialEquilibrium
 from ..linear.reach import ModesAtRest
@@ -142,12 +141,9 @@ class Runs:
 
     @cached_property
     def is_heard(self) -> bool:
-        """Whether a track of the system can be heard."""
-        try:
-            panel_of(track_of(self.scenario.system))
-        except ArgumentError:
-            return False
-        return True
+        """Whether anything of a system in the plane can be heard."""
+        system = self.scenario.system
+        return not system.is_spatial and bool(plane_bodies(system))
 
     def window(self, run: xr.Dataset, number: int) -> float:
         """Return the length of the windows in which a run is looked at [s]."""
@@ -282,14 +278,10 @@ def _sound_level(runs: Runs, run: xr.Dataset, lasts: float) -> float:
     """Return LAeq at the end of a run at the louder ear [dB], NaN where nothing can be heard."""
     if not runs.is_heard or lasts < SHORTEST or runs.sample_rate < LOWEST_RATE:
         return float("nan")
-    # The load at rest bent the track long before; it makes no sound when the run begins.
-    moved = run.assign(normal_force=run["normal_force"] - _at_rest(run, runs.rest.normal_force))
-    pressure = heard(moved, runs.scenario.system)
+    # The forces at rest bent the bodies long before; they make no sound when the run begins.
+    system = runs.scenario.system
+    pressure = radiate(run, replace(system, drives=(*system.drives, runs.start)))
     return float(equivalent_level(last_of(pressure, lasts, run), "A").max())
-
-
-def _at_rest(run: xr.Dataset, forces: Array) -> Any:
-    return xr.DataArray(forces, dims="contact") if "contact" in run.dims else float(forces[0])
 
 
 def last_of(signal: xr.DataArray, lasts: float, run: xr.Dataset) -> xr.DataArray:

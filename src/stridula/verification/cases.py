@@ -17,6 +17,7 @@ from . import (
     radiation,
     sensations,
     sliders,
+    sounding_spheres,
     space,
     stability,
     strings,
@@ -44,5 +45,6 @@ CASES: tuple[Case, ...] = (
     *orders.CASES,
     *radiation.CASES,
     *open_air.CASES,
+    *sounding_spheres.CASES,
     *sensations.CASES,
 )

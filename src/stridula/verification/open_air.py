@@ -33,24 +33,24 @@ PLACES = np.array([[0.3, 0.4, 0.5], [0.0, 0.0, 0.25], [0.12, 0.05, 0.02]])
 STILL = 1e-6
 
 
-def ring_sphere(parts: int = 24) -> RingSurface:
+def ring_sphere(parts: int = 24, radius: float = RADIUS) -> RingSurface:
     """Return a sphere as rings that pulsates, oscillates along its axis and across it."""
     angles = (np.arange(2 * parts) + 0.5) * pi / (2 * parts)
     normals = np.stack([np.sin(angles), np.cos(angles)], axis=1)
     shapes = np.stack([np.ones(2 * parts), normals[:, 1], normals[:, 0]], axis=1)
-    widths = np.full(2 * parts, RADIUS * pi / (2 * parts))
+    widths = np.full(2 * parts, radius * pi / (2 * parts))
     orders = np.array([0, 0, 1])
-    return RingSurface(RADIUS * normals, normals, widths, shapes, orders, 0 * orders, np.eye(3), np.zeros(3))
+    return RingSurface(radius * normals, normals, widths, shapes, orders, 0 * orders, np.eye(3), np.zeros(3))
 
 
-def meshed_sphere(parts: int = 6) -> SurfacePressures:
+def meshed_sphere(parts: int = 6, radius: float = RADIUS) -> SurfacePressures:
     """Return a sphere as a mesh, a cube drawn to it, that pulsates, oscillates along z and along x."""
     mesh = SolidMesh.block([2.0, 2.0, 2.0], [parts] * 3)
     square = (mesh.nodes - 1.0) ** 2
     first, second = square[:, [1, 2, 0]], square[:, [2, 0, 1]]
-    nodes = RADIUS * (mesh.nodes - 1.0) * np.sqrt(1.0 - 0.5 * (first + second) + first * second / 3.0)
+    nodes = radius * (mesh.nodes - 1.0) * np.sqrt(1.0 - 0.5 * (first + second) + first * second / 3.0)
     one = np.ones((len(nodes), 1))
-    shapes = np.stack([nodes / RADIUS, one * [0.0, 0.0, 1.0], one * [1.0, 0.0, 0.0]], axis=2)
+    shapes = np.stack([nodes / radius, one * [0.0, 0.0, 1.0], one * [1.0, 0.0, 0.0]], axis=2)
     return SurfacePressures(cut_faces(SolidMesh(nodes, mesh.elements, mesh.kind), shapes, 0.01))
 
 

@@ -16,8 +16,9 @@ export class Controls {
     for (const group of hello.groups) {
       const field = document.createElement("fieldset");
       field.append(Object.assign(document.createElement("legend"), { textContent: group }));
-      for (const choice of hello.choices.filter((one) => one.group === group)) field.append(this.#choice(choice));
+      // What one turns most comes first.
       for (const control of hello.controls.filter((one) => one.group === group)) field.append(this.#number(control));
+      for (const choice of hello.choices.filter((one) => one.group === group)) field.append(this.#choice(choice));
       form.append(field);
     }
   }

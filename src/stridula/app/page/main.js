@@ -1,11 +1,18 @@
 // The page: what the server says is shown, what one does is said to the server.
+import { short } from "./axes.js";
+import { Bow } from "./bow.js";
 import { Controls } from "./controls.js";
+import { Gallery } from "./gallery.js";
 import { RegimeMap } from "./map.js";
 import { Loop } from "./loop.js";
 import { parts } from "./parts.js";
-import { Pictures, STATES, short } from "./pictures.js";
+import { reading } from "./note.js";
+import { Pictures, STATES } from "./pictures.js";
+import { Recorder } from "./recorder.js";
 import { Scene } from "./scene.js";
+import { Slots } from "./slots.js";
 import { Sound } from "./sound.js";
+import { Tour } from "./tour.js";
 import { Space } from "./space.js";
 
 const $ = (id) => document.getElementById(id);
@@ -14,17 +21,20 @@ const say = (message) => stream.postMessage({ say: message });
 const space = new Space({ canvas: $("space"), legend: $("space-legend"), low: $("space-low"), high: $("space-high"), missing: $("space-missing") });
 const pictures = new Pictures(space);
 const scene = new Scene(changed);
+const slots = new Slots(scene);
 const sound = new Sound(stream, heard);
 const loop = new Loop(showLoop);
+const recorder = new Recorder(48000);
 const moves = new Map();
 const sent = new Map(); // Scenes that were not answered yet, by revision.
 const SLOW = 1.05; // Seconds played in one below which the sound would break, and
 const MARGIN = 1.1; // what is left to others then.
 const TOO_SLOW = 0.5; // What is slower is not computed for a map unless one asks.
 const PREPARES = 400; // A scene that takes longer to be played is being prepared [ms].
+const LOWEST = 20; // What is slower is no note [Hz].
 const LONG = 5; // Time of drawing from which every other frame is left out [ms].
 const stats = { drawing: 0, revision: 0, played: 0, samples: 0, frames: 0, fps: 0, dropouts: 0, latency: null, latencies: [], connected: false, level: 0, peak: 0 };
-let hello, controls, map, described, sources;
+let hello, controls, map, bow, gallery, described, sources;
 let turned = "null"; // What the controls were built of, beyond two beams.
 let slowest = 1; // How many seconds one second takes where that is slower than sound.
 let revision = 0;
@@ -33,7 +43,7 @@ let skipped = false;
 let badLink = false;
 
 stream.onmessage = ({ data }) => {
-  if (data.parts) came(data.parts);
+  if (data.parts) came(data);
   else if (data.told) told(data.told);
   else if (data.file) save(data.file);
   else if (data.lost) lost(data);
@@ -48,7 +58,7 @@ function told(message) {
     problem: () => problem(message.problems),
     stroke: () => stroke(message),
     theory: () => theory(message),
-    now: () => write("now", message.words),
+    now: () => goesOn(message),
     speed: () => {
       // As the machine is busy now: only what is clearly another speed changes how fast it is shown.
       const needed = paceOf(message.speed);
@@ -69,7 +79,10 @@ async function welcome(message) {
     $("version").textContent = hello.version;
     $("kept").textContent = `the last ${hello.kept} s`;
     $("case").replaceChildren(...hello.presets.map(({ name, title }) => new Option(title, name)));
+    gallery = new Gallery(hello.presets, choose);
     controls = new Controls($("controls"), hello, scene);
+    bow = new Bow($("beams"), scene, controls, (words) => write("hand", words));
+    new Tour(hello.tour, scene, slots);
     map = new RegimeMap(scene, controls, hello.regimes, say);
     await readLink();
     // Undo does not go back to before the link.
@@ -108,6 +121,7 @@ function note() {
   note.timer = setTimeout(async () => history.replaceState(null, "", await scene.link()), 150);
   $("undo").disabled = !scene.canUndo;
   $("redo").disabled = !scene.canRedo;
+  for (const name of ["A", "B"]) $(`slot-${name.toLowerCase()}`).setAttribute("aria-pressed", String(slots.heard === name));
 }
 
 function shown(message) {
@@ -120,7 +134,7 @@ function shown(message) {
   $("problem").hidden = !badLink;
   badLink = false;
   if (!message.goes_on) {
-    write("now", "");
+    goesOn({ words: "" });
     loop.forget();
     map.rest(message.speed !== null && message.speed < TOO_SLOW);
   }
@@ -133,9 +147,10 @@ function shown(message) {
   putBack(message);
   pictures.describe(message);
   map.follow();
+  bow.follow();
   showCase(message);
   showToml();
-  write("numbers", `${message.modes} modes, ${message.steps} steps of ${short(1e6 * message.step)} µs a sample. `);
+  write("numbers", `${message.modes} modes, ${message.steps} steps of ${short(1e6 * message.step)} µs a sample${message.longer ? ", twice as long as usual, to keep up with the sound" : ""}. `);
 }
 
 // Systems have controls of their own.
@@ -153,6 +168,12 @@ function offer({ sources: offered, source }) {
   $("source").replaceChildren(...Object.entries(sources).map(([name, { name: word, unit }]) => new Option(`${word} [${unit}]`, name)));
   $("source").value = source;
   showSource();
+}
+
+// What goes on now, in words, and the note of it.
+function goesOn({ words, regime, frequency }) {
+  write("now", words);
+  write("note", ["squeal", "stick-slip"].includes(regime) && frequency >= LOWEST ? reading(frequency, pictures.modes) : "");
 }
 
 function paceOf(speed) {
@@ -194,7 +215,9 @@ function showCase(message) {
   if (own && ![...$("case").options].some((one) => one.value === "")) $("case").append(new Option("Your own", ""));
   if (!own) [...$("case").options].filter((one) => one.value === "").forEach((one) => one.remove());
   $("case").value = own ? "" : scene.now.case;
+  gallery.show($("case").value);
   write("case-words", own ? message.description || message.title : preset.description);
+  $("case-words").title = $("case-words").textContent;
 }
 
 // What was refused goes back to what is played; why it was is said beside its control, or above all where there is none.
@@ -242,13 +265,14 @@ function theory({ equilibrium, modes }) {
   $("theory").textContent = `Linear theory: ${words[equilibrium] ?? equilibrium}; ${growing ? `vibrations grow at ${growing}.` : "no vibration grows."}`;
 }
 
-function came(data) {
+function came({ parts: data, scale }) {
   for (const part of parts(data)) {
     const [number, , , samples] = part.head;
     stats.samples += samples;
     stats.played = Math.max(stats.played, number);
     pictures.take(part);
     if (slowest > 1 && number >= described.revision) loop.take(part.values.subarray(0, samples));
+    if (recorder.on && mode === "live" && $("speed").value === "1" && !recorder.take(part.values.subarray(0, samples), scale)) record();
     stats.level = pictures.level;
   }
 }
@@ -341,6 +365,24 @@ function draw() {
   stats.drawing += 0.05 * (performance.now() - began - stats.drawing);
 }
 
+// Begin to record, or end it and offer what was.
+function record() {
+  const begins = !recorder.on;
+  $("record").setAttribute("aria-pressed", String(begins));
+  $("record").textContent = begins ? "Stop" : "Record";
+  if (begins) {
+    recorder.begin();
+    return;
+  }
+  const bytes = recorder.end(sources[$("source").value].unit);
+  $("recording").hidden = bytes === null;
+  if (bytes === null) return;
+  URL.revokeObjectURL($("recording").href);
+  const href = URL.createObjectURL(new Blob([bytes], { type: "audio/wav" }));
+  Object.assign($("recording"), { href, download: "stridula-recording.wav", textContent: `Save recording, ${recorder.seconds.toFixed(1)} s` });
+  $("said").textContent = `recorded ${recorder.seconds.toFixed(1)} seconds`;
+}
+
 function save({ format, data }) {
   download(new Blob([data]), `stridula.${format}`);
 }
@@ -391,14 +433,31 @@ async function readLink() {
   }
 }
 
-$("case").addEventListener("change", () => scene.set({ case: $("case").value, text: null, overrides: {} }));
+function choose(name) {
+  scene.set({ case: name, text: null, overrides: {} });
+}
+
+$("case").addEventListener("change", () => choose($("case").value));
 $("undo").addEventListener("click", () => scene.undo());
 $("redo").addEventListener("click", () => scene.redo());
 $("link").addEventListener("click", async () => {
   history.replaceState(null, "", await scene.link());
   await copied(location.href, "link");
 });
+$("share").hidden = !navigator.share;
+$("share").addEventListener("click", async () => {
+  history.replaceState(null, "", await scene.link());
+  // Who closes the list of ways to share has changed their mind.
+  await navigator.share({ title: document.title, text: $("now").textContent, url: location.href }).catch(() => {});
+});
+for (const name of ["A", "B"]) $(`slot-${name.toLowerCase()}`).addEventListener("click", () => slots.go(name));
+$("record").addEventListener("click", record);
 $("theme").addEventListener("click", () => theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
+$("drawer").addEventListener("click", () => {
+  const opens = $("drawer").getAttribute("aria-expanded") === "false";
+  $("drawer").setAttribute("aria-expanded", String(opens));
+  $("drawer").textContent = opens ? "Hide" : "Controls";
+});
 $("help").addEventListener("click", () => $("intro").showModal());
 $("play").addEventListener("click", () => {
   mode = mode === "paused" ? "live" : "paused";
@@ -449,11 +508,13 @@ window.addEventListener("hashchange", async () => {
 });
 document.addEventListener("keydown", (event) => {
   const writing = event.target.matches("textarea, input[type=number], input[type=text]");
-  const takesSpace = event.target.matches("button, select, summary, textarea, input:not([type=range])") || $("intro").open;
+  const takesSpace = event.target.matches("button, select, summary, textarea, input:not([type=range])") || document.querySelector("dialog[open]");
   if ((event.ctrlKey || event.metaKey) && !writing && ["z", "y"].includes(event.key.toLowerCase())) {
     event.preventDefault();
     if (event.key.toLowerCase() === "y" || event.shiftKey) scene.redo();
     else scene.undo();
+  } else if (event.key === "b" && !(event.ctrlKey || event.metaKey || event.altKey) && !writing && !event.target.matches("select") && !document.querySelector("dialog[open]")) {
+    slots.go(slots.heard === "A" ? "B" : "A");
   } else if (event.key === " " && !takesSpace) {
     event.preventDefault();
     $("play").click();
@@ -487,7 +548,7 @@ setInterval(() => {
   $("tone").textContent = tone ? `strongest tone ${tone < 1000 ? `${Math.round(tone)} Hz` : `${(tone / 1000).toFixed(2)} kHz`}` : "";
 }, 1000);
 
-window.stridula = { keepUp, loop, space, stats, late: () => sound.late, shares: () => pictures.shares, scene, now: () => described };
+window.stridula = { keepUp, loop, space, stats, late: () => sound.late, shares: () => pictures.shares, scene, slots, now: () => described };
 theme(localStorage.getItem("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
 pace();
 $("undo").disabled = $("redo").disabled = true;

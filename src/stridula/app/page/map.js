@@ -1,6 +1,6 @@
 // The map of regimes around what is played, and the cross-hair that goes there.
 import { si } from "./controls.js";
-import { short } from "./pictures.js";
+import { paintAxes } from "./axes.js";
 
 const POINTS = 16;
 const HELD = 5000; // Time without a drop-out after which a map that was held back goes on [ms].
@@ -122,11 +122,11 @@ export class RegimeMap {
 
   done() {
     this.pending = null;
-    this.words.textContent = "each point marched for up to 1 s from the start";
+    this.words.textContent = "up to 1 s from the start";
   }
 
   #frame() {
-    return { left: 52, top: 6, width: this.canvas.clientWidth - 60, height: this.canvas.clientHeight - 28 };
+    return { left: 56, top: 6, width: this.canvas.clientWidth - 68, height: this.canvas.clientHeight - 38 };
   }
 
   #go(px, py, moving) {
@@ -185,19 +185,8 @@ export class RegimeMap {
         draw.globalAlpha = 1;
       });
     }
-    draw.strokeStyle = colours.line;
-    draw.strokeRect(left, top, width, height);
-    draw.fillStyle = colours.soft;
-    draw.textAlign = "right";
-    draw.fillText(`${short(b.high)} ${b.control.unit}`, left - 4, top + 10);
-    draw.fillText(`${short(b.low)} ${b.control.unit}`, left - 4, top + height);
-    draw.textAlign = "left";
-    draw.fillText(`${short(a.low)} ${a.control.unit}`, left, top + height + 16);
-    draw.textAlign = "center";
-    draw.fillText(a.control.label, left + width / 2, top + height + 16);
-    draw.textAlign = "right";
-    draw.fillText(`${short(a.high)} ${a.control.unit}`, left + width, top + height + 16);
-    draw.textAlign = "left";
+    const titled = ({ control, low, high }) => ({ low, high, title: control.unit ? `${control.label} [${control.unit}]` : control.label });
+    paintAxes(draw, { left, top, width, height }, { x: titled(a), y: titled(b) }, colours);
     const at = ({ control, key, low, high }) => (this.controls.values[key] / control.scale - low) / (high - low);
     const [x, y] = [left + width * at(a), top + height * (1 - at(b))];
     for (const [colour, thick] of [["#ffffff", 4], ["#000000", 1.6]]) {

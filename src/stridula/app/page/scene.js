@@ -43,8 +43,14 @@ export class Scene {
     this.set({ overrides: { ...Object.fromEntries(kept), [key]: value, ...begins } });
   }
 
-  mark() {
-    this.#remember();
+  // What is played with the way back and the way on, to be taken up again.
+  get whole() {
+    return structuredClone({ now: this.now, past: this.past, future: this.future });
+  }
+
+  take({ now, past, future }) {
+    Object.assign(this, { now, past, future });
+    this.onChange();
   }
 
   #remember() {

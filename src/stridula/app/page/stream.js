@@ -128,8 +128,9 @@ function came(data) {
     player.postMessage({ sound, revision }, [sound.buffer]);
     left += samples;
   }
+  const was = scale;
   rescale();
-  postMessage({ parts: data }, [data]);
+  postMessage({ parts: data, scale: was }, [data]);
   feed();
 }
 

@@ -1,0 +1,154 @@
+"""Bodies that a recorded force drives, such as the top of an instrument under the bridge of its string."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+import numpy as np
+import xarray as xr
+
+from ..arrays import Array
+from ..bodies import BodyPoint
+from ..checks import ArgumentError, instance, listed
+from ..declared import Way, check_declared
+from ..records.checked import record
+from .air import Air
+from .driven import FASTEST, LEAD, respond
+from .free_bodies import bodies_sound, check_in_open_air
+from .panels import Panel
+from .recorded import Pressing, sampled
+from .redriven import Moved
+from .track_sound import panel_sound
+
+FORCE = "support_force"
+# Component along the normal below which a force leaves a track silent.
+ACROSS = 1e-6
+
+
+@dataclass(frozen=True)
+class Bridge:
+    """A point of a body that is driven by the force that a string exerts on its support.
+
+    The force is that of a `SupportForce` probe of the record, in one direction: the string is supported rigidly in its
+    run, so the body must yield little under it. The body, which is not part of the run, is at rest before the record.
+
+    Parameters
+    ----------
+    point : BodyPoint
+        Where the force acts.
+    direction : {"y", "x", "z", "axial", "transverse"} or sequence of float, optional
+        Along which it acts on the body where it counts positive, as for probes.
+    probe : str, optional
+        Name of the probe in the record, such as "string left end"; its only one if left out.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of its range.
+    """
+
+    point: BodyPoint
+    direction: Annotated[str | Sequence[float], Way(("x", "y", "z", "axial", "transverse"))] = "y"
+    probe: str | None = None
+
+    def __post_init__(self) -> None:
+        instance("point", self.point, BodyPoint)
+        check_declared(self)
+        if self.probe is not None:
+            instance("probe", self.probe, str)
+
+    @property
+    def along(self) -> Array:
+        """World components of the direction, a unit vector, shape (3,)."""
+        first, second = (np.pad(axis, (0, 3))[:3] for axis in self.point.body.axes[:2])
+        return Way().along(self.direction, axial=first, transverse=second)
+
+
+def bridged_sound(
+    run: xr.Dataset, bridge: Bridge, listener: Any, baffled: bool | None, air: Air | None, sample_rate: float | None
+) -> tuple[Array, Array, Array, dict[str, Any]]:
+    """Return pressures (listeners, samples), their times, the listeners and attributes; arguments are as in `radiate`.
+
+    Raises
+    ------
+    ValueError
+        If the record has no such probe, the body has no surface, or a listener is where it cannot be heard.
+    """
+    start, interval, force = _force(run, bridge.probe)
+    body: Any = bridge.point.body
+    if not getattr(body, "has_surface", False):
+        return panel_sound(
+            lambda panel: _pressed(bridge, panel, start, interval, force),
+            body,
+            listener,
+            baffled is not False,
+            air,
+            sample_rate,
+        )
+    check_in_open_air(baffled)
+    # Any direction that is square to the force.
+    aside = np.cross(bridge.along, np.eye(3)[int(np.abs(bridge.along).argmin())])
+    name = getattr(body, "name", "") or type(body).__name__
+    pressure, time, places, attributes, _ = bodies_sound(
+        lambda: _moved(bridge, name, start, interval, force),
+        {name: body},
+        (bridge.along, aside / np.linalg.norm(aside)),
+        listener,
+        air,
+        sample_rate,
+    )
+    return pressure, time, places, attributes
+
+
+def _force(run: xr.Dataset, probe: str | None) -> tuple[float, float, Array]:
+    """Return when a recorded force begins [s], its interval [s] and its samples [N]."""
+    run = record("run", run)
+    start, interval, _, _ = sampled(run)
+    if FORCE not in run:
+        raise ArgumentError("run", "have a SupportForce probe for a Bridge", run, got="none")
+    known = [str(name) for name in run[f"{FORCE}_probe"].values]
+    if probe is None and len(known) > 1:
+        raise ArgumentError("probe", f"be one of {listed(known)}", got="none")
+    if probe is not None and probe not in known:
+        raise ArgumentError("probe", f"be one of {listed(known)}", probe)
+    number = 0 if probe is None else known.index(probe)
+    return start + interval, interval, np.asarray(run[FORCE].transpose("time", ...).values[:, number], dtype=float)
+
+
+def _pressed(bridge: Bridge, panel: Panel, start: float, interval: float, force: Array) -> tuple[Pressing, Panel]:
+    """Return the force on a track as one that presses against its normal, and the track pressed there."""
+    body = bridge.point.body
+    across = float(np.pad(np.asarray(body.axes[1], dtype=float), (0, 3))[:3] @ bridge.along)
+    if abs(across) < ACROSS:
+        raise ArgumentError("direction", "have a part along the normal of the body", bridge.direction)
+    position = bridge.point.position
+    x, y = position if isinstance(position, tuple) else panel.place(np.asarray(position))
+    at = replace(panel, place=lambda abscissa: (np.full_like(abscissa, x), np.full_like(abscissa, y)))
+    # Samples of a force are what one impulse in each interval is.
+    return Pressing(start, interval, 1, -across * force[None], np.zeros((1, force.size))), at
+
+
+def _moved(bridge: Bridge, name: str, start: float, interval: float, force: Array) -> Moved:
+    """Return how a body in space moves under the force."""
+    body = bridge.point.body
+    modes = body.modes()
+    row = bridge.along @ body.trace(bridge.point.position)
+    signal = np.concatenate([np.zeros(LEAD), force, np.full(LEAD, force[-1])])
+    found = np.zeros((modes.count, signal.size))
+    left_out = ~modes.massless & (modes.angular_frequency * interval >= FASTEST)
+    kept = ~modes.massless & ~left_out
+    oscillators = _Oscillators(modes.angular_frequency[kept], modes.damping_rate[kept])
+    found[kept] = respond(oscillators, row[kept, None] * signal, interval)
+    pushes = np.flatnonzero(force)
+    pushed = float(pushes[0]) * interval if pushes.size else None
+    return Moved(
+        start, interval, force.size, start - LEAD * interval, found, left_out, pushed, {name: (0, modes.count)}
+    )
+
+
+@dataclass(frozen=True)
+class _Oscillators:
+    angular_frequency: Array
+    damping_rate: Array

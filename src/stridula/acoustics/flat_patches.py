@@ -1,0 +1,53 @@
+"""Integrals over flat patches in closed form.
+
+With x from a place to a point of the patch and R = |x|, edge by edge (Wilton et al. 1984, IEEE Trans. Antennas Propag.
+32, 276-281): of 1 / R, and of x . n / R³, which is the solid angle of the patch, positive where it is seen from behind.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import Array
+
+# Of the size of a patch: edges shorter than this are none, places nearer to the line of an edge lie on it.
+NONE = 1e-12
+# Share of its size within which a place lies in the plane of a patch.
+FLAT = 1e-9
+
+
+def patch_integrals(places: Array, corners: Array) -> tuple[Array, Array]:
+    """Return the integrals of 1 / R [m] and of x . n / R³ over patches, one for each place, shape (places,) each.
+
+    Parameters
+    ----------
+    places : ndarray, shape (places, 3)
+        Where they are wanted [m].
+    corners : ndarray, shape (places, 4, 3)
+        Corners of the patches, round their normals [m]; two may coincide.
+    """
+    first, second = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
+    normals = np.cross(first, second)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    height = ((corners.mean(axis=1) - places) * normals).sum(axis=1)
+    foot, above = places + height[:, None] * normals, np.abs(height)
+    least = NONE * np.linalg.norm(first, axis=1)
+    inverse, angle = np.zeros((2, len(places)))
+    for start, end in zip(np.moveaxis(corners, 1, 0), np.moveaxis(np.roll(corners, -1, axis=1), 1, 0), strict=True):
+        edge = end - start
+        length = np.linalg.norm(edge, axis=1)
+        along = edge / np.maximum(length, least)[:, None]
+        outward = ((start - foot) * np.cross(along, normals)).sum(axis=1)
+        low, high = (((one - foot) * along).sum(axis=1) for one in (start, end))
+        from_edge = outward**2 + above**2
+        near, far = np.sqrt(from_edge + low**2), np.sqrt(from_edge + high**2)
+        counts = (length > least) & (np.abs(outward) > least)
+        # Of the two forms the one whose terms do not cancel.
+        over, under = np.where(low + high < 0.0, [near - low, far - high], [far + high, near + low])
+        turn = np.arctan2(outward * high, from_edge + above * far) - np.arctan2(outward * low, from_edge + above * near)
+        turn = np.where(counts, turn, 0.0)
+        rise = np.log(np.where(counts, over, 1.0) / np.where(counts, under, 1.0))
+        inverse += outward * rise - above * turn
+        angle += turn
+    # From within its plane a patch is not seen.
+    return inverse, np.where(above > FLAT * np.linalg.norm(first, axis=1), np.sign(height), 0.0) * angle

@@ -1,0 +1,114 @@
+// Bowing and rubbing by hand: along the picture the speed of the hand is a velocity, down it presses harder.
+import { short } from "./axes.js";
+
+export const TICK = 50; // Between what is sent [ms].
+const SMOOTH = 0.5; // Share of the hand's speed since the last tick in the speed that is played.
+const HARDER = 16; // Down the whole picture the force becomes so many times as large.
+const DIGITS = 3;
+const VELOCITIES = /^drives\.[^.]+\.velocity$|\.surface_velocity$|\.track\.velocity$/;
+const FORCES = /^drives\./;
+const NEWTONS = new Set(["N", "mN", "kN"]);
+
+// The controls that a hand plays, null for what a system has not: the velocity, and of the forces the largest.
+export function played(controls, values) {
+  const size = ({ key }) => Math.abs(values[key]);
+  const forces = controls.filter(({ key, unit }) => FORCES.test(key) && NEWTONS.has(unit)).sort((a, b) => size(b) - size(a));
+  return { velocity: controls.find(({ key }) => VELOCITIES.test(key)) ?? null, force: forces[0] ?? null };
+}
+
+// A hand on the picture, in shares of its width and height.
+export class Hand {
+  constructor({ velocity, force }, values, x, y) {
+    Object.assign(this, { velocity, force, x, y });
+    [this.lastX, this.firstY, this.speed] = [x, y, 0];
+    this.pressed = force && (values[force.key] / force.scale || force.step);
+  }
+
+  moves(x, y) {
+    Object.assign(this, { x, y });
+  }
+
+  // The values in SI that are played now, by key, after so many milliseconds.
+  tick(passed) {
+    this.speed += SMOOTH * ((this.x - this.lastX) / (passed / 1000) - this.speed);
+    this.lastX = this.x;
+    const found = {};
+    if (this.velocity) found[this.velocity.key] = within(this.velocity, this.#drawn());
+    if (this.force) found[this.force.key] = within(this.force, this.pressed * HARDER ** (this.y - this.firstY));
+    return found;
+  }
+
+  // A width a second is the fastest; what only goes one way goes it whichever way the hand moves.
+  #drawn() {
+    const { low, high } = this.velocity;
+    if (low < 0 && high > 0) return this.speed * Math.max(-low, high);
+    return Math.abs(this.speed) * (low < 0 ? low : high);
+  }
+}
+
+function within({ low, high, scale }, shown) {
+  return Number((Math.max(low, Math.min(high, shown)) * scale).toPrecision(DIGITS)) + 0;
+}
+
+function inWords(what, values) {
+  const played = Object.values(what).filter(Boolean);
+  return played.map(({ key, unit, scale }) => `${short(values[key] / scale)} ${unit}`).join(", ");
+}
+
+// Let a canvas be bowed: what is played comes back to what it was when the hand lets go.
+export class Bow {
+  constructor(canvas, scene, controls, tell) {
+    Object.assign(this, { canvas, scene, controls, tell, hand: null });
+    canvas.addEventListener("pointerdown", (event) => this.#grab(event));
+    canvas.addEventListener("pointermove", (event) => this.hand?.moves(...this.#place(event)));
+    for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) canvas.addEventListener(end, () => this.release());
+  }
+
+  // Follow what is played: whether there is something for a hand.
+  follow() {
+    const { velocity, force } = this.#what();
+    this.canvas.classList.toggle("bowed", Boolean(velocity || force));
+    const words = [velocity && "across draws it", force && "down presses it"].filter(Boolean);
+    if (!this.hand) this.tell(words.length ? `drag: ${words.join(", ")}` : "");
+  }
+
+  release() {
+    if (!this.hand) return;
+    clearInterval(this.timer);
+    this.hand = null;
+    this.#set(this.before);
+    this.follow();
+  }
+
+  #what() {
+    return played(this.controls.numbers(), this.controls.values ?? {});
+  }
+
+  #place({ offsetX, offsetY }) {
+    return [offsetX / this.canvas.clientWidth, offsetY / this.canvas.clientHeight];
+  }
+
+  #grab(event) {
+    const what = this.#what();
+    if (this.hand || event.button !== 0 || !(what.velocity || what.force)) return;
+    this.canvas.setPointerCapture(event.pointerId);
+    this.keys = [what.velocity, what.force].filter(Boolean).map(({ key }) => key);
+    const { overrides } = this.scene.now;
+    this.before = Object.fromEntries(this.keys.filter((key) => key in overrides).map((key) => [key, overrides[key]]));
+    this.hand = new Hand(what, this.controls.values, ...this.#place(event));
+    let last = performance.now();
+    this.timer = setInterval(() => {
+      const now = performance.now();
+      const values = this.hand.tick(Math.max(1, now - last));
+      last = now;
+      this.#set(values);
+      this.tell(inWords(what, values));
+    }, TICK);
+  }
+
+  // Play other values of what the hand has, as one movement that nothing goes back to.
+  #set(values) {
+    const others = Object.entries(this.scene.now.overrides).filter(([key]) => !this.keys.includes(key));
+    this.scene.set({ overrides: { ...Object.fromEntries(others), ...values } }, true);
+  }
+}

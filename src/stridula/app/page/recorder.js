@@ -1,0 +1,95 @@
+// What sounds, kept from press to press, and as a WAV file.
+const LONGEST = 60; // [s]
+const LOWEST = 20; // A high-pass as the player has it [Hz].
+const HEADROOM = 10 ** (-1 / 20); // The largest sample is 1 dB below full scale.
+const LARGEST = 0x7fff;
+
+export class Recorder {
+  constructor(rate) {
+    this.rate = rate;
+    this.blocks = null;
+  }
+
+  get on() {
+    return this.blocks !== null;
+  }
+
+  // How much was kept [s].
+  get seconds() {
+    return this.kept / this.rate;
+  }
+
+  begin() {
+    Object.assign(this, { blocks: [], kept: 0, scales: new Set() });
+  }
+
+  // Keep a part, which times its scale is what sounds; returns whether there is room for more.
+  take(sound, scale) {
+    const part = sound.slice(0, LONGEST * this.rate - this.kept);
+    this.scales.add(scale);
+    this.blocks.push(part.map((value) => value * scale));
+    this.kept += part.length;
+    return this.kept < LONGEST * this.rate;
+  }
+
+  // Return the bytes of a WAV file, null where nothing was kept; unit is that of what was heard.
+  end(unit) {
+    const { blocks, scales } = this;
+    this.blocks = null;
+    if (!this.kept) return null;
+    const sound = passed(joined(blocks, this.kept), Math.exp((-2 * Math.PI * LOWEST) / this.rate));
+    const largest = sound.reduce((most, value) => Math.max(most, Math.abs(value)), 0) / HEADROOM || 1;
+    const [scale] = scales;
+    // Of several sources full scale is no one value.
+    const full = scales.size === 1 ? `full scale is ${Number((largest / scale).toPrecision(6))} ${unit}` : "several sources";
+    return wav(sound, largest, this.rate, `stridula: recorded on the page, ${full}`);
+  }
+}
+
+function joined(blocks, length) {
+  const found = new Float32Array(length);
+  let at = 0;
+  for (const block of blocks) {
+    found.set(block, at);
+    at += block.length;
+  }
+  return found;
+}
+
+function passed(sound, keep) {
+  let [low, before] = [0, sound[0]];
+  return sound.map((value) => {
+    low = keep * (low + value - before);
+    before = value;
+    return low;
+  });
+}
+
+function wav(sound, largest, rate, comment) {
+  const words = new TextEncoder().encode(comment.padEnd(comment.length + 2 - (comment.length % 2), "\0"));
+  const [data, list] = [2 * sound.length, 12 + words.length];
+  const view = new DataView(new ArrayBuffer(44 + 8 + list + data));
+  let at = 0;
+  const text = (word) => [...word].forEach((one) => view.setUint8(at++, one.charCodeAt(0)));
+  const number = (value, bytes) => {
+    if (bytes === 2) view.setUint16(at, value, true);
+    else view.setUint32(at, value, true);
+    at += bytes;
+  };
+  text("RIFF");
+  number(view.byteLength - 8, 4);
+  text("WAVEfmt ");
+  for (const [value, bytes] of [[16, 4], [1, 2], [1, 2], [rate, 4], [2 * rate, 4], [2, 2], [16, 2]]) number(value, bytes);
+  text("LIST");
+  number(list, 4);
+  text("INFOICMT");
+  number(words.length, 4);
+  words.forEach((one) => view.setUint8(at++, one));
+  text("data");
+  number(data, 4);
+  for (const value of sound) {
+    view.setInt16(at, Math.round((LARGEST * value) / largest), true);
+    at += 2;
+  }
+  return view.buffer;
+}

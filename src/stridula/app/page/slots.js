@@ -1,0 +1,24 @@
+// Two settings to switch between, A and B: each keeps what it plays and its own way back.
+export class Slots {
+  constructor(scene) {
+    this.scene = scene;
+    this.heard = "A";
+    this.other = null; // The setting that is not heard, once there is one.
+  }
+
+  // Hear one of them: the second begins as a copy of the first.
+  go(name) {
+    if (name === this.heard) return;
+    const other = this.other ?? { now: structuredClone(this.scene.now), past: [], future: [] };
+    this.other = this.scene.whole;
+    this.heard = name;
+    this.scene.take(other);
+  }
+
+  // Let both be known at once, the first heard.
+  set(first, second) {
+    this.other = { now: second, past: [], future: [] };
+    this.heard = "A";
+    this.scene.set(first);
+  }
+}

@@ -1,0 +1,98 @@
+// Normal force over time, and under it the state of the contact.
+import { Layer, paintAxes, roof } from "./axes.js";
+
+export const WINDOW = 1.0; // Time shown live [s].
+const FALL = 400; // An axis comes down over so much [ms].
+const LANE = 11; // Height of the ribbon of a state [px].
+const [LEFT, RIGHT, ABOVE, BELOW] = [50, 10, 6, 32];
+
+// The top of an axis: up at once to what is seen, and soon down to it.
+export class Top {
+  constructor() {
+    this.value = this.time = 0;
+  }
+
+  follow(largest, now) {
+    this.value = Math.max(1.05 * largest, this.value * Math.exp((this.time - now) / FALL));
+    this.time = now;
+    return this.value;
+  }
+}
+
+export class Timeline {
+  constructor() {
+    this.top = new Top();
+    this.axes = new Layer();
+  }
+
+  draw([draw, width, height], history, slow, colours, states) {
+    const span = WINDOW / slow;
+    const points = history.since(span);
+    const lanes = states.length * LANE + 4;
+    const [inner, tall] = [width - LEFT - RIGHT, height - ABOVE - BELOW - lanes];
+    let largest = 1e-9;
+    for (const k of points) largest = Math.max(largest, history.force[k]);
+    const top = roof(this.top.follow(largest, performance.now()));
+    this.axes.draw(draw, width, height, [top, span, colours.line], (paint) => this.#axes(paint, { inner, tall, lanes, top, span }, colours, states));
+    const start = history.clock - span;
+    const x = (k) => LEFT + ((history.time[k] - start) / span) * inner;
+    const y = (value) => ABOVE + tall * (1 - value / top);
+    const columns = columnsOf(points, history, x);
+    draw.fillStyle = draw.strokeStyle = colours.trace;
+    draw.lineWidth = 1.5;
+    if (points.length < inner) path(draw, points.map((k) => [x(k), y(history.force[k])]));
+    else envelope(draw, columns, y);
+    states.forEach((name, state) => ribbon(draw, columns, 1 << state, ABOVE + tall + 5 + LANE * state, colours[name]));
+  }
+
+  #axes(draw, { inner, tall, lanes, top, span }, colours, states) {
+    const [scale, unit] = span < 0.1 ? [1000, "ms"] : [1, "s"];
+    // The numbers of time stand under the ribbons.
+    paintAxes(draw, { left: LEFT, top: ABOVE, width: inner, height: tall }, { x: { low: 0, high: 0, title: "" }, y: { low: 0, high: top, title: "force [N]" } }, colours);
+    const under = { left: LEFT, top: ABOVE, width: inner, height: tall + lanes };
+    paintAxes(draw, under, { x: { low: -span * scale, high: 0, title: `time before now [${unit}]` }, y: { low: 0, high: 0, title: "" } }, colours);
+    draw.fillStyle = colours.line;
+    states.forEach((_, state) => draw.fillRect(LEFT, ABOVE + tall + 14 + LANE * state, inner, 0.5));
+  }
+}
+
+// Of the points in a column the largest and the least: nothing is lost between them.
+function columnsOf(points, history, x) {
+  const columns = new Map();
+  for (const k of points) {
+    const column = Math.floor(x(k));
+    const one = columns.get(column) ?? { low: Infinity, high: -Infinity, states: 0 };
+    one.low = Math.min(one.low, history.force[k]);
+    one.high = Math.max(one.high, history.force[k]);
+    one.states |= 1 << history.state[k];
+    columns.set(column, one);
+  }
+  return columns;
+}
+
+function envelope(draw, columns, y) {
+  let before = null;
+  for (const [column, { low, high }] of columns) {
+    const [up, down] = before ? [Math.max(high, before.low), Math.min(low, before.high)] : [high, low];
+    draw.fillRect(column, y(up), 1, Math.max(1.2, y(down) - y(up)));
+    before = { low, high };
+  }
+}
+
+function ribbon(draw, columns, bit, top, colour) {
+  draw.fillStyle = colour;
+  let from = null;
+  for (const [column, { states }] of columns) {
+    if (states & bit) {
+      const start = from === null ? column : Math.max(LEFT, from + 1);
+      draw.fillRect(start, top, column - start + 1, LANE - 2);
+    }
+    from = column;
+  }
+}
+
+export function path(draw, points) {
+  draw.beginPath();
+  points.forEach(([x, y], i) => (i ? draw.lineTo(x, y) : draw.moveTo(x, y)));
+  draw.stroke();
+}

@@ -1,0 +1,99 @@
+"""Levels of a sound in third-octave bands."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ..acoustics.levels import LOWEST_RATE, NOMINAL, equivalent_level, third_octave_levels
+from ..acoustics.pressures import channels, positions
+from ..arrays import Array
+from ..checks import ArgumentError, positive
+from .colours import LINES
+
+RANGE = 60.0
+# Edges of a band over its centre.
+EDGE = 10.0**0.05
+
+
+def third_octaves(pressure: xr.DataArray, *, dynamic_range: float = RANGE, title: str = "") -> Figure:
+    """Draw the levels of a sound in third-octave bands, a staircase for each listener.
+
+    Bands are those that the sound is long enough and finely sampled enough for, within 25 Hz to 16 kHz. The legend has
+    LAeq of each listener.
+
+    Parameters
+    ----------
+    pressure : xarray.DataArray, shape (time,) or (time, listener)
+        Sound pressure [Pa].
+    dynamic_range : float, optional
+        Range of the levels [dB], below the largest.
+    title : str, optional
+        Title of the figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Save it with `save`.
+
+    Raises
+    ------
+    ValueError
+        If the sound is silent, or too short or too coarse for any band.
+    """
+    positive("dynamic_range", dynamic_range)
+    values, rate = channels(pressure)
+    levels = third_octave_levels(pressure, *_ends(len(values) / rate, rate))
+    rows = np.atleast_2d(levels.transpose(..., "band").values)
+    top = 5.0 * np.ceil(rows.max() / 5.0)
+    if not np.isfinite(top):
+        raise ArgumentError("pressure", "hold a sound", pressure, got="silence")
+    figure = Figure(figsize=(9.0, 4.2), layout="constrained", dpi=120)
+    axes = figure.subplots()
+    edges = np.append(levels.centre.values / EDGE, levels.centre.values[-1] * EDGE)
+    bottom = top - dynamic_range
+    for number, (row, label) in enumerate(zip(rows, _labels(pressure, rate), strict=True)):
+        colour = LINES[number % len(LINES)]
+        axes.stairs(np.maximum(row, bottom), edges, baseline=bottom, color=colour, linewidth=1.3, label=label)
+        if len(rows) == 1:
+            axes.stairs(np.maximum(row, bottom), edges, baseline=bottom, color=colour, alpha=0.3, fill=True)
+    axes.set_xscale("log")
+    axes.set_xlim(edges[0], edges[-1])
+    axes.set_ylim(bottom, top)
+    shown = slice(int(-levels.centre.size % 3), None, 3)
+    axes.set_xticks(levels.centre.values[shown], [_short(band) for band in levels.band.values[shown]])
+    axes.minorticks_off()
+    axes.set_xlabel("centre of the band [Hz]")
+    axes.set_ylabel("level [dB re 20 µPa]")
+    axes.grid(alpha=0.3, linewidth=0.5)
+    axes.legend(fontsize=8, frameon=False)
+    axes.set_title(title, fontsize=11)
+    return figure
+
+
+def _ends(lasts: float, rate: float) -> tuple[float, float]:
+    """Return the nominal centres of the lowest and of the highest band for a sound."""
+    exact = 10.0 ** (np.arange(14, 43) / 10.0)
+    fits = (exact * (EDGE - 1.0 / EDGE) * lasts >= 1.0) & (2.0 * exact * EDGE <= rate)
+    known = NOMINAL[np.arange(14, 43) - 10][fits]
+    if not known.size:
+        raise ArgumentError("pressure", "be long enough for a band", got=f"{lasts:.3g} s at {rate:.4g} Hz")
+    return float(known[0]), float(known[-1])
+
+
+def _labels(pressure: xr.DataArray, rate: float) -> list[str]:
+    """Return what to call each listener, with LAeq where the rate carries it."""
+    places = positions(pressure)
+    count = pressure.sizes.get("listener", 1)
+    names = ["" if count == 1 else f"listener {number}" for number in range(1, count + 1)]
+    if places is not None:
+        names = [f"({', '.join(f'{x:.4g}' for x in place)}) m" for place in places]
+    if rate < LOWEST_RATE:
+        return names
+    loud: Array = np.atleast_1d(equivalent_level(pressure, "A").values)
+    return [f"{name}{': ' * bool(name)}LAeq {level:.1f} dB" for name, level in zip(names, loud, strict=True)]
+
+
+def _short(band: float) -> str:
+    return f"{band / 1e3:g}k" if band >= 1e3 else f"{band:g}"

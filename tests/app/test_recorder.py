@@ -1,0 +1,68 @@
+"""What was recorded on the page, as a file."""
+
+from __future__ import annotations
+
+import base64
+
+import numpy as np
+import pytest
+import soundfile
+
+from .conversation import RATE
+from .scripting import result_of
+
+RECORDED = """import { Recorder } from "./recorder.js";
+const recorder = new Recorder(48000);
+recorder.begin();
+const room = given.parts.map(([values, scale]) => recorder.take(Float32Array.from(values), scale));
+const seconds = recorder.seconds;
+const bytes = recorder.end(given.unit);
+result = { room, seconds, on: recorder.on, bytes: bytes && Buffer.from(bytes).toString("base64") };"""
+LONG = """import { Recorder } from "./recorder.js";
+const recorder = new Recorder(48000);
+recorder.begin();
+let parts = 0;
+while (recorder.take(new Float32Array(48000 * 7 + 13).fill(0.5), 1)) parts += 1;
+result = [parts, recorder.seconds];"""
+
+
+def recorded(folder, parts, unit="Pa"):
+    found = result_of(folder, RECORDED, {"parts": [[part.tolist(), scale] for part, scale in parts], "unit": unit})
+    if found["bytes"] is not None:
+        (folder / "found.wav").write_bytes(base64.b64decode(found["bytes"]))
+    return found
+
+
+def test_a_recording_holds_what_was_heard_1_db_below_full_scale(tmp_path):
+    time = np.arange(RATE // 4) / RATE
+    # A tone on a weight: the weight is not heard.
+    sound = 5.0 + 0.02 * np.sin(2.0 * np.pi * 1000.0 * time)
+    found = recorded(tmp_path, [(part, 10.0) for part in np.split(sound, 5)])
+    assert (found["seconds"], found["on"]) == (0.25, False)
+    values, rate = soundfile.read(tmp_path / "found.wav")
+    assert rate == RATE
+    assert len(values) == len(time)
+    assert np.abs(values).max() == pytest.approx(10.0 ** (-1.0 / 20.0), rel=1e-3)
+    with soundfile.SoundFile(tmp_path / "found.wav") as file:
+        comment = file.comment
+    assert comment.startswith("stridula: recorded on the page, full scale is ")
+    assert comment.endswith(" Pa")
+    full = float(comment.split()[-2])
+    assert full * values[2000:] == pytest.approx(sound[2000:] - 5.0, abs=5e-4)
+
+
+def test_of_several_sources_there_is_no_one_full_scale(tmp_path):
+    noise = np.random.default_rng(2).normal(size=480)
+    recorded(tmp_path, [(noise, 10.0), (noise, 0.05)])
+    with soundfile.SoundFile(tmp_path / "found.wav") as file:
+        assert file.comment == "stridula: recorded on the page, several sources"
+
+
+def test_silence_is_a_file_and_nothing_is_none(tmp_path):
+    recorded(tmp_path, [(np.zeros(480), 10.0)])
+    assert not soundfile.read(tmp_path / "found.wav")[0].any()
+    assert recorded(tmp_path, [])["bytes"] is None
+
+
+def test_a_recording_ends_after_a_minute(tmp_path):
+    assert result_of(tmp_path, LONG) == [8, 60]
