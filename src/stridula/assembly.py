@@ -599,10 +599,13 @@ def _motion(system: System, imposed: Signal) -> Signal:
     alongs = [contact.frame[:, 0].tolist() for contact in system.contacts]
     pairs = [_pairs(contact) for contact in system.contacts]
     firsts = (np.cumsum(pairs) - pairs).tolist()
+    # Asked for once: where a point is on a body takes long to find.
+    turnings = [contact.turning_velocities for contact in system.contacts]
 
     def motion(time: Array, step: float) -> Array:
         values = np.zeros((time.size, sum(pairs), 3))
-        for number, contact, (normal_x, *tangents_x) in zip(firsts, system.contacts, alongs, strict=True):
+        each = zip(firsts, system.contacts, alongs, turnings, strict=True)
+        for number, contact, (normal_x, *tangents_x), passing in each:
             held = [(0, 1.0)] if system.is_held(contact.tip.body) else []
             held += [(1, -1.0)] if _touches_held(contact, system) else []
             for side, sign in held:
@@ -615,7 +618,7 @@ def _motion(system: System, imposed: Signal) -> Signal:
                     values[:, number + pair, 1] += speed * time
             if contact.circle is not None:
                 values[:, number, 0] += contact.circle.travel(time)
-            for turning, speeds in contact.turning_velocities:
+            for turning, speeds in passing:
                 for pair, speed in enumerate(speeds):
                     values[:, number + pair, 1] += speed * turning.history.integral(time)
             if contact.rigid_track is not None:

@@ -7,6 +7,7 @@ from typing import Any
 
 from .serving import WAIT, Server
 
+STALL = "GPU stall due to ReadPixels"
 PLAYS = "window.stridula && stridula.stats.samples > 4800"
 
 
@@ -23,15 +24,25 @@ class Browsing(AbstractContextManager["Browsing"]):
         """Open the page, its introduction read and its map left out unless asked for, and wait until it plays."""
         if not intro:
             self.context.add_init_script("localStorage.setItem('visited', '1')")
-        page = self.context.new_page()
-        page.on("console", lambda said: said.type in ("error", "warning") and self.complaints.append(said.text))
-        page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        page.goto(self.server.address + hash)
+        page = self.begin(hash)
         until(page, PLAYS)
         if not map:
             # A map takes a processor for a while.
             page.evaluate("document.getElementById('map-on').click()")
         return page
+
+    def begin(self, hash: str) -> Any:
+        """Open the page, and listen to what it complains of."""
+        page = self.context.new_page()
+        page.on("console", self._heard)
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        page.goto(self.server.address + hash)
+        return page
+
+    def _heard(self, said: Any) -> None:
+        # A browser that draws by the processor tells of itself how long that takes.
+        if said.type in ("error", "warning") and STALL not in said.text:
+            self.complaints.append(said.text)
 
     def __exit__(self, *raised: Any) -> None:
         self.context.close()

@@ -132,9 +132,11 @@ class Conversation:
             parts = min(MOST_PARTS, samples // size)
             self.others = []
             self.say("pull", parts=parts, samples=size)
-            played.parts += parts_of(self.bytes())
+            found = parts_of(self.bytes())
+            played.parts += found
             played.stops += [one for one in self.others if isinstance(one, dict) and one["type"] == "stroke"]
-            samples -= parts * size
+            # Of what is slow not all comes at once, of what has ended nothing.
+            samples -= sum(len(part.sound) for part in found) or parts * size
         self.others = before
         return played
 

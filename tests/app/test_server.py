@@ -18,7 +18,8 @@ from stridula.app.serve import COMPILING, addresses, outward
 from .conversation import conversation
 from .serving import WAIT, Server, app
 
-PAGE = [entry for entry in files("stridula.app").joinpath("page").iterdir() if entry.is_file()]
+FOLDER = files("stridula.app").joinpath("page")
+PAGE = [entry for entry in FOLDER.iterdir() if entry.is_file()]
 
 
 @pytest.mark.parametrize("entry", PAGE, ids=lambda entry: entry.name)
@@ -27,6 +28,17 @@ def test_every_file_of_the_page_comes_as_it_is_and_says_what_it_is(server, entry
     kinds = {"js": "text/javascript", "css": "text/css", "html": "text/html", "svg": "image/svg+xml"}
     assert (answer.status, content) == (200, entry.read_bytes())
     assert answer.getheader("content-type").partition(";")[0] == kinds[entry.name.rpartition(".")[2]]
+
+
+@pytest.mark.parametrize("entry", list(FOLDER.joinpath("vendor").iterdir()), ids=lambda entry: entry.name)
+def test_what_others_wrote_comes_as_it_is_with_its_licence(server, entry):
+    answer, content = server.get(f"/vendor/{entry.name}")
+    kinds = {"js": "text/javascript", "txt": "text/plain"}
+    assert (answer.status, content) == (200, entry.read_bytes())
+    assert answer.getheader("content-type").partition(";")[0] == kinds[entry.name.rpartition(".")[2]]
+    assert b"MIT" in content
+    # It speaks with nobody: of the addresses in it none is asked for.
+    assert not re.search(rb"import\s*\(|from\s*[\"']https?:", content)
 
 
 def test_the_page_may_load_and_speak_with_nothing_but_its_server(server):

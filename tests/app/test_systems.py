@@ -10,7 +10,6 @@ from stridula.app.instrument import Instrument
 from stridula.app.now import heard, measured, said, words
 from stridula.app.parts import Part
 from stridula.app.playable import SYSTEMS, playable
-from stridula.scenarios.show import scenario_text
 
 from .browsing import plays_on, shown, until
 from .conversation import RATE
@@ -200,14 +199,6 @@ def test_a_belt_that_carries_its_block_is_not_at_rest(talk):
     played = talk.play(RATE)
     assert played.stops == []
     assert set(played.status) == {1}
-
-
-def test_systems_in_space_are_refused_in_one_line(talk):
-    talk.scene("belt")
-    answer = talk.scene("", text=scenario_text("glass"))
-    assert answer["type"] == "refused"
-    (line,) = answer["problems"]
-    assert line.startswith("scenario must lie in the plane to be played, got bodies in space: AxisymmetricBody")
 
 
 def test_a_record_of_several_contacts_and_probes_opens_as_any(talk, tmp_path):

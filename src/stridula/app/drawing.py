@@ -1,4 +1,4 @@
-"""What the page draws of a system: two beams, or the lines that its films have."""
+"""What the page draws of a system: two beams, the lines that its films have, or surfaces in space."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from ..connections import ends, unit
 from ..integration.live import LiveChunk, LiveMarch
 from ..lines import Line, Touch, lines_of
 from ..records.provenance import is_pair
-from ..records.variables import dominant_status
 from ..system import System
-from .parts import Shapes
+from .drawing_space import Surfaces
+from .parts import Shapes, contacts_now
 
 TRACK_POINTS = 65
 # Points of a line that are drawn at most.
@@ -40,6 +40,8 @@ class Drawing(Protocol):
 
 def drawing_of(system: System) -> Drawing:
     """Return what the page draws of a system."""
+    if system.is_spatial:
+        return Surfaces(system)
     return TwoBeams(system) if is_pair(system) else Lines(system)
 
 
@@ -144,9 +146,8 @@ class Lines:
                 travel = (places[one.slides] - touch.contact.at) * tangent
                 departed = departed - (departed[one.row(touch.tip[1])] @ tangent) * tangent
             moved += [travel[None], departed]
-        contacts = np.stack([dominant_status(chunk.status_shares[:, -1]), live.passed], axis=1)
         height = float(chunk.contact["contact_height"][-1])
-        return Shapes(float(places[0]), height, np.concatenate(moved), np.zeros(0), contacts)
+        return Shapes(float(places[0]), height, np.concatenate(moved), np.zeros(0), contacts_now(live, chunk))
 
     def _contact(self, number: int) -> dict[str, Any]:
         touch = self.touches[number]

@@ -26,8 +26,8 @@ TRUST = 0.5
 BLEND = 0.004
 # Seconds played in one from which on it keeps up with the sound.
 LIVE = 1.05
-# Moments of so many samples by which it is found how fast it can be played.
-MOMENTS, MOMENT = 5, 480
+# Moments of so many samples by which it is found how fast it can be played; short ones where they take so long [s].
+MOMENTS, MOMENT, SHORT, LONG = 5, 480, 48, 0.01
 
 
 class Instrument:
@@ -109,7 +109,8 @@ class Instrument:
     def keep_up(self) -> float:
         """Return how many seconds are played in one, from the start, with steps twice as long where that keeps up."""
         usual, speed, steps = self.played, self.speed(), self.live.ratio
-        if speed >= LIVE or usual.scenario.step is not None or steps == 1:
+        # Half the steps never make it three times as fast.
+        if not LIVE / 3.0 < speed < LIVE or usual.scenario.step is not None or steps == 1:
             return speed
         step = self.live.interval / ((steps + 1) // 2)
         try:
@@ -127,18 +128,22 @@ class Instrument:
 
     def speed(self) -> float:
         """Return how many seconds are played in one, from some moments, and begin again at the start."""
-        taken = []
-        for _ in range(MOMENTS):
-            began = clock.perf_counter()
-            chunk, _ended = self.live.advance(MOMENT)
-            if len(chunk.time):
-                self.source.heard(chunk)
-                self.drawing.shapes(self.live, chunk)
-            taken.append(clock.perf_counter() - began)
+        # The first may compile.
+        self._moment(SHORT)
+        samples = SHORT if self._moment(SHORT) > LONG else MOMENT
+        taken = [self._moment(samples) for _ in range(MOMENTS)]
         self.live.restart()
         self.source.begin()
-        # The first may compile.
-        return MOMENT / RATE / sorted(taken)[MOMENTS // 2]
+        return samples / RATE / sorted(taken)[MOMENTS // 2]
+
+    def _moment(self, samples: int) -> float:
+        """Play a moment that nobody hears or sees and return how long it takes [s]."""
+        began = clock.perf_counter()
+        chunk, _ended = self.live.advance(samples)
+        if len(chunk.time):
+            self.source.heard(chunk)
+            self.drawing.shapes(self.live, chunk)
+        return clock.perf_counter() - began
 
     def restart(self) -> None:
         """Begin a stroke at the start."""

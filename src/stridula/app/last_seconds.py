@@ -14,13 +14,16 @@ import xarray as xr
 from ..acoustics.wav import encoded, normalised_scale, scale_comment
 from ..arrays import Array
 from ..checks import ArgumentError
+from ..records.by_surface import groups
 from ..records.dataset import probe_label
 from ..records.variables import (
+    ALONG_TANGENTS,
     CONTACT,
     PROBES,
     STATUS,
     STATUS_SHARE,
     STATUS_WORDS,
+    TANGENTS,
     attributes_of,
     described,
     status_attributes,
@@ -31,13 +34,15 @@ from .playable import Playable
 from .sources import Source
 
 KEPT = 10.0
+# Numbers that are kept of contacts at most: of many contacts fewer seconds are.
+MOST_NUMBERS = 60_000_000
 # Energies that a regime is judged by.
 LOSSES = ("damping_loss", "friction_loss", "convection_work", "contact_work")
 
 
 @dataclass(frozen=True)
 class _Kept:
-    """A part, in single precision and without its shapes; contacts before samples."""
+    """A part, in single precision and without its shapes; contacts before samples, tangents of those in space last."""
 
     source: Source
     clock: float
@@ -73,16 +78,23 @@ class LastSeconds:
             self._samples = 0
         self.played = played
 
+    @property
+    def seconds(self) -> float:
+        """How much is kept [s]."""
+        numbers = (len(CONTACT) + 4) * len(self.played.system.contacts) * self.rate
+        return min(KEPT, MOST_NUMBERS / numbers)
+
     def keep(self, part: Part, source: Source) -> None:
         """Keep a part and let go of what is too old."""
         chunk = part.chunk
-        small = {variable.name: chunk.contacts[variable.name].astype("f4") for variable in (*CONTACT, STATUS)}
+        recorded = chunk.contacts | chunk.along_tangents
+        small = {variable.name: recorded[variable.name].astype("f4") for variable in (*CONTACT, STATUS)}
         shares, probes = chunk.status_shares.astype("f4"), chunk.probes.astype("f4")
         losses = np.stack([chunk.energies[name] for name in LOSSES])
         kept = _Kept(source, part.clock, part.stroke, part.sound.astype("f4"), small, shares, probes, losses)
         self._parts.append(kept)
         self._samples += len(kept.sound)
-        while self._samples - len(self._parts[0].sound) >= KEPT * self.rate:
+        while self._samples - len(self._parts[0].sound) >= self.seconds * self.rate:
             self._samples -= len(self._parts.popleft().sound)
         while len(self._changes) > 1 and self._changes[1][0] < self._parts[0].clock:
             self._changes.popleft()
@@ -113,9 +125,11 @@ class LastSeconds:
         first = round(parts[-1].clock * self.rate) - self._samples
         time = (first + np.arange(1, self._samples + 1)) / self.rate
         over = ("time", "contact") if len(contacts) > 1 else ("time",)
+        is_spatial = played.system.has_two_tangents
         data: dict[str, Any] = {}
         for variable in CONTACT:
-            data[variable.name] = (over, self._joined(variable.name), attributes_of(variable))
+            along = ("tangent",) if is_spatial and variable.name in ALONG_TANGENTS else ()
+            data[variable.name] = ((*over, *along), self._joined(variable.name), attributes_of(variable))
         data[STATUS.name] = (over, self._joined(STATUS.name).astype(np.int8), status_attributes())
         shares = np.concatenate([part.status_shares for part in parts], axis=1).swapaxes(0, 1)
         shares = shares if len(contacts) > 1 else shares[:, 0]
@@ -126,6 +140,10 @@ class LastSeconds:
         }
         if len(contacts) > 1:
             coordinates["contact"] = ("contact", list(contacts))
+        if played.system.surface_names:
+            coordinates["surface"] = ("contact", list(played.system.surface_names))
+        if is_spatial:
+            coordinates["tangent"] = ("tangent", list(TANGENTS))
         probed = np.concatenate([part.probes for part in parts])
         for quantity in dict.fromkeys(quantity for quantity, _ in probes):
             of_it = [k for k, (other, _) in enumerate(probes) if other == quantity]
@@ -162,7 +180,7 @@ class LastSeconds:
         Returns
         -------
         variables : dict
-            By the names of records, over time, and over contacts where there are several.
+            By the names of records, over time, and over contacts where there are several; each surface is one.
         pressure : ndarray, shape (samples,)
             Nothing where something else was heard.
         """
@@ -178,12 +196,15 @@ class LastSeconds:
         sound = [one.sound for one in parts if one.source.unit == "Pa"]
         found = {"damping_loss": damping, "friction_loss": rubbed, "impact_loss": convected - rubbed - contact}
         variables = {name: values[:every][together - 1 :: together] for name, values in found.items()}
+        members = groups(self.played.system.contact_names, self.played.system.surface_names)
         for name, scale in (("normal_force", 1), ("tangential_force", 1), ("landings", together)):
             of_contacts = np.concatenate([one.contacts[name] for one in parts], axis=1)[:, :every]
-            variables[name] = scale * of_contacts.reshape(len(of_contacts), -1, together).mean(axis=2).T
+            whole = np.stack([of_contacts[those].sum(axis=0) for those in members], axis=1)
+            variables[name] = scale * whole.reshape(-1, together, *whole.shape[1:]).mean(axis=1)
         shares = np.concatenate([one.status_shares for one in parts], axis=1)[:, :every]
-        variables["status_share"] = shares.reshape(len(shares), -1, together, 3).mean(axis=2).swapaxes(0, 1)
-        if len(shares) == 1:
+        whole = np.stack([shares[those].mean(axis=0) for those in members], axis=1)
+        variables["status_share"] = whole.reshape(-1, together, *whole.shape[1:]).mean(axis=1)
+        if len(members) == 1:
             for name in ("normal_force", "tangential_force", "landings", "status_share"):
                 variables[name] = variables[name][:, 0]
         return variables, np.concatenate(sound) if len(sound) == len(parts) else np.zeros(0)
@@ -213,9 +234,9 @@ class LastSeconds:
         return bytes(encoded(sound[:, None] / scale, self.rate, "PCM_24", comment))
 
     def _joined(self, name: str) -> Array:
-        """Return a record of the contacts over time, and over contacts where there are several."""
+        """Return a record of the contacts over time, and over contacts where there are several, over tangents last."""
         found = np.concatenate([part.contacts[name] for part in self._parts], axis=1)
-        return found.T if len(found) > 1 else found[0]
+        return found.swapaxes(0, 1) if len(found) > 1 else found[0]
 
     def _check(self) -> None:
         if not self._parts:

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 LARGEST = 100_000
 # Longest line that says what is wrong with one.
 LONGEST = 300
-Number = Annotated[float, Field(allow_inf_nan=False, ge=-1e9, le=1e9)]
+Number = Annotated[float, Field(allow_inf_nan=False, ge=-1e15, le=1e15)]
 Revision = Annotated[int, Field(ge=0, le=2**50)]
 Key = Annotated[str, Field(max_length=100)]
 

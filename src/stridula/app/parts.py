@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..arrays import Array
-from ..integration.live import LiveChunk
+from ..integration.live import LiveChunk, LiveMarch
 from ..records.variables import dominant_status
 
 # Samples that become one in the pictures of the forces and of the phase portrait.
@@ -26,7 +26,8 @@ class Shapes:
         Displacements along x and y [m]: of two beams those of the slider's nodes less that of its tip, tip first; of
         other systems, line by line, the travel that is to scale and then what departs from it at each point.
     track : ndarray, shape (points,)
-        Of two beams the deflections at equal distances along the track [m].
+        Of two beams the deflections at equal distances along the track [m]; of systems in space the numbers that tell
+        where each body is, body by body, then how fast these change.
     contacts : ndarray, shape (contacts, 2)
         Of other systems the status of each contact, and how far what it slides on has moved along itself [m].
     """
@@ -104,6 +105,11 @@ def packed(part: Part) -> bytes:
     body = np.concatenate([part.sound, *seen, [shapes.height], *moved])
     odd = np.zeros(len(body) % 2)
     return head.tobytes() + np.concatenate([body, odd]).astype("<f4").tobytes()
+
+
+def contacts_now(live: LiveMarch, chunk: LiveChunk) -> Array:
+    """Return the status of each contact at the end of a chunk, and how far what it slides on has moved [m]."""
+    return np.stack([dominant_status(chunk.status_shares[:, -1]), live.passed], axis=1)
 
 
 def _means(values: Array, count: int) -> Array:

@@ -1,32 +1,38 @@
-"""What the page can play: a scenario in the plane, small enough to march about as fast as it sounds."""
+"""What the page can play: a scenario small enough to march while one looks on."""
 
 from __future__ import annotations
 
+import math
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
+import numpy as np
+
 from ..records import Acceleration, Probe
 from ..records.provenance import is_pair, scenario_toml, toml
 from ..scenarios.errors import ScenarioError
 from ..scenarios.keys import overridden
-from ..scenarios.load import Scenario, scenario_of_tables
-from ..scenarios.outline import TAGS
+from ..scenarios.load import Scenario, scenario_of_tables, tables_in_si
+from ..scenarios.outline import TAGS, look_up
 from ..scenarios.read import read_tables, tables_of_text
 from ..system import System
 from .controls import KEYS, Turned, turned_of_pair
 from .sources import Source, sources_of
 from .turned import expanded, turned_of_system
 
-# One beam on another, and other systems.
+# One beam on another, other systems in the plane, and systems in space.
 PRESETS = ("squeal", "judder", "weak-pressure", "strong-pressure", "stable-sliding", "axial-sliding")
 SYSTEMS = ("violin", "squeal-on-plate", "judder-on-plate", "belt", "lugre")
-CASES = (*PRESETS, *SYSTEMS)
-MOST_ELEMENTS, MOST_MODES, MOST_CONTACTS = 100, 400, 32
+IN_SPACE = ("glass", "wheel", "pin-on-disc", "pad-on-disc", "brake")
+CASES = (*PRESETS, *SYSTEMS, *IN_SPACE)
+MOST_ELEMENTS, MOST_MODES, MOST_CONTACTS = 100, 400, 100
 # Modes of a system that is no pair of beams: it may be played slower than it sounds.
 MOST_OF_SYSTEMS = 1500
+# Elements of a mesh that a scenario describes, and nodes of a mesh or a profile, whose modes are found within a minute.
+MOST_OF_MESH, MOST_NODES = 4000, 20_000
 
 
 @dataclass(frozen=True)
@@ -60,10 +66,9 @@ class Playable:
         """What is recorded beside the contacts: an acceleration, and the scenario's own of systems."""
         contact = self.system.contacts[0]
         if contact.path_body is not None:
-            first = Acceleration(contact.path_body.centre, "y")
+            first = Acceleration(contact.path_body.centre, "transverse" if self.system.is_spatial else "y")
         else:
-            tangent = contact.frame[1]
-            first = Acceleration(contact.tip, "xy"[int(abs(tangent[1]) > abs(tangent[0]))])
+            first = Acceleration(contact.tip, "xyz"[int(np.argmax(np.abs(contact.frame[1])))])
         own = () if self.before is None else self.scenario.probes or ()
         return (first, *(probe for probe in own if probe != first))
 
@@ -121,7 +126,7 @@ def playable(case: str, text: str | None, overrides: Mapping[str, Any]) -> Playa
     _check_size(changed)
     scenario = scenario_of_tables(changed, problems)
     _check_system(scenario.system)
-    return Playable(scenario, _in_full(scenario), case if text is None else text, before)
+    return Playable(scenario, _in_full(scenario, changed), case if text is None else text, before)
 
 
 @lru_cache(maxsize=32)
@@ -134,18 +139,26 @@ def _given(case: str, text: str | None) -> tuple[dict[str, Any], dict[str, Any] 
     except ScenarioError:
         # What is wrong with it is said once values are set.
         return tables, None
-    if is_pair(scenario.system):
+    if _is_pair(scenario.system):
         return tables, None
     _check_system(scenario.system)
-    full = {"title": scenario.title, "description": scenario.description} | _in_full(scenario)
+    full = {"title": scenario.title, "description": scenario.description} | _in_full(scenario, tables)
     return full, full
 
 
-def _in_full(scenario: Scenario) -> dict[str, Any]:
-    """Return a scenario in full and in SI."""
+def _is_pair(system: System) -> bool:
+    """Return whether a system is one beam on another, in the plane."""
+    return is_pair(system) and not system.is_spatial
+
+
+def _in_full(scenario: Scenario, tables: dict[str, Any]) -> dict[str, Any]:
+    """Return a scenario in full and in SI; in space as it is described, without what its bodies come to as numbers."""
     simulation: dict[str, Any] = {"duration": scenario.duration, "scheme": scenario.scheme.name}
     if scenario.step is not None:
         simulation["step"] = scenario.step
+    if scenario.system.is_spatial:
+        described = tables_in_si(tables)
+        return described | {"simulation": described.get("simulation", {}) | simulation}
     return tomllib.loads(scenario_toml(scenario.system, scenario.probes or (), simulation))
 
 
@@ -157,23 +170,30 @@ def _check_size(tables: dict[str, Any]) -> None:
         elements = body.get("elements", 1) if isinstance(body, dict) else 1
         if isinstance(elements, (int, float)) and elements > MOST_ELEMENTS:
             raise ScenarioError([f"{name}.elements must be at most {MOST_ELEMENTS} to be played, got {elements!r}"])
+        divisions = look_up(body, ("mesh", "divisions"))
+        counts = [one for one in divisions if isinstance(one, (int, float))] if isinstance(divisions, list) else []
+        if math.prod(counts) > MOST_OF_MESH:
+            told = f"{name}.mesh.divisions must make at most {MOST_OF_MESH} elements to be played, got {divisions!r}"
+            raise ScenarioError([told])
 
 
 def _check_system(system: System) -> None:
-    """Raise ScenarioError if a system is in space or too large."""
-    if system.is_spatial:
-        kinds = ", ".join(sorted({type(body).__name__ for body in system.bodies if body.is_spatial}))
-        raise ScenarioError(
-            [f"scenario must lie in the plane to be played, got bodies in space: {kinds}; run it with `stridula run`"]
-        )
+    """Raise ScenarioError if a system is too large."""
     if len(system.contacts) > MOST_CONTACTS:
         many = len(system.contacts)
         raise ScenarioError([f"contacts must be at most {MOST_CONTACTS} to be played, got {many}"])
-    if is_pair(system):
+    if _is_pair(system):
         modes = sum(system.track.harmonics)
         if modes > MOST_MODES:
             raise ScenarioError([f"track must have at most {MOST_MODES} modes to be played, got {modes}: lower cutoff"])
         return
+    for body in system.bodies:
+        # Before its modes are found.
+        nodes = len(body.mesh.nodes) if hasattr(body, "mesh") else 0
+        if nodes > MOST_NODES:
+            name = system.body_name(body)
+            told = f"{name} must have at most {MOST_NODES} nodes to be played, got {nodes}: take a coarser mesh"
+            raise ScenarioError([told])
     modes = sum(body.modes().count for body in system.bodies)
     if modes > MOST_OF_SYSTEMS:
         raise ScenarioError([f"bodies must have at most {MOST_OF_SYSTEMS} modes to be played, got {modes}"])

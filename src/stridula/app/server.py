@@ -19,6 +19,8 @@ from .beside import Beside
 from .session import Session
 
 PAGE = files(__package__).joinpath("page")
+# What others wrote, as it is.
+VENDOR = "vendor"
 MOST_PAGES = 16
 # Codes of a closed socket: a page from elsewhere, one too many.
 FROM_ELSEWHERE, TOO_MANY = 4403, 4429
@@ -73,6 +75,7 @@ def create_app(is_open: bool = False) -> ASGIApp:
     """
     pages = Pages()
     known = {entry.name: entry for entry in PAGE.iterdir() if entry.is_file()}
+    known |= {f"{VENDOR}/{entry.name}": entry for entry in PAGE.joinpath(VENDOR).iterdir() if entry.is_file()}
 
     async def page(request: Request) -> Response:
         name = request.path_params.get("name", "index.html")
@@ -83,7 +86,7 @@ def create_app(is_open: bool = False) -> ASGIApp:
         kind = "text/javascript" if name.endswith(".js") else kind
         return Response(known[name].read_bytes(), 200, HEADERS | policy, kind)
 
-    routes = [Route("/", page), Route("/{name}", page), WebSocketRoute("/socket", pages.socket)]
+    routes = [Route("/", page), WebSocketRoute("/socket", pages.socket), Route("/{name:path}", page)]
     app = Starlette(routes=routes)
     app.state.pages = pages
     return _named_rightly(app, is_open)

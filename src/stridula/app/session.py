@@ -13,6 +13,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from ..checks import ArgumentError
 from ..plot.colours import REGIME_COLOURS
+from ..records.by_surface import groups
 from ..scenarios.errors import ScenarioError
 from ..version import __version__
 from . import controls, now
@@ -22,7 +23,7 @@ from .instrument import RATE, Instrument
 from .last_seconds import KEPT
 from .maps import rows
 from .messages import Listen, Map, Message, NoMap, Pull, Repeat, Restart, Save, Scene, message_of
-from .parts import Stop, packed
+from .parts import THINNED, Stop, packed
 from .playable import Playable
 from .presets import presets
 from .tour import STOPS
@@ -30,14 +31,18 @@ from .turned import keys_of
 
 # A page may be ahead of time by so much [s], and play at most so much faster than time goes.
 AHEAD, FASTEST = 1.0, 1.5
-# After so many parts other pages have their turn.
-PARTS_AT_ONCE = 4
+# After so many parts other pages have their turn; parts that take long are cut so that they have it every so often [s],
+# and no more of them are played at once than take so long [s].
+PARTS_AT_ONCE, TURN, LONGEST = 4, 0.02, 0.25
 # Quiet time after a change before linear theory is asked [s].
 PAUSE = 0.25
 # Of so many seconds it is said what goes on, each time they have passed; not of fewer than the shortest [s].
 MOMENT, SHORTEST = 1.0, 0.2
 # Samples that become one for that.
 TOGETHER = 2
+# Share of what was known before in how fast a system is played: a machine is busy now and then. Samples from which more
+# is known.
+KNOWN, ENOUGH = 0.6, 48
 # A page that says nothing for so long at first [s] makes room for another.
 HURRY = 10.0
 # Codes of a socket that closed without one, and of one whose page said nothing.
@@ -62,6 +67,8 @@ class Session:
         self.source, self.repeats = "pressure", True
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._began, self._played = clock.monotonic(), 0
+        # What was last drawn.
+        self._drawn: str | None = None
         # Seconds of a system played in one; of what was played since, seconds that it took, and samples.
         self.speed: float | None = None
         self._taken, self._made = 0.0, 0
@@ -136,7 +143,15 @@ class Session:
         else:
             self.scene = found.scene
             told = {"goes_on": goes_on, "refused": refused, "kept": _said(found.scene) if refused else None}
-            await self._tell("scene", revision=scene.revision, **told, **_described(instrument, self.speed))
+            described = _described(instrument, self.speed)
+            drawn, self._drawn = self._drawn, described.get("drawn")
+            if drawn and drawn == self._drawn:
+                # Bodies in space are much to say.
+                described = {
+                    name: value for name, value in described.items() if name not in instrument.drawing.described
+                }
+                described["drawn"] = drawn
+            await self._tell("scene", revision=scene.revision, **told, **described)
             self._do("theory", self._theory(played, scene.revision))
             if "now" not in self._tasks:
                 self._do("now", self._now())
@@ -166,18 +181,24 @@ class Session:
             while True:
                 await asyncio.sleep(MOMENT)
                 instrument = self.instrument
-                if instrument is None or instrument.played_samples - before < MOMENT * RATE / 4 or not self._taken:
+                if instrument is None or self._made < ENOUGH:
                     continue
-                before, revision = instrument.played_samples, instrument.revision
                 if instrument.played.before is not None:
-                    self.speed = self._made / RATE / self._taken
+                    now_played = self._made / RATE / self._taken
+                    known = now_played if self.speed is None else self.speed
+                    self.speed = KNOWN * known + (1.0 - KNOWN) * now_played
                     await self._tell("speed", speed=self.speed)
                 self._taken, self._made = 0.0, 0
+                if instrument.played_samples - before < MOMENT * RATE / 4:
+                    continue
+                before, revision = instrument.played_samples, instrument.revision
                 variables, pressure = instrument.last_seconds.moment(MOMENT, TOGETHER)
                 if not variables or len(variables["damping_loss"]) < SHORTEST * RATE / TOGETHER:
                     continue
                 told = {name: now.said(values) for name, values in variables.items()}
-                names = instrument.played.system.contact_names
+                system = instrument.played.system
+                members = groups(system.contact_names, system.surface_names)
+                names = [system.contact_names[those[0]] for those in members]
                 found = await self.beside.ask("now", interval=TOGETHER / RATE, contacts=names, variables=told)
                 if found is not None:
                     words = now.words(found, now.level_of(pressure))
@@ -193,20 +214,31 @@ class Session:
         if early > 0.0:
             await asyncio.sleep(early / FASTEST)
         parts: list[bytes] = []
-        for number in range(pull.parts):
+        start = clock.monotonic()
+        for number, samples in enumerate(self._cut(pull)):
             # Marched here and not in a thread: to change threads takes as long as a part.
             began = clock.perf_counter()
-            found = list(instrument.play(pull.samples))
+            found = list(instrument.play(samples))
             self._taken += clock.perf_counter() - began
-            self._made += pull.samples
+            self._made += samples
             for part in found:
                 if isinstance(part, Stop):
                     await self._tell("stroke", why=part.why, goes_on=part.goes_on)
                 else:
                     parts.append(packed(part))
-            if number % PARTS_AT_ONCE == PARTS_AT_ONCE - 1:
+            if self.speed is not None and clock.monotonic() - start > LONGEST:
+                break
+            if samples < pull.samples or number % PARTS_AT_ONCE == PARTS_AT_ONCE - 1:
                 await asyncio.sleep(0)
         await _sent(self.socket.send_bytes(b"".join(parts)))
+
+    def _cut(self, pull: Pull) -> list[int]:
+        """Return the samples of each part, of what is slow in smaller ones."""
+        most = pull.samples
+        if self.speed is not None:
+            most = max(THINNED, int(TURN * self.speed * RATE) // THINNED * THINNED)
+        whole, rest = divmod(pull.samples, min(most, pull.samples))
+        return [*[min(most, pull.samples)] * whole, *[rest] * bool(rest)] * pull.parts
 
     async def _save(self, instrument: Instrument, save: Save) -> None:
         last, played, steps = instrument.last_seconds, instrument.played, instrument.live.ratio
@@ -305,6 +337,7 @@ def _described(instrument: Instrument, speed: float | None) -> dict[str, Any]:
         "source": instrument.name,
         **instrument.drawing.described,
         "modes": len(live.position),
+        "seconds_kept": instrument.last_seconds.seconds,
         "step": live.step,
         "steps": live.ratio,
         "longer": instrument.longer is not None,

@@ -16,9 +16,11 @@ from ..scenarios.quantities import DEGREES, UNITS
 from .controls import CHOICES, CONTROLS, DEGREE, Choice, Control, Turned
 
 # Tables whose numbers are turned: what acts and rubs before what bodies are.
-TURNED = ("contacts", "drives", "connections", "bodies")
+TURNED = ("contacts", "surfaces", "drives", "connections", "bodies")
 # Where things are, and what hardly matters, is no business of an instrument.
-NOT_TURNED = {"point", "points", "gap", "at", "inclination", "poisson"}
+NOT_TURNED = {"point", "points", "gap", "at", "inclination", "poisson", "profile", "mesh"}
+# How bodies with a mesh are made, too: more modes of theirs take minutes to find.
+MESHES, NOT_TURNED_OF_MESHES = {"profile", "mesh"}, {"cutoff", "axis", "origin"}
 # How far a slider goes from the value that a scenario has.
 REACH = 5.0
 # Steps of a slider from end to end, at least.
@@ -26,12 +28,15 @@ STEPS = 400
 MOST = 40
 # Keys of one beam on another, by the keys that they have in a list of contacts and bodies.
 _PAIR = (
-    (r"^contacts\.(\d+|\*)\.", "contact."),
+    (r"^(contacts|surfaces)\.(\d+|\*)\.", "contact."),
     (r"^bodies\.(slider|track)\.", r"\1."),
     (r"^drives\.\*\.", "drives.0."),
 )
+# Units that take prefixes, for numbers that are not handy in those of scenario files.
+PREFIXED = ("m", "N", "N/m", "N s/m", "Pa")
+PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "m": 1e-3, "µ": 1e-6, "n": 1e-9}
 FRICTION_LAW = CHOICES[0]
-GROUPS = {"drives": "Drive", "connections": "Springs", "contacts": "Contact"}
+GROUPS = {"drives": "Drive", "connections": "Springs", "contacts": "Contact", "surfaces": "Contact"}
 
 
 def turned_of_system(tables: dict[str, Any], before: dict[str, Any]) -> Turned:
@@ -102,8 +107,13 @@ def _matching(parts: tuple[str, ...], tables: Any, path: Path) -> Iterator[Path]
 
 def _keys(tables: dict[str, Any], before: dict[str, Any]) -> list[tuple[str, Path]]:
     """Return the keys of numbers that are turned, what acts and rubs before what bodies are."""
-    found = _together(tables, before, _is_turned)
-    return sorted(found, key=lambda item: (TURNED.index(item[1][0]), "friction" not in item[1]))
+    found = [one for one in _together(tables, before, _is_turned) if not _makes_a_mesh(one[1], tables)]
+    return sorted(found, key=lambda item: (TURNED.index(_acts_as(item[1])), "friction" not in item[1]))
+
+
+def _acts_as(path: Path) -> str:
+    """Return the table beside whose numbers one stands: a body that turns drives as a force does."""
+    return "drives" if path[-1] == "turning" else str(path[0])
 
 
 def _is_turned(path: Path, node: outline.Node) -> bool:
@@ -115,6 +125,11 @@ def _is_turned(path: Path, node: outline.Node) -> bool:
         and outline.is_number(node)
         and not outline.is_whole(node)
     )
+
+
+def _makes_a_mesh(path: Path, tables: dict[str, Any]) -> bool:
+    """Return whether a number says how many modes of a body with a mesh there are, or where it stands."""
+    return bool(path[0] == "bodies" and path[2] in NOT_TURNED_OF_MESHES and MESHES & set(look_up(tables, path[:2])))
 
 
 def _is_law(path: Path, node: outline.Node) -> bool:
@@ -129,7 +144,8 @@ def _together(
     for path, node in outline.paths(tables):
         value = look_up(tables, path)
         # A zero may be turned again, but one that stood there from the start gives no range.
-        is_there = isinstance(value, str) or (_is_number(value) and (value or look_up(before, path)))
+        is_word = isinstance(value, str) and outline.is_choice(node)
+        is_there = is_word or (_is_number(value) and (value or look_up(before, path)))
         if not (is_there and is_wanted(path, node)):
             continue
         common = ".".join("*" if isinstance(part, int) else re.sub(r"\d+", "*", part) for part in path)
@@ -165,6 +181,8 @@ def _control(key: str, path: Path, tables: dict[str, Any], value: float) -> Cont
     words = _sentence((node or {}).get("description", ""))
     name = str(path[-1]).replace("_", " ")
     label = f"Along {name}" if len(name) == 1 else name.capitalize()
+    if "materials" in path[-3:-2]:
+        label = f"{label}, {path[-2]}"
     return Control(key, group, label, unit, scale, _rounded(low), _rounded(high), step, words)
 
 
@@ -185,6 +203,7 @@ def _shown_in(unit: str, value: float) -> tuple[str, float]:
     known = {name: DEGREE if factor == DEGREES else float(factor) for name, factor in UNITS[unit].items()}
     if unit == "rad":
         return "°", DEGREE
+    known |= {f"{prefix}{unit}": size for prefix, size in PREFIXES.items()} if unit in PREFIXED else {}
     handy = {name: factor for name, factor in known.items() if 1.0 <= abs(value) / factor < 1000.0}
     name = next(iter(handy), next(iter(known)))
     pretty = name.replace("m2", "m²").replace("m3", "m³").replace("s2", "s²").replace("um", "µm").replace("us", "µs")

@@ -140,6 +140,11 @@ class DrawnRings:
 Drawn = DrawnSurface | DrawnRings
 
 
+def is_drawn(body: Any) -> bool:
+    """Return whether the surface of a body is known, without making it."""
+    return hasattr(type(body), "drawn") and getattr(body, "is_drawn", True)
+
+
 def drawn_table(drawn: Drawn) -> dict[str, Array]:
     """Return a surface as arrays by name, shapes in single precision, with a row for each direction of a corner."""
     found = {one.name: np.asarray(getattr(drawn, one.name)) for one in fields(drawn)}

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies import BodyPoint
-from ..bodies.drawn_surfaces import DrawnSurface
+from ..bodies.drawn_surfaces import DrawnSurface, is_drawn
 from ..checks import ArgumentError, instance
 from ..contact import PointContact
 from ..system import System
@@ -147,7 +147,7 @@ def surfaces_of(system: System, eye: Array, moving: bool = True) -> list[ShownBo
     Those that have a surface, and rigid bodies that are joined to one of them. Where they do not move their modes need
     not be known.
     """
-    shown: dict[Any, Any] = {body: body for body in system.bodies if _is_drawn(body)}
+    shown: dict[Any, Any] = {body: body for body in system.bodies if is_drawn(body)}
     surfaces = {body: (one.drawn if moving else one.drawn_at_rest).swept for body, one in shown.items()}
     places = np.concatenate([surface.place for surface in surfaces.values()])
     surfaces |= rigid_surfaces(system, BALL * float(np.ptp(places, axis=0).max()))
@@ -159,7 +159,7 @@ def surfaces_of(system: System, eye: Array, moving: bool = True) -> list[ShownBo
 def has_surfaces(system: System) -> bool:
     """Return whether a system has bodies whose surface is known."""
     instance("system", system, System)
-    return any(_is_drawn(body) for body in system.bodies)
+    return any(is_drawn(body) for body in system.bodies)
 
 
 def check_surfaces(system: System) -> None:
@@ -168,11 +168,6 @@ def check_surfaces(system: System) -> None:
         kinds = sorted({type(body).__name__ for body in system.bodies})
         words = "have a SolidBody or an AxisymmetricBody, whose surface is drawn"
         raise ArgumentError("system", words, system, got=", ".join(kinds))
-
-
-def _is_drawn(body: Any) -> bool:
-    """Return whether the surface of a body is known, without making it."""
-    return hasattr(type(body), "drawn") and getattr(body, "is_drawn", True)
 
 
 def largest_departure(bodies: list[ShownBody], motion: ModalMotion) -> float:

@@ -144,6 +144,24 @@ def scenario_of_tables(written: dict[str, Any], problems: Sequence[str] = ()) ->
     )
 
 
+def tables_in_si(written: dict[str, Any]) -> dict[str, Any]:
+    """Return the tables of a scenario with numbers in SI, and what several share with each of them.
+
+    Parameters
+    ----------
+    written : dict
+        The tables as in a file, those of its base merged in.
+
+    Raises
+    ------
+    ScenarioError
+        With every problem of their form.
+    """
+    checked, _ = _checked(written)
+    found: dict[str, Any] = checked.model_dump(exclude_unset=True)
+    return found
+
+
 def with_matrices(written: dict[str, Any], usable: dict[str, Any]) -> dict[str, Any]:
     """Return the tables of a scenario with matrices and meshes of bodies in place of the files that hold them.
 

@@ -4,6 +4,7 @@ import { Bow } from "./bow.js";
 import { Controls } from "./controls.js";
 import { Gallery } from "./gallery.js";
 import { RegimeMap } from "./map.js";
+import { Loop } from "./loop.js";
 import { parts } from "./parts.js";
 import { reading } from "./note.js";
 import { Pictures, STATES } from "./pictures.js";
@@ -12,19 +13,24 @@ import { Scene } from "./scene.js";
 import { Slots } from "./slots.js";
 import { Sound } from "./sound.js";
 import { Tour } from "./tour.js";
+import { Space } from "./space.js";
 
 const $ = (id) => document.getElementById(id);
 const stream = new Worker("stream.js", { type: "module" });
 const say = (message) => stream.postMessage({ say: message });
-const pictures = new Pictures();
+const space = new Space({ canvas: $("space"), legend: $("space-legend"), low: $("space-low"), high: $("space-high"), missing: $("space-missing") });
+const pictures = new Pictures(space);
 const scene = new Scene(changed);
 const slots = new Slots(scene);
 const sound = new Sound(stream, heard);
+const loop = new Loop(showLoop);
 const recorder = new Recorder(48000);
 const moves = new Map();
 const sent = new Map(); // Scenes that were not answered yet, by revision.
 const SLOW = 1.05; // Seconds played in one below which the sound would break, and
 const MARGIN = 1.1; // what is left to others then.
+const TOO_SLOW = 0.5; // What is slower is not computed for a map unless one asks.
+const PREPARES = 400; // A scene that takes longer to be played is being prepared [ms].
 const LOWEST = 20; // What is slower is no note [Hz].
 const LONG = 5; // Time of drawing from which every other frame is left out [ms].
 const stats = { drawing: 0, revision: 0, played: 0, samples: 0, frames: 0, fps: 0, dropouts: 0, latency: null, latencies: [], connected: false, level: 0, peak: 0 };
@@ -94,6 +100,14 @@ function send() {
   if (moves.size > 200) moves.delete(moves.keys().next().value);
   sent.set(revision, structuredClone(scene.now));
   say({ type: "scene", revision, ...scene.now, case: scene.now.case || "squeal" });
+  clearTimeout(send.timer);
+  send.timer = setTimeout(() => ($("preparing").hidden = false), PREPARES);
+}
+
+function answered(number) {
+  if (number < revision) return;
+  clearTimeout(send.timer);
+  $("preparing").hidden = true;
 }
 
 function changed() {
@@ -111,12 +125,20 @@ function note() {
 }
 
 function shown(message) {
+  answered(message.revision);
+  // Of bodies that are drawn already nothing is said again.
+  if (message.drawn && !message.surfaces) for (const name of ["surfaces", "touches", "up"]) message[name] = described[name];
   described = message;
   stats.revision = message.revision;
   // What is played in place of a link that cannot be read does not take its message away.
   $("problem").hidden = !badLink;
   badLink = false;
-  if (!message.goes_on) goesOn({ words: "" });
+  if (!message.goes_on) {
+    goesOn({ words: "" });
+    loop.forget();
+    map.rest(message.speed !== null && message.speed < TOO_SLOW);
+  }
+  write("kept", `the last ${Number(message.seconds_kept.toPrecision(2))} s`);
   build(message.turned);
   controls.show(message.values);
   scene.places = message.places;
@@ -155,7 +177,9 @@ function goesOn({ words, regime, frequency }) {
 }
 
 function paceOf(speed) {
-  return speed !== null && speed < SLOW ? Math.ceil((10 * MARGIN) / speed) / 10 : 1;
+  if (speed === null || speed >= SLOW) return 1;
+  const needed = MARGIN / speed;
+  return needed < 10 ? Math.ceil(10 * needed) / 10 : Math.ceil(needed);
 }
 
 // What is computed slower than it sounds is played as fast as it can be, and that is said.
@@ -174,6 +198,15 @@ function keepUp(speed) {
   } else if (wasSlow) $("speed").value = "1";
   $("pace").textContent = needed > 1 ? `This machine computes it ${needed} times slower than it sounds: it is shown at that speed, without sound.` : "";
   pace();
+  showLoop();
+}
+
+// What is slow is heard at true speed when one asks, over and over.
+function showLoop() {
+  $("loop").hidden = slowest === 1;
+  $("loop").setAttribute("aria-pressed", String(Boolean(loop.source)));
+  $("loop").textContent = loop.source ? "Stop the loop" : "Loop what was heard";
+  write("loop-words", slowest > 1 && loop.source ? `The last ${short(1000 * loop.seconds)} ms, at true speed.` : "");
 }
 
 function showCase(message) {
@@ -210,6 +243,7 @@ function showToml() {
 }
 
 function refused(message) {
+  answered(message.revision);
   putBack(message);
   if (described) showCase(described);
 }
@@ -237,6 +271,7 @@ function came({ parts: data, scale }) {
     stats.samples += samples;
     stats.played = Math.max(stats.played, number);
     pictures.take(part);
+    if (slowest > 1 && number >= described.revision) loop.take(part.values.subarray(0, samples));
     if (recorder.on && mode === "live" && $("speed").value === "1" && !recorder.take(part.values.subarray(0, samples), scale)) record();
     stats.level = pictures.level;
   }
@@ -290,6 +325,7 @@ function listenTo() {
 function showSource() {
   const source = sources[$("source").value];
   stream.postMessage({ fullScale: source.full_scale });
+  loop.forget();
   $("spectrogram-words").textContent = `of the ${source.name.toLowerCase()}`;
   listen();
 }
@@ -301,6 +337,7 @@ function listen() {
   $("source-words").textContent = `${words} 0 dB: ${levelled ? "the loudest of the last 4 s is 3 dB below full scale" : `${fullScale} ${unit} is full scale`}.`;
   $("volume-out").textContent = `${$("volume").value} dB`;
   sound.volume(Number($("volume").value), levelled);
+  loop.volume(Number($("volume").value));
 }
 
 function pace() {
@@ -308,7 +345,7 @@ function pace() {
   pictures.pace(slow);
   // Nobody sees or hears a page in the background that is muted.
   const rests = mode === "paused" || (document.hidden && !sound.on);
-  stream.postMessage({ pace: { mode: rests ? "paused" : slow === 1 ? "live" : "slow", slow } });
+  stream.postMessage({ pace: { mode: rests ? "paused" : slow === 1 ? "live" : "slow", slow, own: Boolean($("speed").selectedOptions[0].dataset.own) } });
   if (mode === "paused" || slow !== 1) sound.flush();
   $("play").textContent = mode === "paused" ? "Play" : "Pause";
   $("step").disabled = mode !== "paused";
@@ -358,7 +395,8 @@ function download(blob, name) {
 
 // All pictures on one sheet.
 function savePictures() {
-  const canvases = [...document.querySelectorAll("canvas")];
+  space.again();
+  const canvases = [...document.querySelectorAll("canvas:not([hidden])")];
   const width = Math.max(...canvases.map((one) => one.width));
   const sheet = document.createElement("canvas");
   sheet.width = width + 40;
@@ -443,6 +481,11 @@ $("sound").addEventListener("click", async () => {
   await sound.turn(on);
   pace();
 });
+$("loop").addEventListener("click", () => {
+  if (loop.source) loop.stop();
+  else if (loop.isLongEnough) loop.play(Number($("volume").value));
+  else write("loop-words", "Nothing long enough to be heard was computed yet.");
+});
 $("source").addEventListener("change", listenTo);
 $("volume").addEventListener("input", listen);
 $("levelled").addEventListener("change", listen);
@@ -505,7 +548,7 @@ setInterval(() => {
   $("tone").textContent = tone ? `strongest tone ${tone < 1000 ? `${Math.round(tone)} Hz` : `${(tone / 1000).toFixed(2)} kHz`}` : "";
 }, 1000);
 
-window.stridula = { keepUp, stats, late: () => sound.late, shares: () => pictures.shares, scene, slots, now: () => described };
+window.stridula = { keepUp, loop, space, stats, late: () => sound.late, shares: () => pictures.shares, scene, slots, now: () => described };
 theme(localStorage.getItem("theme") ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
 pace();
 $("undo").disabled = $("redo").disabled = true;

@@ -57,12 +57,19 @@ export class RegimeMap {
     if (wanted === this.known) return;
     this.known = wanted;
     this.cells.clear();
-    this.words.textContent = "";
+    this.words.textContent = this.slow && !this.on.checked ? "not computed by itself: this system takes long" : "";
     this.say({ type: "no map" });
     clearTimeout(this.timer);
     this.pending = null;
     if (!this.on.checked) return;
     this.timer = setTimeout(() => this.#ask(a, b), at_once ? 0 : QUIET);
+  }
+
+  // What is slow is not computed hundreds of times unless one asks for it.
+  rest(slow) {
+    if (slow === Boolean(this.slow)) return;
+    this.slow = slow;
+    this.on.checked = !slow;
   }
 
   // Make room for the sound: a map that is being computed waits.

@@ -17,7 +17,8 @@ export function besideTip(x, y, lean, word, width) {
 }
 
 export class Pictures {
-  constructor() {
+  constructor(space) {
+    this.space = space;
     this.canvases = Object.fromEntries(["beams", "timeline", "phase", "spectrogram"].map((name) => [name, document.getElementById(name)]));
     this.history = new History();
     this.timeline = new Timeline();
@@ -52,12 +53,14 @@ export class Pictures {
 
   describe(scene) {
     // Another system begins another picture.
-    const known = JSON.stringify([scene.lines, scene.track]);
+    const known = JSON.stringify([scene.lines, scene.track, scene.drawn]);
     if (known !== this.known) this.frame = new Frame();
-    if (this.scene && !scene.lines !== !this.scene.lines) this.shapes = null;
+    if (this.scene && drawnAs(scene) !== drawnAs(this.scene)) this.shapes = null;
     else if (scene.lines && this.shapes && this.shapes.slider.length !== expected(scene)) this.shapes = null;
     this.known = known;
     this.scene = scene;
+    this.canvases.beams.hidden = Boolean(scene.drawn);
+    this.space.describe(scene);
   }
 
   pace(slow) {
@@ -76,7 +79,8 @@ export class Pictures {
   // The beams in every frame, the others in turns.
   draw() {
     if (!this.scene || !this.shapes) return;
-    if (this.scene.lines) this.#lines();
+    if (this.scene.drawn) this.much = this.space.draw(this.shapes, this.history.clock, this.colours);
+    else if (this.scene.lines) this.#lines();
     else if (this.shapes.track.length) this.#beams();
     this.turn = !this.turn;
     if (this.turn) this.timeline.draw(this.#begin("timeline"), this.history, this.slow, this.colours, STATES);
@@ -185,6 +189,9 @@ export class Pictures {
     this.level = Math.sqrt(sum / Math.max(1, sound.length));
   }
 }
+
+// How bodies are drawn: in space, as lines, or as two beams.
+const drawnAs = ({ drawn, lines }) => (drawn ? "space" : lines ? "lines" : "beams");
 
 // Numbers that a part has of the lines of a system.
 function expected({ lines }) {

@@ -11,11 +11,13 @@ const ROOM = 5000; // and to find room.
 const FULL = 4429; // Codes of a server that is full
 const ELSEWHERE = 4403; // and of one whose page this is not.
 const FRAME = 1000 / 60;
+const LEAST = 12; // Samples of a part of what is shown as fast as it can be: of smaller ones the way takes longer than they do,
+const PICTURES = 30; // and so many parts a second are enough.
 
 let socket, player, url;
 const queue = new Queue();
 let behind = false;
-let pace = { mode: "live", slow: 1 };
+let pace = { mode: "live", slow: 1, own: false };
 let asked = 0; // Samples asked for that have not come.
 let left = 0; // Samples the player has.
 let scale = 1; // What full scale is for the player, now
@@ -155,8 +157,10 @@ function feed() {
     return;
   }
   const now = performance.now();
-  owed = Math.min(owed + ((now - clock) * RATE) / 1000 / pace.slow, (4 * FRAME * RATE) / 1000 / pace.slow + 1);
+  const least = pace.own ? Math.max(LEAST, 4 * Math.floor(RATE / pace.slow / PICTURES / 4)) : 1;
+  owed = Math.min(owed + ((now - clock) * RATE) / 1000 / pace.slow, Math.max(least, (4 * FRAME * RATE) / 1000 / pace.slow + 1));
   clock = now;
+  if (owed < least) return;
   const samples = Math.min(PART, owed >= 4 ? 4 * Math.floor(owed / 4) : Math.floor(owed));
   if (samples >= 1) {
     owed -= samples;
