@@ -176,9 +176,9 @@ def test_a_record_in_space_opens_as_any(talk, tmp_path):
 def test_points_of_surfaces_are_one_contact_for_what_goes_on(talk, tmp_path):
     instrument = Instrument(playable("brake", None, {}))
     list(instrument.play(24))
-    variables, _ = instrument.last_seconds.moment(1.0, 2)
-    assert variables["normal_force"].shape == (12, 2)
-    assert variables["status_share"].shape == (12, 2, 3)
+    variables, _ = instrument.last_seconds.moment(1.0)
+    assert variables["normal_force"].shape == (24, 2)
+    assert variables["status_share"].shape == (24, 2, 3)
     assert variables["normal_force"].mean(axis=0) == pytest.approx([2000.0, 2000.0], rel=0.1)
     # Of 64 contacts less than ten seconds are kept.
     assert 0.5 < instrument.last_seconds.seconds < 5.0

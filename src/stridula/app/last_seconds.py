@@ -19,6 +19,7 @@ from ..records.dataset import probe_label
 from ..records.variables import (
     ALONG_TANGENTS,
     CONTACT,
+    ENERGY,
     PROBES,
     STATUS,
     STATUS_SHARE,
@@ -36,8 +37,9 @@ from .sources import Source
 KEPT = 10.0
 # Numbers that are kept of contacts at most: of many contacts fewer seconds are.
 MOST_NUMBERS = 60_000_000
-# Energies that a regime is judged by.
-LOSSES = ("damping_loss", "friction_loss", "convection_work", "contact_work")
+# Energies that a regime is judged by: those of a march, and what is kept of them.
+MARCHED = ("damping_loss", "friction_loss", "convection_work", "contact_work")
+LOSSES = ("damping_loss", "friction_loss", "impact_loss")
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,7 @@ class _Kept:
     contacts: dict[str, Array]
     status_shares: Array
     probes: Array
+    # What was lost in each sample.
     losses: Array
 
 
@@ -70,6 +73,8 @@ class LastSeconds:
         self._parts: deque[_Kept] = deque()
         self._samples = 0
         self._changes: deque[tuple[float, str]] = deque()
+        # Energies lost so far, of those that count since the last change.
+        self._lost = np.zeros(len(LOSSES))
 
     def goes_on_as(self, played: Playable) -> None:
         """Let something else be played; of a system with other contacts or probes nothing before it is kept."""
@@ -90,7 +95,12 @@ class LastSeconds:
         recorded = chunk.contacts | chunk.along_tangents
         small = {variable.name: recorded[variable.name].astype("f4") for variable in (*CONTACT, STATUS)}
         shares, probes = chunk.status_shares.astype("f4"), chunk.probes.astype("f4")
-        losses = np.stack([chunk.energies[name] for name in LOSSES])
+        if self._parts and self._parts[-1].stroke != part.stroke:
+            self._lost = np.zeros(len(LOSSES))
+        damping, rubbed, convected, contact = (chunk.energies[name] for name in MARCHED)
+        lost = np.stack([damping, rubbed, convected - rubbed - contact])
+        losses = np.diff(lost, prepend=self._lost[:, None])
+        self._lost = lost[:, -1].copy()
         kept = _Kept(source, part.clock, part.stroke, part.sound.astype("f4"), small, shares, probes, losses)
         self._parts.append(kept)
         self._samples += len(kept.sound)
@@ -101,6 +111,7 @@ class LastSeconds:
 
     def changed(self, clock: float, toml: str) -> None:
         """Keep what is played from a time on, in place of what would be from the same time on."""
+        self._lost = np.zeros(len(LOSSES))
         if self._changes and self._changes[-1][0] == clock:
             self._changes.pop()
         self._changes.append((clock, toml))
@@ -134,6 +145,9 @@ class LastSeconds:
         shares = np.concatenate([part.status_shares for part in parts], axis=1).swapaxes(0, 1)
         shares = shares if len(contacts) > 1 else shares[:, 0]
         data[STATUS_SHARE.name] = ((*over, "contact_status"), shares, attributes_of(STATUS_SHARE))
+        lost = np.cumsum(np.concatenate([part.losses for part in parts], axis=1), axis=1)
+        known = {variable.name: attributes_of(variable) for variable in ENERGY}
+        data |= {name: ("time", values, known[name]) for name, values in zip(LOSSES, lost, strict=True)}
         coordinates: dict[str, Any] = {
             "time": ("time", time, described("s", "time played at the end of the sample interval")),
             "contact_status": ("contact_status", list(STATUS_WORDS)),
@@ -167,15 +181,13 @@ class LastSeconds:
         xr.Dataset(data, coordinates, attributes).to_netcdf(content, engine="h5netcdf", encoding=encoding)
         return content.getvalue()
 
-    def moment(self, seconds: float, together: int) -> tuple[dict[str, Array], Array]:
+    def moment(self, seconds: float) -> tuple[dict[str, Array], Array]:
         """Return what decides the regime of the last seconds of this stroke, and what was heard of them as pressure.
 
         Parameters
         ----------
         seconds : float
             How many at most.
-        together : int
-            Samples that become one.
 
         Returns
         -------
@@ -191,22 +203,18 @@ class LastSeconds:
             parts.insert(0, part)
         if not parts:
             return {}, np.zeros(0)
-        damping, rubbed, convected, contact = np.concatenate([one.losses for one in parts], axis=1)
-        every = len(damping) // together * together
-        sound = [one.sound for one in parts if one.source.unit == "Pa"]
-        found = {"damping_loss": damping, "friction_loss": rubbed, "impact_loss": convected - rubbed - contact}
-        variables = {name: values[:every][together - 1 :: together] for name, values in found.items()}
+        lost = np.cumsum(np.concatenate([one.losses for one in parts], axis=1), axis=1)
+        variables: dict[str, Array] = dict(zip(LOSSES, lost, strict=True))
         members = groups(self.played.system.contact_names, self.played.system.surface_names)
-        for name, scale in (("normal_force", 1), ("tangential_force", 1), ("landings", together)):
-            of_contacts = np.concatenate([one.contacts[name] for one in parts], axis=1)[:, :every]
-            whole = np.stack([of_contacts[those].sum(axis=0) for those in members], axis=1)
-            variables[name] = scale * whole.reshape(-1, together, *whole.shape[1:]).mean(axis=1)
-        shares = np.concatenate([one.status_shares for one in parts], axis=1)[:, :every]
-        whole = np.stack([shares[those].mean(axis=0) for those in members], axis=1)
-        variables["status_share"] = whole.reshape(-1, together, *whole.shape[1:]).mean(axis=1)
+        for name in ("normal_force", "tangential_force", "landings"):
+            of_contacts = np.concatenate([one.contacts[name] for one in parts], axis=1)
+            variables[name] = np.stack([of_contacts[those].sum(axis=0) for those in members], axis=1)
+        shares = np.concatenate([one.status_shares for one in parts], axis=1)
+        variables["status_share"] = np.stack([shares[those].mean(axis=0) for those in members], axis=1)
         if len(members) == 1:
             for name in ("normal_force", "tangential_force", "landings", "status_share"):
                 variables[name] = variables[name][:, 0]
+        sound = [one.sound for one in parts if one.source.unit == "Pa"]
         return variables, np.concatenate(sound) if len(sound) == len(parts) else np.zeros(0)
 
     def wav(self) -> bytes:

@@ -38,8 +38,6 @@ PARTS_AT_ONCE, TURN, LONGEST = 4, 0.02, 0.25
 PAUSE = 0.25
 # Of so many seconds it is said what goes on, each time they have passed; not of fewer than the shortest [s].
 MOMENT, SHORTEST = 1.0, 0.2
-# Samples that become one for that.
-TOGETHER = 2
 # Share of what was known before in how fast a system is played: a machine is busy now and then. Samples from which more
 # is known.
 KNOWN, ENOUGH = 0.6, 48
@@ -192,14 +190,14 @@ class Session:
                 if instrument.played_samples - before < MOMENT * RATE / 4:
                     continue
                 before, revision = instrument.played_samples, instrument.revision
-                variables, pressure = instrument.last_seconds.moment(MOMENT, TOGETHER)
-                if not variables or len(variables["damping_loss"]) < SHORTEST * RATE / TOGETHER:
+                variables, pressure = instrument.last_seconds.moment(MOMENT)
+                if not variables or len(variables["damping_loss"]) < SHORTEST * RATE:
                     continue
                 told = {name: now.said(values) for name, values in variables.items()}
                 system = instrument.played.system
                 members = groups(system.contact_names, system.surface_names)
                 names = [system.contact_names[those[0]] for those in members]
-                found = await self.beside.ask("now", interval=TOGETHER / RATE, contacts=names, variables=told)
+                found = await self.beside.ask("now", interval=1.0 / RATE, contacts=names, variables=told)
                 if found is not None:
                     words = now.words(found, now.level_of(pressure))
                     await self._tell("now", revision=revision, words=words, **found)

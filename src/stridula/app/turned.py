@@ -174,7 +174,9 @@ def _control(key: str, path: Path, tables: dict[str, Any], value: float) -> Cont
     if pair_key in _of_pairs():
         known_one = _of_pairs()[pair_key]
         if known_one.low <= value / known_one.scale <= known_one.high:
-            return replace(known_one, key=key, group=group, place="")
+            # What follows the first sentence is of two beams.
+            first, stop, _ = known_one.words.partition(". ")
+            return replace(known_one, key=key, group=group, place="", words=first + stop.strip())
     unit, scale = _shown_in(outline.unit(node), value)
     low, high = sorted((value / scale / REACH, value / scale * REACH))
     step = 10.0 ** math.floor(math.log10((high - low) / STEPS))
