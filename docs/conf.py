@@ -95,6 +95,7 @@ FIGURES = (
     "squeal_map",
     "spectrogram",
     "spectrum",
+    "third_octaves",
     "directivity",
     "surface",
     "bodies",

@@ -114,6 +114,27 @@ kind = "modal beam"
 """
 
 
+@pytest.mark.parametrize("path", ["/etc/hostname", "/nowhere"])
+def test_a_link_reads_no_file(talk, path):
+    """Neither what it holds nor whether it is there is told."""
+    keys = {"bodies.glass.profile.shape": "mesh", "bodies.glass.profile.file": path}
+    answer = talk.scene("glass", keys)
+    assert set(answer["refused"]) == set(keys)
+    assert not any(word in line for line in told(answer) for word in ("no such file", "deduce", "cannot read"))
+
+
+def test_steps_without_end_are_refused(talk):
+    answer = talk.scene(text="base = 'squeal'\n[simulation]\nstep = '0.0001 us'\n")
+    assert told(answer) == ["simulation.step must be at least 1e-07 s to be played, got 1e-10"]
+    answer = talk.scene("belt", {"simulation.step": 1e-10})
+    assert any("simulation.step must be at least 1e-07 s" in line for line in told(answer))
+
+
+def told(answer):
+    """Return what is wrong with a scene, a line each."""
+    return [line for lines in answer["refused"].values() for line in lines]
+
+
 @pytest.mark.parametrize(
     ("text", "named"),
     [

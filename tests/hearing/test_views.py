@@ -109,6 +109,11 @@ def test_a_mode_goes_round_once(rig):
     np.testing.assert_allclose(0.5 * (first + half), rest, atol=1e-6)
     assert np.abs(first - half).max() > 0.0
     assert plotter.actors["disc"].mapper.scalar_range == (-1.0, 1.0)
+    largest = []
+    for frame in range(FRAMES):
+        slide_to(plotter, frame)
+        largest += [np.abs(dataset(plotter, one).active_scalars).max() for one in ("disc", "pin")]
+    assert max(largest) == pytest.approx(1.0, rel=1e-6)
     assert f"{float(theory.frequency[number]):.6g} Hz" in words_of(plotter)
 
 

@@ -5,7 +5,7 @@ Spheres, a disc, a bar and the balance of power are cases of `stridula verify`; 
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from math import pi
 
 import numpy as np
@@ -14,6 +14,7 @@ import pytest
 import stridula as st
 from stridula.acoustics.fits import fits_of
 from stridula.acoustics.flat_patches import patch_integrals
+from stridula.acoustics.free_bodies import distances_to
 from stridula.acoustics.free_responses import free_responses
 from stridula.acoustics.redriven import redriven
 from stridula.acoustics.ring_sources import RingSources
@@ -262,6 +263,35 @@ def test_patches_in_closed_form_are_the_integral_over_points():
             inverse, angle = patch_integrals(np.array([place]), corners[None])
             assert inverse[0] == pytest.approx((area / away).sum(), rel=1e-9)
             assert angle[0] == pytest.approx((area * apart[..., 2] / away**3).sum(), rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("beside", [0.0, 1e-11, 1e-9, 1e-6])
+def test_a_place_near_an_edge_has_a_finite_integral(beside):
+    """A square seen from beside a side has half of what a rectangle of twice its length has in its middle."""
+    square = np.array([[[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]])
+    whole = np.array([[[0.0, -1, 0], [1, -1, 0], [1, 1, 0], [0, 1, 0]]])
+    (half,), _ = patch_integrals(np.array([[0.4, beside, 0.0]]), square)
+    (both,), _ = patch_integrals(np.array([[0.4, 0.0, 0.0]]), whole)
+    assert half == pytest.approx(0.5 * both, rel=1e-4)
+
+
+def test_a_listener_within_a_thin_body_is_refused():
+    thin = st.SolidBody.block((0.1, 0.1, 0.001), (4, 4, 1), STEEL, points={"tip": 0}, cutoff=2e4)
+    surface, random = thin.surface(), np.random.default_rng(3)
+    places = np.column_stack([random.uniform(0.002, 0.098, (40, 2)), np.full(40, 5e-4)])
+    low = surface.corners.reshape(-1, 3).min(axis=0)
+    for place in places + low:
+        with pytest.raises(ValueError, match="listener must be outside of the bodies"):
+            distances_to(surface, place[None])
+    assert distances_to(surface, np.add(low, (0.05, 0.05, 0.02))[None])[0] == pytest.approx(0.019, rel=0.05)
+
+
+def test_pieces_of_no_point_are_refused():
+    surface = st.SolidBody.block((0.1, 0.1, 0.05), (1, 1, 1), STEEL, points={"tip": 0}, cutoff=2e4).surface()
+    wrong = {one.name: getattr(surface, one.name) for one in fields(surface)}
+    wrong["owners"] = np.where(surface.owners == 1, len(surface.points), surface.owners)
+    with pytest.raises(ValueError, match=r"outer_surface.owners must have the number of each point, from 0"):
+        surface_of(wrong)
 
 
 def test_a_surface_without_its_pieces_is_read_as_squares():

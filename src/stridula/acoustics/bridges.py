@@ -15,8 +15,8 @@ from ..checks import ArgumentError, instance, listed
 from ..declared import Way, check_declared
 from ..records.checked import record
 from .air import Air
-from .driven import FASTEST, LEAD, respond
-from .free_bodies import bodies_sound, check_in_open_air
+from .driven import FASTEST, LEAD, Modes, respond
+from .free_bodies import bodies_sound, check_in_open_air, ends_of
 from .panels import Panel
 from .recorded import Pressing, sampled
 from .redriven import Moved
@@ -39,7 +39,7 @@ class Bridge:
     point : BodyPoint
         Where the force acts.
     direction : {"y", "x", "z", "axial", "transverse"} or sequence of float, optional
-        Along which it acts on the body where it counts positive, as for probes.
+        Direction in which a positive force pushes the body, in the words of probes.
     probe : str, optional
         Name of the probe in the record, such as "string left end"; its only one if left out.
 
@@ -79,19 +79,24 @@ def bridged_sound(
     start, interval, force = _force(run, bridge.probe)
     body: Any = bridge.point.body
     if not getattr(body, "has_surface", False):
-        return panel_sound(
-            lambda panel: _pressed(bridge, panel, start, interval, force),
-            body,
-            listener,
-            baffled is not False,
-            air,
-            sample_rate,
-        )
+        try:
+            return panel_sound(
+                lambda panel: _pressed(bridge, panel, start, interval, force),
+                body,
+                listener,
+                baffled is not False,
+                air,
+                sample_rate,
+            )
+        except ArgumentError as error:
+            raise error.renamed("point" if error.argument == "track" else error.argument) from None
     check_in_open_air(baffled)
+    if body.modes().turning is not None:
+        raise ArgumentError("point", "be on a body that does not turn", bridge.point)
     # Any direction that is square to the force.
     aside = np.cross(bridge.along, np.eye(3)[int(np.abs(bridge.along).argmin())])
     name = getattr(body, "name", "") or type(body).__name__
-    pressure, time, places, attributes, _ = bodies_sound(
+    pressure, time, places, attributes, moved = bodies_sound(
         lambda: _moved(bridge, name, start, interval, force),
         {name: body},
         (bridge.along, aside / np.linalg.norm(aside)),
@@ -99,11 +104,12 @@ def bridged_sound(
         air,
         sample_rate,
     )
-    return pressure, time, places, attributes
+    notes = [attributes["notes"], *ends_of({name: body}, moved)]
+    return pressure, time, places, attributes | {"notes": "; ".join(filter(None, notes))}
 
 
 def _force(run: xr.Dataset, probe: str | None) -> tuple[float, float, Array]:
-    """Return when a recorded force begins [s], its interval [s] and its samples [N]."""
+    """Return when a record begins [s], its interval [s] and the samples of a force [N]."""
     run = record("run", run)
     start, interval, _, _ = sampled(run)
     if FORCE not in run:
@@ -114,7 +120,13 @@ def _force(run: xr.Dataset, probe: str | None) -> tuple[float, float, Array]:
     if probe is not None and probe not in known:
         raise ArgumentError("probe", f"be one of {listed(known)}", probe)
     number = 0 if probe is None else known.index(probe)
-    return start + interval, interval, np.asarray(run[FORCE].transpose("time", ...).values[:, number], dtype=float)
+    force = np.asarray(run[FORCE].transpose("time", ...).values[:, number], dtype=float)
+    if not np.isfinite(force).all():
+        raise ArgumentError(FORCE, "be finite", got=f"{force[~np.isfinite(force)][0]}")
+    if start > 0.5 * interval:
+        # What goes on from before has bent the body long since.
+        force = force - force[0]
+    return start, interval, force
 
 
 def _pressed(bridge: Bridge, panel: Panel, start: float, interval: float, force: Array) -> tuple[Pressing, Panel]:
@@ -126,8 +138,9 @@ def _pressed(bridge: Bridge, panel: Panel, start: float, interval: float, force:
     position = bridge.point.position
     x, y = position if isinstance(position, tuple) else panel.place(np.asarray(position))
     at = replace(panel, place=lambda abscissa: (np.full_like(abscissa, x), np.full_like(abscissa, y)))
-    # Samples of a force are what one impulse in each interval is.
-    return Pressing(start, interval, 1, -across * force[None], np.zeros((1, force.size))), at
+    # Samples stand at the ends of intervals; each is what one impulse in an interval is.
+    still = np.zeros((1, force.size))
+    return Pressing(start, interval, 1, -across * force[None], still, interval, "nothing pushes"), at
 
 
 def _moved(bridge: Bridge, name: str, start: float, interval: float, force: Array) -> Moved:
@@ -139,16 +152,10 @@ def _moved(bridge: Bridge, name: str, start: float, interval: float, force: Arra
     found = np.zeros((modes.count, signal.size))
     left_out = ~modes.massless & (modes.angular_frequency * interval >= FASTEST)
     kept = ~modes.massless & ~left_out
-    oscillators = _Oscillators(modes.angular_frequency[kept], modes.damping_rate[kept])
+    oscillators = Modes(modes.angular_frequency[kept], modes.damping_rate[kept])
     found[kept] = respond(oscillators, row[kept, None] * signal, interval)
     pushes = np.flatnonzero(force)
     pushed = float(pushes[0]) * interval if pushes.size else None
     return Moved(
-        start, interval, force.size, start - LEAD * interval, found, left_out, pushed, {name: (0, modes.count)}
+        start, interval, force.size, start + (1 - LEAD) * interval, found, left_out, pushed, {name: (0, modes.count)}
     )
-
-
-@dataclass(frozen=True)
-class _Oscillators:
-    angular_frequency: Array
-    damping_rate: Array

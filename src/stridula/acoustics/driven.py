@@ -19,6 +19,7 @@ of means.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Protocol
 
@@ -92,7 +93,7 @@ def accelerations(panel: Panel, pressing: Pressing) -> Array:
 def first_time(pressing: Pressing) -> float:
     """Return the time of the first acceleration [s]: the middle of the impulses of its interval."""
     step = pressing.interval / pressing.steps
-    return pressing.start + pressing.interval * (0.5 - LEAD) - step / 2.0
+    return pressing.start + pressing.interval * (0.5 - LEAD) - step / 2.0 + pressing.later
 
 
 def modal_forces(panel: Panel, pressing: Pressing) -> Array:
@@ -115,6 +116,14 @@ class Oscillators(Protocol):
     @property
     def damping_rate(self) -> Array:
         """``2 zeta w`` [1/s], shape (modes,)."""
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Modes by their angular frequencies [rad/s] and damping rates [1/s], shape (modes,) each."""
+
+    angular_frequency: Array
+    damping_rate: Array
 
 
 def respond(modes: Oscillators, forces: Array, interval: float, derivative: int = 2) -> Array:

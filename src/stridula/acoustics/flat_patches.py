@@ -42,11 +42,10 @@ def patch_integrals(places: Array, corners: Array) -> tuple[Array, Array]:
         from_edge = outward**2 + above**2
         near, far = np.sqrt(from_edge + low**2), np.sqrt(from_edge + high**2)
         counts = (length > least) & (np.abs(outward) > least)
-        # Of the two forms the one whose terms do not cancel.
-        over, under = np.where(low + high < 0.0, [near - low, far - high], [far + high, near + low])
         turn = np.arctan2(outward * high, from_edge + above * far) - np.arctan2(outward * low, from_edge + above * near)
         turn = np.where(counts, turn, 0.0)
-        rise = np.log(np.where(counts, over, 1.0) / np.where(counts, under, 1.0))
+        beside = np.where(counts, np.sqrt(from_edge), 1.0)
+        rise = np.where(counts, np.arcsinh(high / beside) - np.arcsinh(low / beside), 0.0)
         inverse += outward * rise - above * turn
         angle += turn
     # From within its plane a patch is not seen.

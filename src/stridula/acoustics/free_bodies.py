@@ -15,6 +15,7 @@ from ..system import System
 from .air import Air
 from .convolution import Convolution
 from .delays import Response
+from .flat_patches import patch_integrals
 from .free_responses import LEFT, Sent, free_responses
 from .listeners import HEIGHT, SPACING, listeners_of
 from .redriven import Moved, redriven
@@ -86,7 +87,7 @@ def bodies_sound(
     instance("air", air, Air)
     surfaces = [body.surface() for body in heard.values()]
     places = listeners_of(_ears(above, surfaces) if listener is None else listener)
-    distances = np.array([_distances(surface, places) for surface in surfaces])
+    distances = np.array([distances_to(surface, places) for surface in surfaces])
     moved = motion()
     recorded = 1.0 / moved.interval
     ratio = ratio_of(sample_rate, recorded, moved.samples)
@@ -153,7 +154,7 @@ def _ears(above: tuple[Array, Array], surfaces: Sequence[BodySurface]) -> list[l
     return [(above + side * SPACING / 2.0 * tangent).tolist() for side in (-1.0, 1.0)]
 
 
-def _distances(surface: BodySurface, places: Array) -> Array:
+def distances_to(surface: BodySurface, places: Array) -> Array:
     """Return the distances of places to the nearest points of a surface [m].
 
     Raises
@@ -167,6 +168,10 @@ def _distances(surface: BodySurface, places: Array) -> Array:
         away = points.points - place
         distance = np.linalg.norm(away, axis=1)
         angle = float((points.areas * (points.normals * away).sum(axis=1) / distance**3).sum())
+        if surface.form == "points":
+            # As the patches are, for a body may be thinner than they are long.
+            corners = points.corners.reshape(-1, 4, 3)
+            angle = float(patch_integrals(np.repeat(place[None], len(corners), axis=0), corners)[1].sum())
         if angle > 2.0 * np.pi or distance.min() < NEAREST * size:
             words = f"be outside of the bodies, {at_least(NEAREST * size, 3)} m from them"
             raise ArgumentError("listener", words, got=f"{tuple(place.tolist())}")
@@ -195,17 +200,23 @@ def _doubts(name: str, frequency: Array, sent: Sent) -> tuple[list[str], float]:
     return notes, worst
 
 
+def ends_of(heard: dict[str, Any], moved: Moved) -> list[str]:
+    """Return where the modes of bodies, by their names, end, in words."""
+    notes = []
+    if moved.left_out.any():
+        left_out = int(moved.left_out.sum())
+        notes.append(f"{left_out} modes above what the record's sample rate carries are left out")
+    highest = {name: float(body.modes().frequency[~body.modes().massless].max()) for name, body in heard.items()}
+    words = [f"{name} {frequency:.4g} Hz" for name, frequency in highest.items()]
+    return [*notes, f"modes end at: {', '.join(words)}"]
+
+
 def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], moved: Moved) -> list[str]:
     """Return what is left out, in words."""
     notes = []
     if silent:
         notes.append(f"without a surface and not heard: {listed(silent)}")
-    if moved.left_out.any():
-        left_out = int(moved.left_out.sum())
-        notes.append(f"{left_out} modes above what the record's sample rate carries are left out")
-    highest = [(float(body.modes().frequency[~body.modes().massless].max()), body) for body in heard]
-    words = [f"{system.body_name(body)} {frequency:.4g} Hz" for frequency, body in highest]
-    notes.append(f"modes end at: {', '.join(words)}")
+    notes += ends_of({system.body_name(body): body for body in heard}, moved)
     if moved.start > 0.5 * moved.interval:
         notes.append("the record continues another one; vibration left from that one is not included")
     elif started := [str(drive) for drive in system.drives if drive.starts_motion]:

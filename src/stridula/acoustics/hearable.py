@@ -7,7 +7,7 @@ from typing import Any
 from ..checks import ArgumentError, listed
 from ..system import System
 from .free_bodies import bodies_heard
-from .plane_sound import plane_bodies
+from .plane_sound import check_plane, plane_bodies
 
 
 def hearable(system: System) -> list[Any]:
@@ -31,6 +31,8 @@ def check_hearable(system: System, surface_rate: float | str | None = None) -> N
     if not hearable(system):
         names = [system.body_name(body) for body in system.bodies]
         raise ArgumentError("system", "have a body with a surface to be heard", got=f"none of {listed(names)}")
+    if not system.is_spatial:
+        check_plane(system)
     if surface_rate is not None and not isinstance(surface_rate, str):
         raise ArgumentError("surface_rate", "be left out, or all, to be heard", surface_rate)
 

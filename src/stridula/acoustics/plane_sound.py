@@ -103,6 +103,14 @@ def plane_bodies(system: System) -> list[Any]:
     return [*_tracks(system), *_beams(system)]
 
 
+def check_plane(system: System) -> None:
+    """Raise ValueError if `plane_sound` would refuse tracks of a system, as they are heard by default."""
+    tracks = _tracks(system)
+    _wall(tracks, {one.body: one for one in outlines_of(system)[0]}, None)
+    for track in tracks:
+        panel_of(track)
+
+
 def _tracks(system: System) -> list[Any]:
     """Return the tracks that contacts move along and that can be heard."""
     unknown = panel_of.dispatch(object)
@@ -129,7 +137,7 @@ def _wall(tracks: Sequence[Any], outlines: dict[Any, Outline], baffled: bool | N
         raise ArgumentError("baffled", "be False, or left out, without a track that can be heard", baffled)
     heights = [float(outlines[one].place[1]) for one in tracks]
     if max(heights) - min(heights) > LEVEL:
-        raise ArgumentError("baffled", "be False where tracks do not lie in one plane", baffled)
+        raise ArgumentError("baffled", "be False where tracks do not lie in one plane", got=baffled or "left out")
     return heights[0]
 
 
@@ -177,6 +185,8 @@ def _of_track(
     pressure, time, _, attributes = track_sound(pressing, track, places, baffled, air, sample_rate)
     name = system.body_name(track)
     attributes["notes"] = attributes["notes"].replace("silence: ", f"{name} is silent: ")
+    if system.initial_equilibrium is not None:
+        attributes["notes"] = attributes["notes"].replace("the contact never presses", "its forces never change")
     if any(contact.touched_point and contact.touched_point.body == track for contact in system.contacts):
         attributes["notes"] += f"; what touches {name} at one point does not drive it here"
     return pressure, time, attributes

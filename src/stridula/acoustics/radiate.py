@@ -87,8 +87,6 @@ def radiate(
     """
     if baffled is not None:
         instance("baffled", baffled, bool)
-    if bodies is not None and not hasattr(track, "contacts"):
-        raise ArgumentError("bodies", "be left out but for a System", bodies)
     return _labelled(*_sound(track, run, listener, bodies, baffled, air, sample_rate))
 
 
@@ -96,7 +94,8 @@ Sound = tuple[Array, Array, Array, dict[str, Any]]
 
 
 @singledispatch
-def _sound(track: Any, run: Any, listener: Any, _bodies: Any, baffled: Any, air: Any, sample_rate: Any) -> Sound:
+def _sound(track: Any, run: Any, listener: Any, bodies: Any, baffled: Any, air: Any, sample_rate: Any) -> Sound:
+    _check_no_bodies(bodies)
     return track_sound(run, track, listener, baffled is not False, air, sample_rate)
 
 
@@ -112,9 +111,15 @@ def _of_a_system(
 
 @_sound.register
 def _of_a_bridge(
-    bridge: Bridge, run: Any, listener: Any, _bodies: Any, baffled: Any, air: Any, sample_rate: Any
+    bridge: Bridge, run: Any, listener: Any, bodies: Any, baffled: Any, air: Any, sample_rate: Any
 ) -> Sound:
+    _check_no_bodies(bodies)
     return bridged_sound(run, bridge, listener, baffled, air, sample_rate)
+
+
+def _check_no_bodies(bodies: Any) -> None:
+    if bodies is not None:
+        raise ArgumentError("bodies", "be left out but for a System", bodies)
 
 
 def _labelled(pressure: Array, time: Array, listeners: Array, attributes: dict[str, Any]) -> xr.DataArray:

@@ -31,6 +31,10 @@ class Pressing:
         Means over the sample intervals [N], compressive.
     position : ndarray, shape (contacts, samples)
         Abscissas in the middle of the intervals [m].
+    later : float
+        How much later than in the middle of the impulses of their intervals forces act [s].
+    nothing : str
+        What is said where there is no force.
     """
 
     start: float
@@ -38,6 +42,8 @@ class Pressing:
     steps: int
     force: Array
     position: Array
+    later: float = 0.0
+    nothing: str = "the contact never presses"
 
     @property
     def samples(self) -> int:

@@ -26,7 +26,7 @@ from ..records.by_point import by_point
 from ..records.changes import check_one_system
 from ..records.checked import record
 from ..system import System
-from .driven import FASTEST, LEAD, respond, steady
+from .driven import FASTEST, LEAD, Modes, respond, steady
 from .recorded import sampled
 
 # Steps of an interval at which drives are looked up.
@@ -63,12 +63,6 @@ class Moved:
     left_out: Array
     pushed: float | None
     spans: dict[str, tuple[int, int]]
-
-
-@dataclass(frozen=True)
-class _Modes:
-    angular_frequency: Array
-    damping_rate: Array
 
 
 def redriven(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = None) -> Moved:
@@ -233,7 +227,7 @@ def _moved(flat: Assembly, forces: Array, times: Array, interval: float) -> tupl
         pairs = turning.pairs[plain[turning.pairs[:, 0]] & (np.array(turning.turning.drag) != 0.0)]
         plain[pairs] = False
         found[pairs.T.ravel()] = _turning(flat, turning, pairs, forces, times, interval)
-    found[plain] = respond(_Modes(flat.angular_frequency[plain], flat.damping_rate[plain]), forces[plain], interval)
+    found[plain] = respond(Modes(flat.angular_frequency[plain], flat.damping_rate[plain]), forces[plain], interval)
     moving = np.flatnonzero(~flat.massless[:coupled])
     if moving.size:
         block = np.ix_(moving, moving)
@@ -241,7 +235,7 @@ def _moved(flat: Assembly, forces: Array, times: Array, interval: float) -> tupl
         angular = np.sqrt(np.maximum(squared, 0.0))
         kept = angular * interval < FASTEST
         rates = np.einsum("ik,ij,jk->k", shapes, flat.dissipation[block], shapes)
-        own = respond(_Modes(angular[kept], rates[kept]), shapes[:, kept].T @ forces[moving], interval)
+        own = respond(Modes(angular[kept], rates[kept]), shapes[:, kept].T @ forces[moving], interval)
         found[moving] = shapes[:, kept] @ own
         left_out[moving[len(moving) - int((~kept).sum()) :]] = True
     return found, left_out
@@ -259,7 +253,7 @@ def _turning(
     first, second = pairs.T
     cosine, sine = np.cos(angle), np.sin(angle)
     ahead, behind = cosine * forces[first] + sine * forces[second], cosine * forces[second] - sine * forces[first]
-    modes = _Modes(flat.angular_frequency[first], flat.damping_rate[first])
+    modes = Modes(flat.angular_frequency[first], flat.damping_rate[first])
     (x, y), (u, v), (a, b) = (
         [respond(modes, force, interval, derivative) for force in (ahead, behind)] for derivative in range(3)
     )

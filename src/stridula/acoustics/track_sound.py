@@ -142,7 +142,7 @@ def _notes(pressed: Pressing, kept: int, modes: int, duration: float, arrival: A
     """Return what is to be said of a sound, in words."""
     notes = []
     if not pressed.force.any():
-        notes.append("silence: the contact never presses")
+        notes.append(f"silence: {pressed.nothing}")
     elif (arrival > duration).any():
         notes.append("silence: the sound does not arrive within the record")
     if kept < modes:

@@ -92,7 +92,8 @@ class Surfaces:
     def described(self) -> dict[str, Any]:
         """Surfaces with the shapes of their modes, contacts, which way is up, and a name of all that."""
         normal = np.append(self.system.contacts[0].frame[0], np.zeros(3))[:3]
-        up = np.eye(3)[int(np.argmax(np.abs(normal)))].tolist()
+        axis = int(np.argmax(np.abs(normal)))
+        up = (np.sign(normal[axis]) * np.eye(3)[axis]).tolist()
         told = {"surfaces": [body.described for body in self.bodies], "touches": self.touches, "up": up}
         return {"drawn": blake2b(json.dumps(told).encode(), digest_size=8).hexdigest(), **told}
 

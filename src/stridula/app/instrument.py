@@ -62,9 +62,10 @@ class Instrument:
 
         Another case or text begins one, and so does whatever follows a stroke that has ended.
         """
-        self.longer = self.longer if played.origin == self.played.origin else None
-        if self.longer is not None and played.scenario.step is None:
-            played = played.stepped(self.longer)
+        longer = self.longer if played.origin == self.played.origin else None
+        if longer is not None and played.scenario.step is None:
+            played = played.stepped(longer)
+        drawing = self.drawing if played.system == self.drawing.system else drawing_of(played.system)
         track, steps, contacts = self.live.system.track, self.live.ratio, len(self.live.system.contacts)
         what = (played.system, played.probes, played.scenario.scheme, played.scenario.step)
         goes_on = played.origin == self.played.origin and not self.ended
@@ -75,8 +76,7 @@ class Instrument:
         name = _offered(self.wanted, played)
         self._last *= played.sources[name].full_scale / self.heard_as.full_scale
         self.played, self.revision = played, revision
-        if played.system != self.drawing.system:
-            self.drawing = drawing_of(played.system)
+        self.longer, self.drawing = longer, drawing
         self.last_seconds.goes_on_as(played)
         self.last_seconds.changed(self.played_samples / RATE, played.toml)
         now = (self.live.system.track, self.live.ratio, len(self.live.system.contacts))

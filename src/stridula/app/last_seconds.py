@@ -78,7 +78,8 @@ class LastSeconds:
 
     def goes_on_as(self, played: Playable) -> None:
         """Let something else be played; of a system with other contacts or probes nothing before it is kept."""
-        if _labels(played) != _labels(self.played):
+        spatial = (played.system.has_two_tangents, self.played.system.has_two_tangents)
+        if _labels(played) != _labels(self.played) or spatial[0] != spatial[1]:
             self._parts.clear()
             self._samples = 0
         self.played = played
@@ -196,11 +197,13 @@ class LastSeconds:
         pressure : ndarray, shape (samples,)
             Nothing where something else was heard.
         """
-        parts: list[_Kept] = []
+        parts: deque[_Kept] = deque()
+        samples = 0
         for part in reversed(self._parts):
-            if part.stroke != self._parts[-1].stroke or sum(len(one.sound) for one in parts) >= seconds * self.rate:
+            if part.stroke != self._parts[-1].stroke or samples >= seconds * self.rate:
                 break
-            parts.insert(0, part)
+            parts.appendleft(part)
+            samples += len(part.sound)
         if not parts:
             return {}, np.zeros(0)
         lost = np.cumsum(np.concatenate([one.losses for one in parts], axis=1), axis=1)

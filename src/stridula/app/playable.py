@@ -17,7 +17,7 @@ from ..scenarios.errors import ScenarioError
 from ..scenarios.keys import overridden
 from ..scenarios.load import Scenario, scenario_of_tables, tables_in_si
 from ..scenarios.outline import TAGS, look_up
-from ..scenarios.read import read_tables, tables_of_text
+from ..scenarios.read import names_files, read_tables, tables_of_text
 from ..system import System
 from .controls import KEYS, Turned, turned_of_pair
 from .sources import Source, sources_of
@@ -33,6 +33,8 @@ MOST_ELEMENTS, MOST_MODES, MOST_CONTACTS = 100, 400, 100
 MOST_OF_SYSTEMS = 1500
 # Elements of a mesh that a scenario describes, and nodes of a mesh or a profile, whose modes are found within a minute.
 MOST_OF_MESH, MOST_NODES = 4000, 20_000
+# Shortest step that a scenario may ask for [s].
+SHORTEST_STEP = 1e-7
 
 
 @dataclass(frozen=True)
@@ -82,6 +84,11 @@ class Playable:
         """What one turns."""
         return turned_of_pair(self.tables) if self.before is None else turned_of_system(self.tables, self.before)
 
+    @property
+    def is_fast(self) -> bool:
+        """Whether any machine that is not busy with something else plays it as fast as it sounds."""
+        return self.before is None and self.scenario.step is None
+
     def stepped(self, step: float) -> Playable:
         """Return the same with a time step of its own [s]."""
         simulation = {**self.tables["simulation"], "step": step}
@@ -123,8 +130,10 @@ def playable(case: str, text: str | None, overrides: Mapping[str, Any]) -> Playa
     # A kind starts a table afresh: what belongs to it comes after it.
     kinds_first = sorted(overrides.items(), key=lambda item: item[0].rpartition(".")[2] not in TAGS)
     changed, problems = overridden(tables, dict(kinds_first))
+    _check_no_files(changed)
     _check_size(changed)
     scenario = scenario_of_tables(changed, problems)
+    _check_step(scenario)
     _check_system(scenario.system)
     return Playable(scenario, _in_full(scenario, changed), case if text is None else text, before)
 
@@ -160,6 +169,21 @@ def _in_full(scenario: Scenario, tables: dict[str, Any]) -> dict[str, Any]:
         described = tables_in_si(tables)
         return described | {"simulation": described.get("simulation", {}) | simulation}
     return tomllib.loads(scenario_toml(scenario.system, scenario.probes or (), simulation))
+
+
+def _check_no_files(tables: dict[str, Any]) -> None:
+    """Raise ScenarioError if a body names a file: what is read is for this machine's own user to say."""
+    bodies = tables.get("bodies")
+    named = [name for name, body in (bodies if isinstance(bodies, dict) else {}).items() if names_files(body)]
+    if named:
+        raise ScenarioError([f"bodies must not name files to be played, got those of {', '.join(named)}"])
+
+
+def _check_step(scenario: Scenario) -> None:
+    """Raise ScenarioError if a scenario wants steps that would keep a part from ever ending."""
+    if scenario.step is not None and scenario.step < SHORTEST_STEP:
+        told = f"simulation.step must be at least {SHORTEST_STEP:g} s to be played, got {scenario.step!r}"
+        raise ScenarioError([told])
 
 
 def _check_size(tables: dict[str, Any]) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from ..arrays import Array
 from ..checks import ArgumentError
 from ..plot.colours import REGIME_COLOURS
 from ..records.by_surface import groups
@@ -70,6 +71,8 @@ class Session:
         # Seconds of a system played in one; of what was played since, seconds that it took, and samples.
         self.speed: float | None = None
         self._taken, self._made = 0.0, 0
+        # Held while what plays becomes something else.
+        self._changing = asyncio.Lock()
 
     async def run(self) -> None:
         """Answer the page until it goes; raises WebSocketDisconnect then."""
@@ -133,7 +136,8 @@ class Session:
             refused, played = found.refused, found.played
             if refused and self.scene is not None and _is_same(found.scene, self.scene):
                 raise ScenarioError(found.problems)
-            instrument, goes_on = await asyncio.to_thread(self._play, played, scene.revision)
+            async with self._changing:
+                instrument, goes_on = await asyncio.to_thread(self._play, played, scene.revision)
         except MemoryError:
             problems = ["scenario must fit into memory"]
         except ValueError as error:
@@ -151,7 +155,7 @@ class Session:
                 described["drawn"] = drawn
             await self._tell("scene", revision=scene.revision, **told, **described)
             self._do("theory", self._theory(played, scene.revision))
-            if "now" not in self._tasks:
+            if "now" not in self._tasks or self._tasks["now"].done():
                 self._do("now", self._now())
             return
         told = {"problems": problems, "refused": refused or {"": problems}, "kept": _said(self.scene)}
@@ -165,11 +169,11 @@ class Session:
             self.instrument.revision, self.instrument.repeats = revision, self.repeats
         else:
             goes_on = self.instrument.change(played, revision)
-        if played.before is None:
-            # Fast enough on any machine that is not busy with something else.
-            self.speed = None
-        elif not goes_on:
-            self.speed = self.instrument.keep_up()
+        if not goes_on:
+            self.speed = None if played.is_fast else self.instrument.keep_up()
+            self._taken, self._made = 0.0, 0
+        # Made here, for it may be much.
+        _ = self.instrument.drawing.described
         return self.instrument, goes_on
 
     async def _now(self) -> None:
@@ -178,10 +182,11 @@ class Session:
         with suppress(WebSocketDisconnect):
             while True:
                 await asyncio.sleep(MOMENT)
-                instrument = self.instrument
+                async with self._changing:
+                    instrument = self.instrument
                 if instrument is None or self._made < ENOUGH:
                     continue
-                if instrument.played.before is not None:
+                if not instrument.played.is_fast:
                     now_played = self._made / RATE / self._taken
                     known = now_played if self.speed is None else self.speed
                     self.speed = KNOWN * known + (1.0 - KNOWN) * now_played
@@ -189,12 +194,13 @@ class Session:
                 self._taken, self._made = 0.0, 0
                 if instrument.played_samples - before < MOMENT * RATE / 4:
                     continue
-                before, revision = instrument.played_samples, instrument.revision
-                variables, pressure = instrument.last_seconds.moment(MOMENT)
+                async with self._changing:
+                    before, revision = instrument.played_samples, instrument.revision
+                    variables, pressure = instrument.last_seconds.moment(MOMENT)
+                    system = instrument.played.system
                 if not variables or len(variables["damping_loss"]) < SHORTEST * RATE:
                     continue
-                told = {name: now.said(values) for name, values in variables.items()}
-                system = instrument.played.system
+                told = await asyncio.to_thread(_all_said, variables)
                 members = groups(system.contact_names, system.surface_names)
                 names = [system.contact_names[those[0]] for those in members]
                 found = await self.beside.ask("now", interval=1.0 / RATE, contacts=names, variables=told)
@@ -218,11 +224,11 @@ class Session:
             began = clock.perf_counter()
             found = list(instrument.play(samples))
             self._taken += clock.perf_counter() - began
-            self._made += samples
             for part in found:
                 if isinstance(part, Stop):
                     await self._tell("stroke", why=part.why, goes_on=part.goes_on)
                 else:
+                    self._made += len(part.sound)
                     parts.append(packed(part))
             if self.speed is not None and clock.monotonic() - start > LONGEST:
                 break
@@ -305,6 +311,10 @@ async def _sent(sending: Coroutine[Any, Any, None]) -> None:
         await sending
     except RuntimeError:
         raise WebSocketDisconnect(GONE) from None
+
+
+def _all_said(variables: dict[str, Array]) -> dict[str, Any]:
+    return {name: now.said(values) for name, values in variables.items()}
 
 
 def _is_same(one: Scene, other: Scene) -> bool:

@@ -173,6 +173,9 @@ def check_surface(name: str, surface: BodySurface, modes: int) -> None:
         wanted = tuple(axes[0] if size == "axes" else size for size in wanted)
         if values.shape != wanted or not np.isfinite(values).all():
             raise ArgumentError(f"{name}.{one.name}", f"be finite numbers of the shape {wanted}", got=values.shape)
+    owners = getattr(surface, "owners", None)
+    if owners is not None and not np.array_equal(np.unique(owners), np.arange(len(surface.normals))):
+        raise ArgumentError(f"{name}.owners", "have the number of each point, from 0", got=np.unique(owners).tolist())
 
 
 def _content(surface: BodySurface) -> tuple[bytes, ...]:

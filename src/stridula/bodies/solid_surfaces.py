@@ -59,7 +59,7 @@ def _cut(mesh: SolidMesh, shapes: Array, size: float) -> PointSurface:
         lengths = np.linalg.norm(ends - np.roll(ends, -1, axis=0), axis=1)
         lengths = np.maximum(lengths[:2], lengths[2:]) if len(ends) == 4 else lengths.max(keepdims=True)
         counts = tuple(np.maximum(1, np.round(lengths / size)).astype(int).tolist())
-        values, slopes, apart = _patches(kind, int(side), counts, tuple(sharp))
+        values, slopes, apart = _patches(kind, int(side), counts, tuple(sharp) if len(ends) == 4 else ())
         jacobian = np.einsum("pni,nj->pij", slopes, mesh.nodes[nodes])
         corners = np.einsum("pci,pij->pcj", apart, jacobian)
         vectors = 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])

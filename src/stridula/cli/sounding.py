@@ -8,7 +8,7 @@ from typing import Any
 
 import xarray as xr
 
-from ..acoustics.hearable import body_named
+from ..acoustics.hearable import body_named, hearable
 from ..acoustics.listeners import FARTHEST
 from ..acoustics.radiate import radiate
 from ..acoustics.wav import NORMALISED, RATES, SUBTYPES, write_wav
@@ -62,8 +62,11 @@ def sound_of_record(
     record = load(name)
     scenario = _played(record)
     system = scenario.system
-    chosen = [_body_of(system, name) for name in bodies] or _left_alone(record, system)
-    pressure = radiate(record, system, places, bodies=chosen, baffled=baffled)
+    named = [_body_of(system, name) for name in bodies]
+    alone = [] if named else _left_alone(record, system)
+    pressure = radiate(record, system, places, bodies=named or alone or None, baffled=baffled)
+    if alone:
+        print(f"{listed([system.body_name(one) for one in alone])} alone: the record was changed while it was played")
     title = scenario.title or Path(name).stem
     drawn = {path: FIGURES[option](pressure, record, title) for option, path in wanted.items()}
     if wav is not None:
@@ -97,17 +100,14 @@ def check_ending(wav: str) -> None:
         raise ArgumentError("--wav", "end in .wav", wav)
 
 
-def _left_alone(record: xr.Dataset, system: System) -> list[Any] | None:
-    """Return the tracks of a record on which bodies or drives were changed, for these alone are in it; else None."""
+def _left_alone(record: xr.Dataset, system: System) -> list[Any]:
+    """Return the tracks of a record on which bodies or drives were changed, for these alone are in it."""
     try:
         check_one_system(record)
     except ArgumentError:
-        tracks = list(dict.fromkeys(contact.path_body for contact in system.contacts if contact.path_body is not None))
-        if tracks:
-            names = listed([system.body_name(track) for track in tracks])
-            print(f"{names} alone: the record was changed while it was played")
-        return tracks or None
-    return None
+        tracks = {contact.path_body for contact in system.contacts}
+        return [body for body in hearable(system) if body in tracks]
+    return []
 
 
 def _body_of(system: System, name: str) -> Any:
@@ -172,7 +172,10 @@ def _spectrogram(pressure: xr.DataArray, record: xr.Dataset, title: str) -> Any:
 def _bands(pressure: xr.DataArray, _record: xr.Dataset, title: str) -> Any:
     from ..plot import third_octaves
 
-    return third_octaves(pressure, title=title)
+    try:
+        return third_octaves(pressure, title=title)
+    except ArgumentError as error:
+        raise error.renamed("--bands") from None
 
 
 # How a figure is drawn, by its option.

@@ -252,7 +252,7 @@ class LiveMarch:
         kept = dict(vars(self))
         try:
             yield
-        except ValueError:
+        except (ValueError, MemoryError):
             vars(self).update(kept)
             raise
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..acoustics.levels import LOWEST_RATE, NOMINAL, equivalent_level, third_octave_levels
+from ..acoustics.levels import LOWEST_RATE, NOMINAL, SHORTEST, equivalent_level, third_octave_levels
 from ..acoustics.pressures import channels, positions
 from ..arrays import Array
 from ..checks import ArgumentError, positive
@@ -53,7 +53,7 @@ def third_octaves(pressure: xr.DataArray, *, dynamic_range: float = RANGE, title
     axes = figure.subplots()
     edges = np.append(levels.centre.values / EDGE, levels.centre.values[-1] * EDGE)
     bottom = top - dynamic_range
-    for number, (row, label) in enumerate(zip(rows, _labels(pressure, rate), strict=True)):
+    for number, (row, label) in enumerate(zip(rows, _labels(pressure, len(values) / rate, rate), strict=True)):
         colour = LINES[number % len(LINES)]
         axes.stairs(np.maximum(row, bottom), edges, baseline=bottom, color=colour, linewidth=1.3, label=label)
         if len(rows) == 1:
@@ -61,13 +61,15 @@ def third_octaves(pressure: xr.DataArray, *, dynamic_range: float = RANGE, title
     axes.set_xscale("log")
     axes.set_xlim(edges[0], edges[-1])
     axes.set_ylim(bottom, top)
-    shown = slice(int(-levels.centre.size % 3), None, 3)
+    # Octaves.
+    shown = np.flatnonzero(np.rint(10.0 * np.log10(levels.centre.values)) % 3 == 0)
     axes.set_xticks(levels.centre.values[shown], [_short(band) for band in levels.band.values[shown]])
     axes.minorticks_off()
     axes.set_xlabel("centre of the band [Hz]")
     axes.set_ylabel("level [dB re 20 µPa]")
     axes.grid(alpha=0.3, linewidth=0.5)
-    axes.legend(fontsize=8, frameon=False)
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(fontsize=8, frameon=False)
     axes.set_title(title, fontsize=11)
     return figure
 
@@ -82,14 +84,14 @@ def _ends(lasts: float, rate: float) -> tuple[float, float]:
     return float(known[0]), float(known[-1])
 
 
-def _labels(pressure: xr.DataArray, rate: float) -> list[str]:
+def _labels(pressure: xr.DataArray, lasts: float, rate: float) -> list[str]:
     """Return what to call each listener, with LAeq where the rate carries it."""
     places = positions(pressure)
     count = pressure.sizes.get("listener", 1)
     names = ["" if count == 1 else f"listener {number}" for number in range(1, count + 1)]
     if places is not None:
         names = [f"({', '.join(f'{x:.4g}' for x in place)}) m" for place in places]
-    if rate < LOWEST_RATE:
+    if rate < LOWEST_RATE or lasts < SHORTEST:
         return names
     loud: Array = np.atleast_1d(equivalent_level(pressure, "A").values)
     return [f"{name}{': ' * bool(name)}LAeq {level:.1f} dB" for name, level in zip(names, loud, strict=True)]

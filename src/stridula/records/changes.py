@@ -39,7 +39,7 @@ def played(run: xr.Dataset) -> list[tuple[float, str]]:
 
 def check_one_track(run: xr.Dataset) -> None:
     """Raise ValueError if the track was changed within the times of a record."""
-    _check_same(run, "track", lambda tables: tables.get("track"))
+    _check_same(run, "track", _tracks)
 
 
 def check_one_system(run: xr.Dataset) -> None:
@@ -63,6 +63,13 @@ def _check_same(run: xr.Dataset, what: str, part: Callable[[dict[str, Any]], Any
                     f"STOP)), and give its {what}"
                 ),
             )
+
+
+def _tracks(tables: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+    """Return what a scenario says of its tracks: a table of its own, or the bodies that contacts slide along."""
+    under = [one.get("track") for one in tables.get("contacts", [])]
+    named = {one["body"] for one in under if isinstance(one, dict) and "body" in one}
+    return tables.get("track"), {name: tables.get("bodies", {}).get(name) for name in sorted(named)}
 
 
 def _but_friction(tables: dict[str, Any]) -> dict[str, Any]:

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..acoustics.hearable import check_hearable
 from ..acoustics.levels import LOWEST_RATE, SHORTEST, equivalent_level
-from ..acoustics.plane_sound import plane_bodies
 from ..acoustics.radiate import radiate
 from ..analysis.regimes import regime_of
 from ..checks import ArgumentError
@@ -143,7 +143,11 @@ class Runs:
     def is_heard(self) -> bool:
         """Whether anything of a system in the plane can be heard."""
         system = self.scenario.system
-        return not system.is_spatial and bool(plane_bodies(system))
+        try:
+            check_hearable(system)
+        except ArgumentError:
+            return False
+        return not system.is_spatial
 
     def window(self, run: xr.Dataset, number: int) -> float:
         """Return the length of the windows in which a run is looked at [s]."""

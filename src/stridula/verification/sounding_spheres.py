@@ -77,7 +77,7 @@ def ball() -> Outcome:
     body, rows = elastic_ball(), []
     modes = body.modes()
     elastic = np.flatnonzero(modes.frequency > 0.0)
-    reason = "five quadratic elements across and more to a wavelength of the mode"
+    reason = "ten quadratic elements across, five and more to a wavelength of the mode"
     for words, known, number in (
         ("n = 2", oblate(), elastic[5]),
         ("n = 0", breathing(), _breathing_mode(body)),
