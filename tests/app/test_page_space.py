@@ -15,6 +15,11 @@ from .test_page_access import grave
 SOFTWARE = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 DRAWN = "window.stridula && stridula.space.ready && Boolean(stridula.space.drawn)"
 CASE = "#case=pin-on-disc"
+SLIDER = """() => {
+  const slider = document.querySelector("#controls .control:not([hidden]) input[type=range]");
+  slider.value = (Number(slider.min) + Number(slider.max)) / 2;
+  for (const name of ["input", "change"]) slider.dispatchEvent(new Event(name));
+}"""
 LOADED = "performance.getEntriesByType('resource').filter(({ name }) => name.includes('three')).length"
 
 
@@ -137,3 +142,16 @@ def test_a_browser_that_draws_nothing_in_space_says_so_and_plays(browsing):
     assert page.locator("#space-missing").text_content().startswith("This browser has no WebGL 2")
     assert page.locator("#space").is_hidden()
     assert page.locator("#beams").is_hidden()
+
+
+def test_a_drawing_that_could_not_be_loaded_is_tried_again(browsing):
+    browsing.complains = False
+    browsing.context.route("**/three.module.min.js", lambda route: route.abort())
+    page = browsing.open("#case=glass")
+    missing = page.locator("#space-missing")
+    missing.wait_for(state="visible")
+    assert missing.text_content().startswith("The drawing in space could not be loaded.")
+    browsing.context.unroute("**/three.module.min.js")
+    page.evaluate(SLIDER)
+    until(page, DRAWN)
+    assert missing.is_hidden()
