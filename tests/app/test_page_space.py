@@ -91,6 +91,30 @@ def test_one_goes_round_it_by_keys_and_mouse(browsing):
     )
 
 
+TURNED = """async ([azimuth, others]) => {
+  const { space } = stridula;
+  space.orbit.turn(azimuth, 0);
+  space.orbit.scale(0.5);
+  const shapes = () => space.renderer.info.memory.geometries;
+  space.again();
+  const before = [space.orbit.azimuth, space.orbit.zoom, shapes()];
+  const described = structuredClone(stridula.now());
+  if (others) for (const [k, one] of described.surfaces.entries()) one.name = `other ${k}`;
+  await space.describe({ ...described, drawn: `others: ${others}` });
+  space.again();
+  return [before, [space.orbit.azimuth, space.orbit.zoom, shapes()]];
+}"""
+
+
+def test_the_eye_stays_while_the_same_bodies_are_turned(browsing):
+    page = opened(browsing)
+    page.locator("#play").click()
+    before, after = page.evaluate(TURNED, [0.3, False])
+    assert after == before
+    (_, _, shapes), home = page.evaluate(TURNED, [0.3, True])
+    assert home == [pytest.approx(7 * np.pi / 36), 1, shapes]
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_finds_nothing_grave_in_space(chromium, server, scheme):
     with Browsing(chromium, server, bypass_csp=True, color_scheme=scheme) as browsing:

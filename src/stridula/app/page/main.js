@@ -145,6 +145,7 @@ function shown(message) {
     pictures.clear();
     write("theory", "");
     write("stroke", "");
+    $("unrecorded").hidden = true;
     loop.forget();
     map.rest(message.speed !== null && message.speed < TOO_SLOW);
   }
