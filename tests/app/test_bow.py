@@ -19,6 +19,35 @@ result = given.path.slice(1).map((place) => {
   hand.moves(...place);
   return hand.tick(TICK);
 });"""
+LEFT = """import { Bow } from "./bow.js";
+import { Scene } from "./scene.js";
+import { Slots } from "./slots.js";
+const told = [];
+const on = {};
+const canvas = { clientWidth: 100, clientHeight: 100, setPointerCapture() {}, classList: { toggle() {} } };
+canvas.addEventListener = (name, then) => (on[name] = then);
+const controls = { numbers: () => [given.control], values: { [given.control.key]: 2 } };
+let bow;
+const scene = new Scene(() => told.push(structuredClone(scene.now)), () => bow.release());
+const slots = new Slots(scene);
+bow = new Bow(canvas, scene, controls, () => {});
+const leaves = {
+  setting: () => slots.go("B"),
+  case: () => scene.set({ case: "belt", overrides: {} }),
+  value: () => scene.values({ other: 1 }),
+  undo: () => scene.undo(),
+  link: () => scene.read("#case=belt"),
+};
+scene.set({ case: "judder" });
+on.pointerdown({ button: 0, pointerId: 1, offsetX: 50, offsetY: 50 });
+on.pointermove({ offsetX: 50, offsetY: 75 });
+const passes = () => new Promise((then) => setTimeout(then, 150));
+await passes();
+const pressed = told.at(-1).overrides;
+await leaves[given.leaves]();
+const left = told.length;
+await passes();
+result = { pressed, now: scene.now, other: slots.other?.now ?? null, more: told.length - left };"""
 LOAD = {"key": "load", "low": 0, "high": 100, "scale": 1, "step": 0.1}
 BOTH_WAYS = {"key": "speed", "low": -10, "high": 10, "scale": 0.01, "step": 0.01}
 ONE_WAY = {"key": "speed", "low": -100, "high": -4, "scale": 0.01, "step": 0.01}
@@ -74,3 +103,29 @@ def test_a_force_keeps_its_sense_and_one_that_is_zero_begins_small(tmp_path):
     down = [[0.5, 0.2], [0.5, 0.7]]
     assert moved(tmp_path, {"force": axial}, {"load": -0.5}, down) == [{"load": -2.0}]
     assert moved(tmp_path, {"force": axial}, {"load": 0.0}, down) == [{"load": 0.4}]
+
+
+@pytest.mark.parametrize(
+    ("leaves", "case", "overrides"),
+    [
+        ("setting", "judder", {}),
+        ("case", "belt", {}),
+        ("value", "judder", {"other": 1}),
+        ("undo", "squeal", {}),
+        ("link", "belt", {}),
+    ],
+)
+def test_a_hand_lets_go_before_something_else_is_played(tmp_path, leaves, case, overrides):
+    control = LOAD | {"key": "drives.0.normal_load", "unit": "N"}
+    found = result_of(tmp_path, LEFT, {"control": control, "leaves": leaves})
+    assert found["pressed"] == {"drives.0.normal_load": 4.0}
+    assert found["now"] == {"case": case, "text": None, "overrides": overrides}
+    assert found["more"] == 0
+    if leaves == "setting":
+        assert found["other"]["overrides"] == {}
+
+
+def test_forces_are_known_by_their_unit(tmp_path):
+    units = ["mN", "MN", "µN", "N", "N/m", "Nm", "mm"]
+    given = [[[LOAD | {"key": "drives.0.load", "unit": unit}], {"drives.0.load": 1.0}] for unit in units]
+    assert [force is not None for _, force in result_of(tmp_path, PLAYED, given)] == [True] * 4 + [False] * 3

@@ -255,6 +255,8 @@ def test_what_sounds_is_recorded_from_press_to_press(browsing):
     plays_on(page, 40)
     record.click()
     assert page.locator("#recording").is_hidden()
+    assert page.locator("#unrecorded").text_content() == "Nothing sounded, so nothing was recorded."
+    assert page.locator("#unrecorded").is_visible()
 
 
 @pytest.mark.parametrize("can_share", [False, True])

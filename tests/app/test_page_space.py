@@ -15,6 +15,11 @@ from .test_page_access import grave
 SOFTWARE = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 DRAWN = "window.stridula && stridula.space.ready && Boolean(stridula.space.drawn)"
 CASE = "#case=pin-on-disc"
+SLIDER = """() => {
+  const slider = document.querySelector("#controls .control:not([hidden]) input[type=range]");
+  slider.value = (Number(slider.min) + Number(slider.max)) / 2;
+  for (const name of ["input", "change"]) slider.dispatchEvent(new Event(name));
+}"""
 LOADED = "performance.getEntriesByType('resource').filter(({ name }) => name.includes('three')).length"
 
 
@@ -86,6 +91,30 @@ def test_one_goes_round_it_by_keys_and_mouse(browsing):
     )
 
 
+TURNED = """async ([azimuth, others]) => {
+  const { space } = stridula;
+  space.orbit.turn(azimuth, 0);
+  space.orbit.scale(0.5);
+  const shapes = () => space.renderer.info.memory.geometries;
+  space.again();
+  const before = [space.orbit.azimuth, space.orbit.zoom, shapes()];
+  const described = structuredClone(stridula.now());
+  if (others) for (const [k, one] of described.surfaces.entries()) one.name = `other ${k}`;
+  await space.describe({ ...described, drawn: `others: ${others}` });
+  space.again();
+  return [before, [space.orbit.azimuth, space.orbit.zoom, shapes()]];
+}"""
+
+
+def test_the_eye_stays_while_the_same_bodies_are_turned(browsing):
+    page = opened(browsing)
+    page.locator("#play").click()
+    before, after = page.evaluate(TURNED, [0.3, False])
+    assert after == before
+    (_, _, shapes), home = page.evaluate(TURNED, [0.3, True])
+    assert home == [pytest.approx(7 * np.pi / 36), 1, shapes]
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_finds_nothing_grave_in_space(chromium, server, scheme):
     with Browsing(chromium, server, bypass_csp=True, color_scheme=scheme) as browsing:
@@ -137,3 +166,16 @@ def test_a_browser_that_draws_nothing_in_space_says_so_and_plays(browsing):
     assert page.locator("#space-missing").text_content().startswith("This browser has no WebGL 2")
     assert page.locator("#space").is_hidden()
     assert page.locator("#beams").is_hidden()
+
+
+def test_a_drawing_that_could_not_be_loaded_is_tried_again(browsing):
+    browsing.complains = False
+    browsing.context.route("**/three.module.min.js", lambda route: route.abort())
+    page = browsing.open("#case=glass")
+    missing = page.locator("#space-missing")
+    missing.wait_for(state="visible")
+    assert missing.text_content().startswith("The drawing in space could not be loaded.")
+    browsing.context.unroute("**/three.module.min.js")
+    page.evaluate(SLIDER)
+    until(page, DRAWN)
+    assert missing.is_hidden()

@@ -2,10 +2,45 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from .scripting import result_of
 
+ANEW = """import { Spectrogram } from "./spectrogram.js";
+const spectrogram = new Spectrogram();
+const sound = Float32Array.from({ length: 1 << 20 }, (_, i) => Math.sin(i));
+spectrogram.hear(sound);
+const kept = spectrogram.columns.length;
+const { tone } = spectrogram;
+spectrogram.loudest = 7;
+spectrogram.clear();
+result = { kept, tone, after: [spectrogram.columns.length, spectrogram.tone, spectrogram.loudest] };"""
+TIMES = """import { History } from "./history.js";
+const history = new History();
+const seen = [1, 2, 3].map((value) => Float32Array.of(value, value));
+result = given.map((clock) => {
+  history.take({ clock, stroke: 1, place: 0, interval: 0.1 }, [seen[0], seen[1], seen[2], seen[0]]);
+  return [history.count, history.since(1).length];
+});"""
+LOOP = """import { Loop } from "./loop.js";
+let started = 0;
+const node = () => ({ connect: (next) => next, start: () => (started += 1), stop: () => (started -= 1), gain: {} });
+globalThis.AudioContext = class {
+  resume = () => new Promise(() => {});
+  createBuffer = () => ({ copyToChannel() {} });
+  createBufferSource = node;
+  createGain = node;
+};
+const loop = new Loop(() => {});
+loop.take(Float32Array.from({ length: 4800 }, (_, i) => Math.sin(i)));
+result = [];
+for (let press = 0; press < 3; press++) {
+  if (loop.source) loop.stop();
+  else loop.play(0);
+  result.push(started);
+}"""
 TOP = """import { Top } from "./timeline.js";
 const top = new Top();
 result = given.map(([largest, now]) => top.follow(largest, now));"""
@@ -73,3 +108,18 @@ def test_what_vibrates_less_is_drawn_larger_only_slowly(tmp_path):
     )
     assert quiet == pytest.approx(1.01 * loud)
     assert louder == pytest.approx(0.06 / 1e-3)
+
+
+def test_a_spectrogram_keeps_a_while_and_nothing_of_what_was_heard_before(tmp_path):
+    found = result_of(tmp_path, ANEW)
+    assert 2000 <= found["kept"] <= 4000
+    assert found["tone"] == pytest.approx(48_000.0 / math.tau, abs=1.0)
+    assert found["after"] == [0, None, 1e-9]
+
+
+def test_a_server_that_began_anew_begins_the_history(tmp_path):
+    assert result_of(tmp_path, TIMES, [50.0, 50.2, 0.2, 0.4]) == [[2, 2], [4, 4], [2, 2], [4, 4]]
+
+
+def test_a_loop_that_is_pressed_again_while_it_begins_ends(tmp_path):
+    assert result_of(tmp_path, LOOP) == [1, 0, 1]

@@ -14,20 +14,20 @@ from .scripting import result_of
 RECORDED = """import { Recorder } from "./recorder.js";
 const recorder = new Recorder(48000);
 recorder.begin();
-const room = given.parts.map(([values, scale]) => recorder.take(Float32Array.from(values), scale));
+const room = given.map(([values, scale, unit]) => recorder.take(Float32Array.from(values), { scale, unit }));
 const seconds = recorder.seconds;
-const bytes = recorder.end(given.unit);
+const bytes = recorder.end();
 result = { room, seconds, on: recorder.on, bytes: bytes && Buffer.from(bytes).toString("base64") };"""
 LONG = """import { Recorder } from "./recorder.js";
 const recorder = new Recorder(48000);
 recorder.begin();
 let parts = 0;
-while (recorder.take(new Float32Array(48000 * 7 + 13).fill(0.5), 1)) parts += 1;
+while (recorder.take(new Float32Array(48000 * 7 + 13).fill(0.5), { scale: 1, unit: "Pa" })) parts += 1;
 result = [parts, recorder.seconds];"""
 
 
-def recorded(folder, parts, unit="Pa"):
-    found = result_of(folder, RECORDED, {"parts": [[part.tolist(), scale] for part, scale in parts], "unit": unit})
+def recorded(folder, parts):
+    found = result_of(folder, RECORDED, [[part.tolist(), *source] for part, *source in parts])
     if found["bytes"] is not None:
         (folder / "found.wav").write_bytes(base64.b64decode(found["bytes"]))
     return found
@@ -37,7 +37,7 @@ def test_a_recording_holds_what_was_heard_1_db_below_full_scale(tmp_path):
     time = np.arange(RATE // 4) / RATE
     # A tone on a weight: the weight is not heard.
     sound = 5.0 + 0.02 * np.sin(2.0 * np.pi * 1000.0 * time)
-    found = recorded(tmp_path, [(part, 10.0) for part in np.split(sound, 5)])
+    found = recorded(tmp_path, [(part, 10.0, "Pa") for part in np.split(sound, 5)])
     assert (found["seconds"], found["on"]) == (0.25, False)
     values, rate = soundfile.read(tmp_path / "found.wav")
     assert rate == RATE
@@ -51,15 +51,16 @@ def test_a_recording_holds_what_was_heard_1_db_below_full_scale(tmp_path):
     assert full * values[2000:] == pytest.approx(sound[2000:] - 5.0, abs=5e-4)
 
 
-def test_of_several_sources_there_is_no_one_full_scale(tmp_path):
+@pytest.mark.parametrize("other", [(0.05, "Pa"), (10.0, "N")], ids=["scale", "unit"])
+def test_of_several_sources_there_is_no_one_full_scale(tmp_path, other):
     noise = np.random.default_rng(2).normal(size=480)
-    recorded(tmp_path, [(noise, 10.0), (noise, 0.05)])
+    recorded(tmp_path, [(noise, 10.0, "Pa"), (noise, *other)])
     with soundfile.SoundFile(tmp_path / "found.wav") as file:
         assert file.comment == "stridula: recorded on the page, several sources"
 
 
 def test_silence_is_a_file_and_nothing_is_none(tmp_path):
-    recorded(tmp_path, [(np.zeros(480), 10.0)])
+    recorded(tmp_path, [(np.zeros(480), 10.0, "Pa")])
     assert not soundfile.read(tmp_path / "found.wav")[0].any()
     assert recorded(tmp_path, [])["bytes"] is None
 

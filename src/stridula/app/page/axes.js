@@ -32,6 +32,12 @@ export function roof(value) {
   return size * ROOFS.find((one) => one * size >= value * (1 - ROUNDING));
 }
 
+// The next of 1, 2 and 5 below a value, and of their multiples by ten.
+export function rounded(value) {
+  const size = 10 ** Math.floor(Math.log10(value));
+  return size * (value / size >= 5 ? 5 : value / size >= 2 ? 2 : 1);
+}
+
 // Draw axes around a box. A side has its ends and a title with its unit.
 export function paintAxes(draw, { left, top, width, height }, { x, y }, colours) {
   draw.font = SMALL;

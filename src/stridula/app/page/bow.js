@@ -7,12 +7,12 @@ const HARDER = 16; // Down the whole picture the force becomes so many times as 
 const DIGITS = 3;
 const VELOCITIES = /^drives\.[^.]+\.velocity$|\.surface_velocity$|\.track\.velocity$/;
 const FORCES = /^drives\./;
-const NEWTONS = new Set(["N", "mN", "kN"]);
+const NEWTONS = /^[GMkmµn]?N$/;
 
 // The controls that a hand plays, null for what a system has not: the velocity, and of the forces the largest.
 export function played(controls, values) {
   const size = ({ key }) => Math.abs(values[key]);
-  const forces = controls.filter(({ key, unit }) => FORCES.test(key) && NEWTONS.has(unit)).sort((a, b) => size(b) - size(a));
+  const forces = controls.filter(({ key, unit }) => FORCES.test(key) && NEWTONS.test(unit)).sort((a, b) => size(b) - size(a));
   return { velocity: controls.find(({ key }) => VELOCITIES.test(key)) ?? null, force: forces[0] ?? null };
 }
 
@@ -68,7 +68,7 @@ export class Bow {
   follow() {
     const { velocity, force } = this.#what();
     this.canvas.classList.toggle("bowed", Boolean(velocity || force));
-    const words = [velocity && "across draws it", force && "down presses it"].filter(Boolean);
+    const words = this.canvas.hidden ? [] : [velocity && "across draws it", force && "down presses it"].filter(Boolean);
     if (!this.hand) this.tell(words.length ? `drag: ${words.join(", ")}` : "");
   }
 

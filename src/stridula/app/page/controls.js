@@ -47,13 +47,13 @@ export class Controls {
     let moving = false;
     slide.addEventListener("input", () => {
       number.value = slide.value;
-      this.scene.value(control.key, si(Number(slide.value), control), moving);
+      this.scene.values({ [control.key]: si(Number(slide.value), control) }, moving);
       moving = true;
     });
     slide.addEventListener("change", () => (moving = false));
     number.addEventListener("change", () => {
       if (number.value.trim() === "" || !Number.isFinite(Number(number.value))) this.show(this.values, true);
-      else this.scene.value(control.key, si(Number(number.value), control));
+      else this.scene.values({ [control.key]: si(Number(number.value), control) });
     });
     this.rows.set(control.key, { row, control, show: (value, again) => this.#show(value, slide, number, control, again) });
     return row;

@@ -8,7 +8,7 @@ export class Gallery {
     cards.replaceChildren(...this.cards.values());
     // With keys one goes through the cards and hears each; a card that is pressed is the one wanted.
     cards.addEventListener("change", ({ target }) => choose(target.value));
-    cards.addEventListener("pointerup", (event) => event.target.closest(".card") && setTimeout(() => dialog.close()));
+    cards.addEventListener("click", (event) => event.detail && event.target.matches("input") && dialog.close());
     cards.addEventListener("keydown", (event) => {
       if (event.key !== "Enter") return;
       event.preventDefault();

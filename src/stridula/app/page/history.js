@@ -14,6 +14,8 @@ export class History {
 
   // Take over what was seen in a part.
   take({ clock, stroke, place, interval }, [force, state, moved, speed]) {
+    // A server that began anew counts its time from the start.
+    if (clock < this.clock) this.count = this.begun = 0;
     const seen = force.length;
     for (let i = 0; i < seen; i++) {
       const k = this.count++ % KEPT;

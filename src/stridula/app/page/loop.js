@@ -1,11 +1,12 @@
 // What was heard last, at true speed again and again: for what is computed slower than it sounds.
+import { highPassed, joined } from "./samples.js";
+
 const RATE = 48000;
 const LONGEST = 4; // [s]
 const SHORTEST = 0.02; // What is shorter is no sound [s].
 const LED_OVER = 0.25; // At most this share of it is led over from its end to its beginning,
 const BLEND = 0.05; // and at most so much [s].
 const LOUDEST = 0.7; // 3 dB below full scale.
-const LOWEST = 20; // What is slower cannot be heard [Hz].
 
 export class Loop {
   constructor(onChange) {
@@ -29,10 +30,10 @@ export class Loop {
     return this.samples >= SHORTEST * RATE;
   }
 
-  async play(decibels) {
+  play(decibels) {
     const sound = looped(this.parts);
     this.context ??= new AudioContext({ sampleRate: RATE });
-    await this.context.resume();
+    this.context.resume();
     const buffer = this.context.createBuffer(1, sound.length, RATE);
     buffer.copyToChannel(sound, 0);
     this.source = Object.assign(this.context.createBufferSource(), { buffer, loop: true });
@@ -59,29 +60,14 @@ export class Loop {
 
 // Sound in one piece, without weight, as loud as can be, its end led over to its beginning.
 export function looped(parts) {
-  const whole = new Float32Array(parts.reduce((sum, { length }) => sum + length, 0));
-  let at = 0;
-  for (const part of parts) {
-    whole.set(part, at);
-    at += part.length;
-  }
+  const whole = highPassed(joined(parts), RATE);
   const over = Math.min(Math.round(BLEND * RATE), Math.floor(LED_OVER * whole.length));
-  const sound = highPassed(whole).slice(0, whole.length - over);
-  const end = highPassed(whole).subarray(whole.length - over);
+  const sound = whole.slice(0, whole.length - over);
+  const end = whole.subarray(whole.length - over);
   for (let i = 0; i < over; i++) {
     const share = (i + 0.5) / over;
     sound[i] = Math.sqrt(share) * sound[i] + Math.sqrt(1 - share) * end[i];
   }
   const most = sound.reduce((largest, value) => Math.max(largest, Math.abs(value)), 0);
   return most > 0 ? sound.map((value) => (LOUDEST * value) / most) : sound;
-}
-
-function highPassed(values) {
-  const keep = Math.exp((-2 * Math.PI * LOWEST) / RATE);
-  let [low, before] = [0, values[0]];
-  return values.map((value) => {
-    low = keep * (low + value - before);
-    before = value;
-    return low;
-  });
 }

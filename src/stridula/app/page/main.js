@@ -20,7 +20,7 @@ const stream = new Worker("stream.js", { type: "module" });
 const say = (message) => stream.postMessage({ say: message });
 const space = new Space({ canvas: $("space"), legend: $("space-legend"), low: $("space-low"), high: $("space-high"), missing: $("space-missing") });
 const pictures = new Pictures(space);
-const scene = new Scene(changed);
+const scene = new Scene(changed, () => bow?.release());
 const slots = new Slots(scene);
 const sound = new Sound(stream, heard);
 const loop = new Loop(showLoop);
@@ -32,12 +32,15 @@ const MARGIN = 1.1; // what is left to others then.
 const TOO_SLOW = 0.5; // What is slower is not computed for a map unless one asks.
 const PREPARES = 400; // A scene that takes longer to be played is being prepared [ms].
 const LOWEST = 20; // What is slower is no note [Hz].
+const LONGEST = 60000; // A scenario of one's own is at most so long [bytes].
 const LONG = 5; // Time of drawing from which every other frame is left out [ms].
 const stats = { drawing: 0, revision: 0, played: 0, samples: 0, frames: 0, fps: 0, dropouts: 0, latency: null, latencies: [], connected: false, level: 0, peak: 0 };
 let hello, controls, map, bow, gallery, described, sources;
 let turned = "null"; // What the controls were built of, beyond two beams.
 let slowest = 1; // How many seconds one second takes where that is slower than sound.
 let revision = 0;
+let begun = 0; // The revision at which what is played began.
+let heardLast; // What was listened to when the last part was made.
 let mode = "live";
 let skipped = false;
 let badLink = false;
@@ -55,10 +58,13 @@ function told(message) {
     hello: () => welcome(message),
     scene: () => shown(message),
     refused: () => refused(message),
-    problem: () => problem(message.problems),
+    problem: () => {
+      answered(revision);
+      problem(message.problems);
+    },
     stroke: () => stroke(message),
     theory: () => theory(message),
-    now: () => goesOn(message),
+    now: () => message.revision >= begun && goesOn(message),
     speed: () => {
       // As the machine is busy now: only what is clearly another speed changes how fast it is shown.
       const needed = paceOf(message.speed);
@@ -134,7 +140,12 @@ function shown(message) {
   $("problem").hidden = !badLink;
   badLink = false;
   if (!message.goes_on) {
+    begun = message.revision;
     goesOn({ words: "" });
+    pictures.clear();
+    write("theory", "");
+    write("stroke", "");
+    $("unrecorded").hidden = true;
     loop.forget();
     map.rest(message.speed !== null && message.speed < TOO_SLOW);
   }
@@ -190,13 +201,14 @@ function keepUp(speed) {
   const wasSlow = own?.selected;
   own?.remove();
   slowest = needed;
+  if (needed === 1) loop.stop();
   if (needed > 1) {
     const option = new Option(`Slow, 1 : ${needed}, as fast as it can`, String(needed));
     option.dataset.own = "1";
     $("speed").append(option);
     option.selected = $("speed").value === "1" || wasSlow;
   } else if (wasSlow) $("speed").value = "1";
-  $("pace").textContent = needed > 1 ? `This machine computes it ${needed} times slower than it sounds: it is shown at that speed, without sound.` : "";
+  $("pace").textContent = needed > 1 ? `It is shown ${needed} times slower than it sounds, as fast as this machine can, and without sound.` : "";
   pace();
   showLoop();
 }
@@ -265,14 +277,17 @@ function theory({ equilibrium, modes }) {
   $("theory").textContent = `Linear theory: ${words[equilibrium] ?? equilibrium}; ${growing ? `vibrations grow at ${growing}.` : "no vibration grows."}`;
 }
 
-function came({ parts: data, scale }) {
+function came({ parts: data, heard: listened }) {
+  // What was asked for before something else was listened to came as it was.
+  if (listened.name !== heardLast) pictures.spectrogram.clear();
+  heardLast = listened.name;
   for (const part of parts(data)) {
     const [number, , , samples] = part.head;
     stats.samples += samples;
     stats.played = Math.max(stats.played, number);
     pictures.take(part);
     if (slowest > 1 && number >= described.revision) loop.take(part.values.subarray(0, samples));
-    if (recorder.on && mode === "live" && $("speed").value === "1" && !recorder.take(part.values.subarray(0, samples), scale)) record();
+    if (recorder.on && mode === "live" && $("speed").value === "1" && !recorder.take(part.values.subarray(0, samples), listened)) record();
     stats.level = pictures.level;
   }
 }
@@ -323,9 +338,11 @@ function listenTo() {
 }
 
 function showSource() {
-  const source = sources[$("source").value];
-  stream.postMessage({ fullScale: source.full_scale });
+  const name = $("source").value;
+  const source = sources[name];
+  stream.postMessage({ heard: { name, scale: 1 / source.full_scale, unit: source.unit } });
   loop.forget();
+  pictures.spectrogram.clear();
   $("spectrogram-words").textContent = `of the ${source.name.toLowerCase()}`;
   listen();
 }
@@ -372,11 +389,16 @@ function record() {
   $("record").textContent = begins ? "Stop" : "Record";
   if (begins) {
     recorder.begin();
+    $("unrecorded").hidden = true;
     return;
   }
-  const bytes = recorder.end(sources[$("source").value].unit);
+  const bytes = recorder.end();
   $("recording").hidden = bytes === null;
-  if (bytes === null) return;
+  $("unrecorded").hidden = bytes !== null;
+  if (bytes === null) {
+    $("said").textContent = $("unrecorded").textContent;
+    return;
+  }
   URL.revokeObjectURL($("recording").href);
   const href = URL.createObjectURL(new Blob([bytes], { type: "audio/wav" }));
   Object.assign($("recording"), { href, download: "stridula-recording.wav", textContent: `Save recording, ${recorder.seconds.toFixed(1)} s` });
@@ -431,6 +453,12 @@ async function readLink() {
     badLink = !described;
     return false;
   }
+}
+
+// Play a scenario of one's own, unless it is longer than the server takes.
+async function playOwn(file, name) {
+  if (file.size > LONGEST) problem([`scenario must be at most ${LONGEST / 1000} kB, got ${name} of ${Math.ceil(file.size / 1000)} kB`]);
+  else scene.set({ case: "", text: await file.text(), overrides: {} });
 }
 
 function choose(name) {
@@ -493,14 +521,13 @@ $("save-wav").addEventListener("click", () => say({ type: "save", format: "wav" 
 $("save-nc").addEventListener("click", () => say({ type: "save", format: "nc" }));
 $("save-png").addEventListener("click", savePictures);
 $("scenario").addEventListener("toggle", showToml);
-$("toml-apply").addEventListener("click", () => scene.set({ case: "", text: $("toml").value, overrides: {} }));
+$("toml-apply").addEventListener("click", () => playOwn(new Blob([$("toml").value]), "a text"));
 $("toml-copy").addEventListener("click", () => copied($("toml").value, "scenario"));
 $("toml-save").addEventListener("click", () => download(new Blob([$("toml").value]), "scenario.toml"));
 $("toml-open").addEventListener("change", async () => {
   const [file] = $("toml-open").files;
   if (!file) return;
-  if (file.size > 60000) problem([`scenario must be at most 60 kB, got ${file.name} of ${Math.round(file.size / 1000)} kB`]);
-  else scene.set({ case: "", text: await file.text(), overrides: {} });
+  await playOwn(file, file.name);
   $("toml-open").value = "";
 });
 window.addEventListener("hashchange", async () => {

@@ -139,7 +139,7 @@ export class RegimeMap {
     const [a, b] = [this.side("x"), this.side("y")];
     if (!a || !b || a.key === b.key) return;
     const at = ({ control, low, high }, share) => si(Number((low + share * (high - low)).toPrecision(4)), control);
-    this.scene.set({ overrides: { ...this.scene.now.overrides, [a.key]: at(a, u), [b.key]: at(b, v) } }, moving);
+    this.scene.values({ [a.key]: at(a, u), [b.key]: at(b, v) }, moving);
   }
 
   #key(event) {

@@ -19,7 +19,7 @@ export class Orbit {
     canvas.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
     canvas.addEventListener("pointerdown", (event) => this.#press(event));
     canvas.addEventListener("pointermove", (event) => this.#drag(event));
-    for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, ({ pointerId }) => this.pointers.delete(pointerId));
+    for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) canvas.addEventListener(name, ({ pointerId }) => this.pointers.delete(pointerId));
     canvas.addEventListener("dblclick", () => this.home());
   }
 
@@ -28,15 +28,14 @@ export class Orbit {
     this.onMove?.();
   }
 
-  // Directions to the right, up and to the eye, for what is up in the world.
+  // Directions to the right, up and to the eye as it begins, for what is up in the world,
+  start(up) {
+    return axesAt(up, AZIMUTH, ELEVATION);
+  }
+
+  // and as it is.
   axes(up) {
-    const first = up[0] > 0.9 ? [0, 1, 0] : [1, 0, 0];
-    const towards = cross(first, up);
-    const [sine, cosine] = [Math.sin(this.azimuth), Math.cos(this.azimuth)];
-    const level = towards.map((one, i) => cosine * one + sine * first[i]);
-    const eye = level.map((one, i) => Math.cos(this.elevation) * one + Math.sin(this.elevation) * up[i]);
-    const right = unit(cross(up, level));
-    return { right, up: cross(eye, right), eye };
+    return axesAt(up, this.azimuth, this.elevation);
   }
 
   turn(azimuth, elevation) {
@@ -92,6 +91,16 @@ export class Orbit {
     const [one, other] = [...this.pointers.values()];
     return other && Math.hypot(one[0] - other[0], one[1] - other[1]);
   }
+}
+
+function axesAt(up, azimuth, elevation) {
+  const first = up[0] > 0.9 ? [0, 1, 0] : [1, 0, 0];
+  const towards = cross(first, up);
+  const [sine, cosine] = [Math.sin(azimuth), Math.cos(azimuth)];
+  const level = towards.map((one, i) => cosine * one + sine * first[i]);
+  const eye = level.map((one, i) => Math.cos(elevation) * one + Math.sin(elevation) * up[i]);
+  const right = unit(cross(up, level));
+  return { right, up: cross(eye, right), eye };
 }
 
 // How far the eye is from the middle of places so that all of them are in sight, and the middle, for what is near is larger.

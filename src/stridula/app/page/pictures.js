@@ -1,5 +1,5 @@
 // The pictures: what has come since the last one, drawn once for each frame of the screen.
-import { short } from "./axes.js";
+import { rounded, short } from "./axes.js";
 import { History } from "./history.js";
 import { drawLines, Frame, placed } from "./lines.js";
 import { Phase } from "./phase.js";
@@ -61,6 +61,12 @@ export class Pictures {
     this.scene = scene;
     this.canvases.beams.hidden = Boolean(scene.drawn);
     this.space.describe(scene);
+  }
+
+  // Begin anew: nothing of what was played is shown of what is.
+  clear() {
+    this.modes = [];
+    this.spectrogram.clear();
   }
 
   pace(slow) {
@@ -205,9 +211,4 @@ function support(draw, x, y, colour) {
   draw.lineTo(x - 8, y + 17);
   draw.lineTo(x + 8, y + 17);
   draw.fill();
-}
-
-function rounded(value) {
-  const size = 10 ** Math.floor(Math.log10(value));
-  return size * (value / size >= 5 ? 5 : value / size >= 2 ? 2 : 1);
 }

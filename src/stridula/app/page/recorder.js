@@ -1,6 +1,7 @@
 // What sounds, kept from press to press, and as a WAV file.
+import { highPassed, joined } from "./samples.js";
+
 const LONGEST = 60; // [s]
-const LOWEST = 20; // A high-pass as the player has it [Hz].
 const HEADROOM = 10 ** (-1 / 20); // The largest sample is 1 dB below full scale.
 const LARGEST = 0x7fff;
 
@@ -20,49 +21,30 @@ export class Recorder {
   }
 
   begin() {
-    Object.assign(this, { blocks: [], kept: 0, scales: new Set() });
+    Object.assign(this, { blocks: [], kept: 0, sources: new Map() });
   }
 
-  // Keep a part, which times its scale is what sounds; returns whether there is room for more.
-  take(sound, scale) {
+  // Keep a part, which times its scale is what sounds; returns whether there is room for more. Its unit is that of what is heard.
+  take(sound, { scale, unit }) {
     const part = sound.slice(0, LONGEST * this.rate - this.kept);
-    this.scales.add(scale);
+    this.sources.set(`${scale} ${unit}`, { scale, unit });
     this.blocks.push(part.map((value) => value * scale));
     this.kept += part.length;
     return this.kept < LONGEST * this.rate;
   }
 
-  // Return the bytes of a WAV file, null where nothing was kept; unit is that of what was heard.
-  end(unit) {
-    const { blocks, scales } = this;
+  // Return the bytes of a WAV file, null where nothing was kept.
+  end() {
+    const { blocks, sources } = this;
     this.blocks = null;
     if (!this.kept) return null;
-    const sound = passed(joined(blocks, this.kept), Math.exp((-2 * Math.PI * LOWEST) / this.rate));
+    const sound = highPassed(joined(blocks), this.rate);
     const largest = sound.reduce((most, value) => Math.max(most, Math.abs(value)), 0) / HEADROOM || 1;
-    const [scale] = scales;
+    const [{ scale, unit }] = sources.values();
     // Of several sources full scale is no one value.
-    const full = scales.size === 1 ? `full scale is ${Number((largest / scale).toPrecision(6))} ${unit}` : "several sources";
+    const full = sources.size === 1 ? `full scale is ${Number((largest / scale).toPrecision(6))} ${unit}` : "several sources";
     return wav(sound, largest, this.rate, `stridula: recorded on the page, ${full}`);
   }
-}
-
-function joined(blocks, length) {
-  const found = new Float32Array(length);
-  let at = 0;
-  for (const block of blocks) {
-    found.set(block, at);
-    at += block.length;
-  }
-  return found;
-}
-
-function passed(sound, keep) {
-  let [low, before] = [0, sound[0]];
-  return sound.map((value) => {
-    low = keep * (low + value - before);
-    before = value;
-    return low;
-  });
 }
 
 function wav(sound, largest, rate, comment) {

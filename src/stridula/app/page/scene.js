@@ -2,8 +2,9 @@
 const KEEP = 100;
 
 export class Scene {
-  constructor(onChange) {
-    this.onChange = onChange;
+  // Before something else is played, onLeave lets go of what is on the way.
+  constructor(onChange, onLeave = () => {}) {
+    Object.assign(this, { onChange, onLeave });
     this.now = { case: "squeal", text: null, overrides: {} };
     this.past = [];
     this.future = [];
@@ -12,13 +13,18 @@ export class Scene {
 
   // Change what is played; a movement that goes on is one step of undo.
   set(next, goesOn = false) {
-    if (!goesOn) this.#remember();
+    if (!goesOn) {
+      this.onLeave();
+      this.#remember();
+    }
     this.now = { ...this.now, ...next };
     this.onChange();
   }
 
-  value(key, value, goesOn = false) {
-    this.set({ overrides: { ...this.now.overrides, [key]: value } }, goesOn);
+  // Change some values, by key.
+  values(some, goesOn = false) {
+    if (!goesOn) this.onLeave();
+    this.set({ overrides: { ...this.now.overrides, ...some } }, goesOn);
   }
 
   // Put back what was refused of what was sent, unless it was turned again since.
@@ -38,6 +44,7 @@ export class Scene {
 
   // Another kind of table: what belonged to the old one goes.
   kind(key, value, begins) {
+    this.onLeave();
     const table = key.slice(0, key.lastIndexOf(".") + 1);
     const kept = Object.entries(this.now.overrides).filter(([name]) => key.startsWith("simulation") || !name.startsWith(table));
     this.set({ overrides: { ...Object.fromEntries(kept), [key]: value, ...begins } });
@@ -62,11 +69,13 @@ export class Scene {
   }
 
   undo() {
+    this.onLeave();
     while (this.past.length && same(this.past.at(-1), this.now)) this.past.pop();
     if (this.past.length) this.#go(this.past, this.future);
   }
 
   redo() {
+    this.onLeave();
     if (this.future.length) this.#go(this.future, this.past);
   }
 
@@ -109,6 +118,7 @@ export class Scene {
       const number = Number(value);
       next.overrides[key] = value.trim() !== "" && Number.isFinite(number) ? number : value;
     }
+    this.onLeave();
     if (same(next, this.now)) return false;
     this.#remember();
     this.now = next;

@@ -9,6 +9,7 @@ export class Slots {
   // Hear one of them: the second begins as a copy of the first.
   go(name) {
     if (name === this.heard) return;
+    this.scene.onLeave();
     const other = this.other ?? { now: structuredClone(this.scene.now), past: [], future: [] };
     this.other = this.scene.whole;
     this.heard = name;

@@ -1,4 +1,5 @@
 // Systems in space: bodies coloured by the velocity out of their surfaces, contacts by their state, seen from all sides.
+import { roof, rounded } from "./axes.js";
 import { fitted, Orbit } from "./orbit.js";
 import { Body } from "./surfaces.js";
 
@@ -10,11 +11,11 @@ const HALF_VIEW = Math.tan((15 * Math.PI) / 180);
 const FILLED = 0.94;
 const DOTS = [9, 13]; // Size of the dots of many contacts and of one [px].
 const NO_WEBGL = "This browser has no WebGL 2, so bodies in space are not drawn. All else plays.";
+const NOT_LOADED = "The drawing in space could not be loaded. The next change tries again, and all else plays.";
 const STATES = ["separated", "sticking", "sliding"];
 // From inwards over still to outwards, as films have it (RdBu of ColorBrewer, reversed).
 const COLOURS = ["#053061", "#2166ac", "#4393c3", "#92c5de", "#d1e5f0", "#f7f7f7", "#fddbc7", "#f4a582", "#d6604d", "#b2182b", "#67001f"];
 const SHADES = 256;
-const ROUND = [1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10]; // What the scale of colours goes up to, and its multiples by ten.
 
 export class Space {
   constructor({ canvas, legend, low, high, missing }) {
@@ -26,11 +27,12 @@ export class Space {
   // Show or hide it, and make what is drawn of a scene: in the plane nothing, and nothing is loaded for it.
   async describe({ drawn, surfaces, touches, up }) {
     if (drawn === this.drawnAs) return;
-    Object.assign(this, { drawnAs: drawn, ready: false });
+    Object.assign(this, { drawnAs: drawn, ready: false, much: 0 });
     const isEmpty = drawn && !surfaces.length;
-    if (drawn && !isEmpty) await this.#load();
+    if (drawn && !isEmpty) await (this.loading ??= this.#load());
     if (this.drawnAs !== drawn) return;
-    const words = isEmpty ? "None of its bodies has a surface that could be drawn." : this.isMissing ? NO_WEBGL : "";
+    const words = isEmpty ? "None of its bodies has a surface that could be drawn." : this.isMissing ? NO_WEBGL : drawn && !this.renderer ? NOT_LOADED : "";
+    if (words === NOT_LOADED) Object.assign(this, { loading: null, drawnAs: "" });
     this.canvas.hidden = this.legend.hidden = !drawn || Boolean(words);
     this.missing.hidden = !drawn || !words;
     this.missing.textContent = words;
@@ -40,42 +42,46 @@ export class Space {
   }
 
   async #load() {
-    if (this.renderer || this.isMissing) return;
     try {
       this.three ??= await import("./vendor/three.module.min.js");
       // What cannot be drawn is told, here and not by the library.
       this.isSlow = isSoftware();
       const context = this.canvas.getContext("webgl2", { antialias: !this.isSlow, alpha: true });
-      if (!context) throw new Error("no WebGL");
+      this.isMissing = !context;
+      if (this.isMissing) return;
       this.renderer = new this.three.WebGLRenderer({ canvas: this.canvas, context });
       this.camera = new this.three.PerspectiveCamera(30, 1, 0.01, 100);
       this.colours = shades(this.three);
-    } catch {
-      this.isMissing = true;
+    } catch (error) {
+      console.warn("the drawing in space could not be loaded:", error);
     }
   }
 
   #build(scene) {
     const three = this.three;
+    this.world?.traverse(({ geometry, material }) => [geometry, material].forEach((one) => one?.dispose()));
     this.world = new three.Scene();
     this.bodies = scene.surfaces.map((one) => new Body(one));
     this.count = this.bodies.reduce((sum, { numbers }) => sum + numbers, 0);
     this.touches = scene.touches.map(({ body, row, place }) => body !== null && { body: this.bodies.find(({ name }) => name === body), row, place });
     this.up = scene.up;
     this.#measure();
+    // Of the same bodies, one of which is turned, the eye stays where it is.
+    const names = JSON.stringify(this.bodies.map(({ name }) => name));
+    if (names !== this.names) this.orbit.home();
+    this.names = names;
     this.sides = this.bodies.map((body) => this.#side(body));
     this.dots = this.#dots();
     const sky = new three.HemisphereLight(0xffffff, 0xb8bcc4, 1.9);
     sky.position.set(...this.up);
     this.sun = new three.DirectionalLight(0xffffff, 1.5);
     this.world.add(sky, this.sun, this.sun.target, ...this.sides.flatMap(({ mesh, edges }) => [mesh, edges]), this.dots);
-    Object.assign(this, { steady: null, top: 0, exaggeration: 0, fitted: null });
+    Object.assign(this, { steady: null, top: 0, exaggeration: 0, fitted: null, drawn: null });
   }
 
   // The middle of the picture as it begins, and the largest extent.
   #measure() {
-    this.orbit.home();
-    const { right, up, eye } = this.orbit.axes(this.up);
+    const { right, up, eye } = this.orbit.start(this.up);
     const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
     for (const { surface: { place } } of this.bodies) {
       for (let k = 0; k < place.length; k += 3) {
@@ -201,8 +207,7 @@ export class Space {
     const now = performance.now();
     this.top = Math.max(fastest, this.top * Math.exp(((this.scaled ?? now) - now) / FALL), 1e-12);
     this.scaled = now;
-    const size = 10 ** Math.floor(Math.log10(this.top));
-    this.largest = size * ROUND.find((one) => one * size >= this.top * (1 - 1e-9));
+    this.largest = roof(this.top);
     const words = speed(this.largest);
     if (this.high.textContent === words) return;
     this.high.textContent = words;
@@ -247,7 +252,7 @@ export class Space {
       this.renderer.setSize(width, height, false);
       camera.aspect = width / Math.max(1, height);
       const views = [HALF_VIEW * camera.aspect * FILLED, HALF_VIEW * FILLED];
-      this.fitted = { width, height, ...fitted(this.bodies.map(({ surface }) => surface.place), this.middle, orbit.axes(this.up), views) };
+      this.fitted = { width, height, ...fitted(this.bodies.map(({ surface }) => surface.place), this.middle, orbit.start(this.up), views) };
     }
     const { eye, right, up } = orbit.axes(this.up);
     const { middle } = this.fitted;
@@ -299,12 +304,7 @@ function disc() {
   return canvas;
 }
 
-function rounded(value) {
-  const size = 10 ** Math.floor(Math.log10(value));
-  return size * (value / size >= 5 ? 5 : value / size >= 2 ? 2 : 1);
-}
-
 function speed(value) {
   const [unit, size] = [["m/s", 1], ["mm/s", 1e-3], ["µm/s", 1e-6]].find(([, size]) => value >= size * (1 - 1e-9)) ?? ["nm/s", 1e-9];
-  return `${Number((value / size).toPrecision(2))} ${unit}`;
+  return `${Number((value / size).toPrecision(3))} ${unit}`;
 }

@@ -1,5 +1,6 @@
 // The spectrogram of what is heard, with its axes and the scale of its colours.
 import { inWords, Layer, paintAxes, ticks, told } from "./axes.js";
+import { joined } from "./samples.js";
 import { hann, spectrum, strongestTone } from "./spectrum.js";
 
 const RATE = 48000;
@@ -15,10 +16,16 @@ const BAR = 10; // Width of the scale of colours [px].
 
 export class Spectrogram {
   constructor() {
-    this.columns = [];
-    this.loudest = 1e-9;
     this.window = hann(SIZE);
     this.axes = new Layer();
+    this.clear();
+  }
+
+  // Begin anew: something else is heard.
+  clear() {
+    this.columns = [];
+    this.image = null;
+    this.loudest = 1e-9;
     this.forget();
   }
 
@@ -35,11 +42,13 @@ export class Spectrogram {
 
   // Keep the spectra of what is heard.
   hear(sound) {
-    this.heard = joined(this.heard, sound).slice(-HEARD);
-    const all = joined(this.sound, sound);
+    this.heard = joined([this.heard, sound]).slice(-HEARD);
+    const all = joined([this.sound, sound]);
     let start = 0;
     for (; start + SIZE <= all.length; start += HOP) this.columns.push({ power: spectrum(all.subarray(start, start + SIZE), this.window) });
     this.sound = all.slice(start);
+    // A page that nobody sees draws none of them.
+    if (this.columns.length > 2 * KEPT) this.columns = this.columns.slice(-KEPT);
   }
 
   // Frequency of the strongest tone of what was heard last [Hz], null where there is none or too little was heard.
@@ -123,11 +132,4 @@ export function heat(share, dark) {
   const at = Math.min(stops.length - 2, Math.floor(t * (stops.length - 1)));
   const part = t * (stops.length - 1) - at;
   return stops[at].map((one, i) => one + part * (stops[at + 1][i] - one));
-}
-
-function joined(one, other) {
-  const found = new Float32Array(one.length + other.length);
-  found.set(one);
-  found.set(other, one.length);
-  return found;
 }

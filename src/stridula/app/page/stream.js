@@ -20,8 +20,8 @@ let behind = false;
 let pace = { mode: "live", slow: 1, own: false };
 let asked = 0; // Samples asked for that have not come.
 let left = 0; // Samples the player has.
-let scale = 1; // What full scale is for the player, now
-let next = null; // and for what is asked for from now on.
+let heard = { scale: 1 }; // What is listened to, and what it is multiplied by for the player, now
+let next = null; // and what is asked for from now on.
 let clock = 0; // When time without a player was last counted [ms].
 let owed = 0; // Samples owed to slow motion.
 let file = null;
@@ -58,9 +58,9 @@ self.onmessage = ({ data }) => {
   } else if (data.say) {
     if (data.say.type === "scene") scene(data.say);
     else say(data.say);
-  } else if (data.fullScale) {
-    next = 1 / data.fullScale;
-    rescale();
+  } else if (data.heard) {
+    next = data.heard;
+    takeNext();
   }
 };
 
@@ -100,7 +100,8 @@ function told(message) {
     file = message;
     return;
   }
-  if (message.type === "scene" || message.type === "refused") {
+  // A message that is refused as a whole may be the scene that is waited for.
+  if (["scene", "refused", "problem"].includes(message.type)) {
     hasScene = hasScene || message.type === "scene";
     answered = true;
     if (waiting) {
@@ -124,20 +125,20 @@ function came(data) {
   for (const { head, values } of parts(data)) {
     const [revision, , , samples] = head;
     if (!player || pace.mode !== "live") break;
-    const sound = values.slice(0, samples).map((value) => scale * value);
+    const sound = values.slice(0, samples).map((value) => heard.scale * value);
     player.postMessage({ sound, revision }, [sound.buffer]);
     left += samples;
   }
-  const was = scale;
-  rescale();
-  postMessage({ parts: data, scale: was }, [data]);
+  const was = heard;
+  takeNext();
+  postMessage({ parts: data, heard: was }, [data]);
   feed();
 }
 
 // What was asked for before something else was listened to comes as it was.
-function rescale() {
+function takeNext() {
   if (asked || next === null) return;
-  scale = next;
+  heard = next;
   next = null;
 }
 
