@@ -120,7 +120,13 @@ class Oscillators(Protocol):
 
 @dataclass(frozen=True)
 class Modes:
-    """Modes by their angular frequencies [rad/s] and damping rates [1/s], shape (modes,) each."""
+    """Modes as far as forces move them.
+
+    Attributes
+    ----------
+    angular_frequency, damping_rate : ndarray, shape (modes,)
+        Angular frequencies w [rad/s] and ``2 zeta w`` [1/s].
+    """
 
     angular_frequency: Array
     damping_rate: Array
