@@ -5,14 +5,14 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from .arrays import Array
+from .arrays import Array, in_space
 from .checks import ArgumentError, at_least, at_most, choice, count, finite, instance, one_or_each
 
 _UNIT = re.compile(r"\s*\[([^\]]*)\]")
@@ -146,10 +146,11 @@ class Way:
             raise ArgumentError(name, allowed, value)
         return found
 
-    def along(self, value: str | Sequence[float], **own: Array) -> Array:
-        """Return a direction as a unit vector, shape (3,); `own` are those of the words beyond the world's axes."""
+    def along(self, value: str | Sequence[float], axes: Iterable[Array] = ()) -> Array:
+        """Return a direction as a unit vector, shape (3,); ``axial`` and ``transverse`` mean the `axes` of a body."""
         if isinstance(value, str):
-            return np.asarray(own[value] if value in own else np.eye(3)["xyz".index(value)])
+            own = dict(zip(("axial", "transverse"), axes, strict=False))
+            return in_space(own[value]) if value in own else np.eye(3)["xyz".index(value)]
         return np.asarray(np.array(value) / np.linalg.norm(value))
 
 

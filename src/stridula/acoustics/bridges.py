@@ -9,11 +9,12 @@ from typing import Annotated, Any
 import numpy as np
 import xarray as xr
 
-from ..arrays import Array
+from ..arrays import Array, in_space
 from ..bodies import BodyPoint
 from ..checks import ArgumentError, instance, listed
-from ..declared import Way, check_declared
+from ..declared import check_declared
 from ..records.checked import record
+from ..records.probes import DIRECTION
 from .air import Air
 from .driven import FASTEST, LEAD, Modes, respond
 from .free_bodies import bodies_sound, check_in_open_air, ends_of
@@ -50,7 +51,7 @@ class Bridge:
     """
 
     point: BodyPoint
-    direction: Annotated[str | Sequence[float], Way(("x", "y", "z", "axial", "transverse"))] = "y"
+    direction: Annotated[str | Sequence[float], DIRECTION] = "y"
     probe: str | None = None
 
     def __post_init__(self) -> None:
@@ -62,8 +63,7 @@ class Bridge:
     @property
     def along(self) -> Array:
         """World components of the direction, a unit vector, shape (3,)."""
-        first, second = (np.pad(axis, (0, 3))[:3] for axis in self.point.body.axes[:2])
-        return Way().along(self.direction, axial=first, transverse=second)
+        return DIRECTION.along(self.direction, self.point.body.axes)
 
 
 def bridged_sound(
@@ -87,6 +87,7 @@ def bridged_sound(
                 baffled is not False,
                 air,
                 sample_rate,
+                ("silence", "nothing pushes"),
             )
         except ArgumentError as error:
             raise error.renamed("point" if error.argument == "track" else error.argument) from None
@@ -132,7 +133,7 @@ def _force(run: xr.Dataset, probe: str | None) -> tuple[float, float, Array]:
 def _pressed(bridge: Bridge, panel: Panel, start: float, interval: float, force: Array) -> tuple[Pressing, Panel]:
     """Return the force on a track as one that presses against its normal, and the track pressed there."""
     body = bridge.point.body
-    across = float(np.pad(np.asarray(body.axes[1], dtype=float), (0, 3))[:3] @ bridge.along)
+    across = float(in_space(body.axes[1]) @ bridge.along)
     if abs(across) < ACROSS:
         raise ArgumentError("direction", "have a part along the normal of the body", bridge.direction)
     position = bridge.point.position
@@ -140,7 +141,7 @@ def _pressed(bridge: Bridge, panel: Panel, start: float, interval: float, force:
     at = replace(panel, place=lambda abscissa: (np.full_like(abscissa, x), np.full_like(abscissa, y)))
     # Samples stand at the ends of intervals; each is what one impulse in an interval is.
     still = np.zeros((1, force.size))
-    return Pressing(start, interval, 1, -across * force[None], still, interval, "nothing pushes"), at
+    return Pressing(start, interval, 1, -across * force[None], still, interval), at
 
 
 def _moved(bridge: Bridge, name: str, start: float, interval: float, force: Array) -> Moved:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..arrays import Array
+from ..arrays import Array, in_space
 from ..bodies.body_surfaces import BodySurface
 from ..checks import ArgumentError, at_least, instance, listed
 from ..system import System
@@ -56,7 +56,7 @@ def free_sound(
         If a body has no surface, a listener is in a body, or the record is not usable.
     """
     heard, silent = chosen(system, bodies, bodies_heard(system))
-    normal, tangent = (np.resize(one, 3) * (np.arange(3) < len(one)) for one in system.contacts[0].frame[:2])
+    normal, tangent = map(in_space, system.contacts[0].frame[:2])
     named = {system.body_name(body): body for body in heard}
     pressure, time, places, attributes, moved = bodies_sound(
         lambda: redriven(run, system), named, (normal, tangent), listener, air, sample_rate
@@ -167,11 +167,12 @@ def distances_to(surface: BodySurface, places: Array) -> Array:
     for place in places:
         away = points.points - place
         distance = np.linalg.norm(away, axis=1)
-        angle = float((points.areas * (points.normals * away).sum(axis=1) / distance**3).sum())
         if surface.form == "points":
             # As the patches are, for a body may be thinner than they are long.
             corners = points.corners.reshape(-1, 4, 3)
             angle = float(patch_integrals(np.repeat(place[None], len(corners), axis=0), corners)[1].sum())
+        else:
+            angle = float((points.areas * (points.normals * away).sum(axis=1) / distance**3).sum())
         if angle > 2.0 * np.pi or distance.min() < NEAREST * size:
             words = f"be outside of the bodies, {at_least(NEAREST * size, 3)} m from them"
             raise ArgumentError("listener", words, got=f"{tuple(place.tolist())}")

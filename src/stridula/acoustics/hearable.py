@@ -15,7 +15,7 @@ def hearable(system: System) -> list[Any]:
 
     In space those with a surface, in the plane tracks that are flat, and slim beams.
     """
-    return bodies_heard(system) if system.is_spatial else [*plane_bodies(system)]
+    return bodies_heard(system) if system.is_spatial else plane_bodies(system)
 
 
 def check_hearable(system: System, surface_rate: float | str | None = None) -> None:

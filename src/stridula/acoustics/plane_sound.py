@@ -176,17 +176,15 @@ def _of_track(
     air: Air,
     sample_rate: float | None,
 ) -> Part:
+    name, starts = system.body_name(track), system.initial_equilibrium is not None
     on_it = [number for number, contact in enumerate(system.contacts) if contact.path_body == track]
     pressing = run.isel(contact=on_it) if "contact" in run.dims else run
-    if system.initial_equilibrium is not None:
+    if starts:
         # It has stood so for long.
         pressing = pressing.assign(normal_force=pressing["normal_force"] - pressing["normal_force"].isel(time=0))
     places = _axes(track).listeners(seen - [outline.place[0], 0.0, outline.place[1]])
-    pressure, time, _, attributes = track_sound(pressing, track, places, baffled, air, sample_rate)
-    name = system.body_name(track)
-    attributes["notes"] = attributes["notes"].replace("silence: ", f"{name} is silent: ")
-    if system.initial_equilibrium is not None:
-        attributes["notes"] = attributes["notes"].replace("the contact never presses", "its forces never change")
+    silence = (f"{name} is silent", "its forces never change" if starts else "the contact never presses")
+    pressure, time, _, attributes = track_sound(pressing, track, places, baffled, air, sample_rate, silence)
     if any(contact.touched_point and contact.touched_point.body == track for contact in system.contacts):
         attributes["notes"] += f"; what touches {name} at one point does not drive it here"
     return pressure, time, attributes

@@ -33,8 +33,6 @@ class Pressing:
         Abscissas in the middle of the intervals [m].
     later : float
         How much later than in the middle of the impulses of their intervals forces act [s].
-    nothing : str
-        What is said where there is no force.
     """
 
     start: float
@@ -43,7 +41,6 @@ class Pressing:
     force: Array
     position: Array
     later: float = 0.0
-    nothing: str = "the contact never presses"
 
     @property
     def samples(self) -> int:

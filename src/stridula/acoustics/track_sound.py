@@ -37,8 +37,11 @@ def track_sound(
     baffled: bool,
     air: Air | None,
     sample_rate: float | None,
+    silence: tuple[str, str] = ("silence", "the contact never presses"),
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
     """Return pressures (listeners, samples), their times, the listeners and attributes; arguments are as in `radiate`.
+
+    `silence` are the words for one, and why there is one without a force.
 
     Raises
     ------
@@ -51,7 +54,7 @@ def track_sound(
         check_one_track(run)
         return found, panel
 
-    return panel_sound(pressed, track, listener, baffled, air, sample_rate)
+    return panel_sound(pressed, track, listener, baffled, air, sample_rate, silence)
 
 
 def panel_sound(
@@ -61,6 +64,7 @@ def panel_sound(
     baffled: bool,
     air: Air | None,
     sample_rate: float | None,
+    silence: tuple[str, str],
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
     """Return the sound of a track under forces: `press` takes its panel and returns them with the panel they press on.
 
@@ -89,7 +93,7 @@ def panel_sound(
     # Beyond the reach of the low-pass, what comes before the first force can be heard is rounding.
     early = np.maximum(arrival - REACH * pressed.interval / float(ratio), distances / air.speed)
     pressure[time < early[:, None]] = 0.0
-    notes = _notes(pressed, len(kept), len(panel.wavenumbers), time[-1], arrival)
+    notes = _notes(pressed, len(kept), len(panel.wavenumbers), time[-1], arrival, silence)
     if bandwidth < AUDIBLE:
         notes.append(f"whole up to {bandwidth:.4g} Hz only, for the record's sample rate")
     if not baffled:
@@ -138,13 +142,15 @@ def _first_press(pressed: Pressing) -> float:
     return float(presses[0]) * pressed.interval if presses.size else 0.0
 
 
-def _notes(pressed: Pressing, kept: int, modes: int, duration: float, arrival: Array) -> list[str]:
+def _notes(
+    pressed: Pressing, kept: int, modes: int, duration: float, arrival: Array, silence: tuple[str, str]
+) -> list[str]:
     """Return what is to be said of a sound, in words."""
     notes = []
     if not pressed.force.any():
-        notes.append(f"silence: {pressed.nothing}")
+        notes.append(": ".join(silence))
     elif (arrival > duration).any():
-        notes.append("silence: the sound does not arrive within the record")
+        notes.append(f"{silence[0]}: the sound does not arrive within the record")
     if kept < modes:
         notes.append(f"{modes - kept} modes above what the record's sample rate carries are left out")
     if pressed.start > 0.5 * pressed.interval:

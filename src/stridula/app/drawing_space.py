@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, in_space
 from ..bodies import BodyPoint
 from ..bodies.drawn_surfaces import Drawn, drawn_table, is_drawn
 from ..integration.live import LiveChunk, LiveMarch
@@ -20,9 +20,6 @@ from ..system import System
 from .now import said
 from .parts import Shapes, contacts_now
 from .thinned import MOST_NUMBERS, thinned
-
-# Radius of the ball that stands for a rigid body without points round it, as a share of the extent of the others.
-BALL = 0.03
 
 
 @dataclass(frozen=True)
@@ -91,7 +88,7 @@ class Surfaces:
     @cached_property
     def described(self) -> dict[str, Any]:
         """Surfaces with the shapes of their modes, contacts, which way is up, and a name of all that."""
-        normal = np.append(self.system.contacts[0].frame[0], np.zeros(3))[:3]
+        normal = in_space(self.system.contacts[0].frame[0])
         axis = int(np.argmax(np.abs(normal)))
         up = (np.sign(normal[axis]) * np.eye(3)[axis]).tolist()
         told = {"surfaces": [body.described for body in self.bodies], "touches": self.touches, "up": up}
@@ -110,8 +107,7 @@ def _drawn(system: System) -> dict[Any, Drawn]:
     surfaces = {body: _thinned(body) for body in system.bodies if is_drawn(body)}
     if not surfaces:
         return {}
-    places = np.concatenate([drawn.at_rest.place for drawn in surfaces.values()])
-    return surfaces | rigid_surfaces(system, BALL * float(np.ptp(places, axis=0).max()))
+    return surfaces | rigid_surfaces(system, [drawn.at_rest for drawn in surfaces.values()])
 
 
 @lru_cache(maxsize=16)
@@ -135,7 +131,7 @@ def _small(body: _Body) -> _Body:
     drawn, modes = body.drawn, body.numbers
     kept = MOST_NUMBERS // drawn.shapes[..., 0].size
     if modes <= kept:
-        return replace(body, drawn=drawn)
+        return body
     # Combinations of modes by how much they move what is drawn; others cannot be seen.
     moved = drawn.shapes.reshape(-1, modes)
     _, combined = np.linalg.eigh(moved.T @ moved)

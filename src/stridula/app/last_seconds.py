@@ -78,8 +78,8 @@ class LastSeconds:
 
     def goes_on_as(self, played: Playable) -> None:
         """Let something else be played; of a system with other contacts or probes nothing before it is kept."""
-        spatial = (played.system.has_two_tangents, self.played.system.has_two_tangents)
-        if _labels(played) != _labels(self.played) or spatial[0] != spatial[1]:
+        before, after = self.played, played
+        if (_labels(before), before.system.has_two_tangents) != (_labels(after), after.system.has_two_tangents):
             self._parts.clear()
             self._samples = 0
         self.played = played

@@ -20,7 +20,7 @@ from .caller import Caller, is_news
 from .instrument import RATE, Instrument
 from .messages import LARGEST
 from .parts import Part, packed
-from .playable import IN_SPACE, PRESETS, SYSTEMS, playable
+from .playable import PRESETS, SYSTEMS, playable
 from .server import create_app
 
 # How long pages are waited for when the server stops [s].
@@ -111,8 +111,8 @@ def _get_ready() -> None:
             _ = [packed(part) for part in instrument.play(RATE // 100) if isinstance(part, Part)]
             instrument.change(playable(case, None, {key: 0.5}), number)
         list(instrument.play(RATE // 100))
-    # Several contacts, modes that are coupled, a rigid track; two tangents, a body that turns.
-    for case in (*SYSTEMS, IN_SPACE[0]):
+    # Several contacts, modes that are coupled, a rigid track.
+    for case in SYSTEMS:
         list(Instrument(playable(case, None, {})).play(RATE // 100))
     notice.cancel()
 

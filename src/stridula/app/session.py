@@ -184,17 +184,16 @@ class Session:
                 await asyncio.sleep(MOMENT)
                 async with self._changing:
                     instrument = self.instrument
-                if instrument is None or self._made < ENOUGH:
-                    continue
-                if not instrument.played.is_fast:
-                    now_played = self._made / RATE / self._taken
-                    known = now_played if self.speed is None else self.speed
-                    self.speed = KNOWN * known + (1.0 - KNOWN) * now_played
-                    await self._tell("speed", speed=self.speed)
-                self._taken, self._made = 0.0, 0
-                if instrument.played_samples - before < MOMENT * RATE / 4:
-                    continue
-                async with self._changing:
+                    if instrument is None or self._made < ENOUGH:
+                        continue
+                    if not instrument.played.is_fast:
+                        now_played = self._made / RATE / self._taken
+                        known = now_played if self.speed is None else self.speed
+                        self.speed = KNOWN * known + (1.0 - KNOWN) * now_played
+                        await self._tell("speed", speed=self.speed)
+                    self._taken, self._made = 0.0, 0
+                    if instrument.played_samples - before < MOMENT * RATE / 4:
+                        continue
                     before, revision = instrument.played_samples, instrument.revision
                     variables, pressure = instrument.last_seconds.moment(MOMENT)
                     system = instrument.played.system

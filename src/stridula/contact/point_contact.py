@@ -10,7 +10,7 @@ from typing import Annotated
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, in_space
 from ..bodies import BodyPoint, CircularPath, ModalBeam, ModalPlate, Track, is_track
 from ..bodies.turning import Turning
 from ..checks import ArgumentError, brief, instance, within
@@ -257,7 +257,7 @@ class PointContact:
     @property
     def _normal_in_space(self) -> Array:
         if self.path_body is not None:
-            return np.pad(self.path_body.axes[1], (0, 3))[:3]
+            return in_space(self.path_body.axes[1])
         normal = np.append(self._plane_frame[0], 0.0) if self.normal is None else np.array(self.normal, dtype=float)
         return np.asarray(normal / np.linalg.norm(normal))
 
@@ -272,7 +272,7 @@ class PointContact:
         if self.circle is not None:
             along = self.circle.direction(self.at)
         if self.path_body is not None:
-            along = np.pad(self.path_body.axes[0], (0, 3))[:3]
+            along = in_space(self.path_body.axes[0])
         tangent = along - (along @ normal) * normal
         size = np.linalg.norm(tangent)
         tangent = tangent / size if size > ALONG_AN_AXIS * np.linalg.norm(along) else normal

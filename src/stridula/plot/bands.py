@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..acoustics.levels import LOWEST_RATE, NOMINAL, SHORTEST, equivalent_level, third_octave_levels
+from ..acoustics.levels import BANDS, LOWEST_RATE, NOMINAL, SHORTEST, equivalent_level, third_octave_levels
 from ..acoustics.pressures import channels, positions
 from ..arrays import Array
 from ..checks import ArgumentError, positive
@@ -76,9 +76,11 @@ def third_octaves(pressure: xr.DataArray, *, dynamic_range: float = RANGE, title
 
 def _ends(lasts: float, rate: float) -> tuple[float, float]:
     """Return the nominal centres of the lowest and of the highest band for a sound."""
-    exact = 10.0 ** (np.arange(14, 43) / 10.0)
+    # Up to 16 kHz.
+    numbers = BANDS[:-1]
+    exact = 10.0 ** (numbers / 10.0)
     fits = (exact * (EDGE - 1.0 / EDGE) * lasts >= 1.0) & (2.0 * exact * EDGE <= rate)
-    known = NOMINAL[np.arange(14, 43) - 10][fits]
+    known = NOMINAL[numbers - 10][fits]
     if not known.size:
         raise ArgumentError("pressure", "be long enough for a band", got=f"{lasts:.3g} s at {rate:.4g} Hz")
     return float(known[0]), float(known[-1])

@@ -18,8 +18,6 @@ from .rigid_surfaces import rigid_surfaces
 
 # Cosine between an outward normal and the direction of the eye below which a side is not seen, perspective included.
 AWAY = -0.3
-# Radius of the ball of a rigid body without points round it, as a share of the extent of the others.
-BALL = 0.03
 
 
 @dataclass(frozen=True)
@@ -149,8 +147,7 @@ def surfaces_of(system: System, eye: Array, moving: bool = True) -> list[ShownBo
     """
     shown: dict[Any, Any] = {body: body for body in system.bodies if is_drawn(body)}
     surfaces = {body: (one.drawn if moving else one.drawn_at_rest).swept for body, one in shown.items()}
-    places = np.concatenate([surface.place for surface in surfaces.values()])
-    surfaces |= rigid_surfaces(system, BALL * float(np.ptp(places, axis=0).max()))
+    surfaces |= rigid_surfaces(system, surfaces.values())
     return [
         ShownBody(system.body_name(body), surface, surface.normals @ eye > AWAY) for body, surface in surfaces.items()
     ]

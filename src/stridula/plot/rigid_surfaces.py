@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -14,13 +14,15 @@ from ..bodies.drawn_surfaces import DrawnSurface
 from ..connections import ends
 from ..system import System
 
+# Radius of the ball of a rigid body without points round it, as a share of the extent of the others.
+BALL = 0.03
 # Points of a ball.
 POINTS = 80
 # Its angle from one to the next about the axis, the golden one [rad].
 GOLDEN = np.pi * (3.0 - np.sqrt(5.0))
 
 
-def rigid_surfaces(system: System, radius: float) -> dict[Any, DrawnSurface]:
+def rigid_surfaces(system: System, others: Iterable[DrawnSurface]) -> dict[Any, DrawnSurface]:
     """Return the surfaces of the rigid bodies that touch, or are joined to, a point whose place is known.
 
     Those of other rigid bodies with a place, too, one after the other.
@@ -29,9 +31,10 @@ def rigid_surfaces(system: System, radius: float) -> dict[Any, DrawnSurface]:
     ----------
     system : System
         A system in space.
-    radius : float
-        Radius of the balls [m].
+    others : iterable of DrawnSurface
+        Surfaces of the other bodies, beside which balls are small.
     """
+    radius = BALL * float(np.ptp(np.concatenate([surface.place for surface in others]), axis=0).max())
     found: dict[Any, DrawnSurface] = {}
     centres: dict[Any, Array] = {}
 

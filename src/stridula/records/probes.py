@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-import numpy as np
-
 from ..arrays import Array
 from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam
 from ..bodies.modes import Body
@@ -41,8 +39,7 @@ class _Motion:
     @property
     def along(self) -> Array:
         """World components of its direction, a unit vector, shape (3,)."""
-        first, second = (np.pad(axis, (0, 3))[:3] for axis in self.body.axes[:2])
-        return DIRECTION.along(self.direction, axial=first, transverse=second)
+        return DIRECTION.along(self.direction, self.body.axes)
 
     @property
     def place(self) -> str:

@@ -143,11 +143,13 @@ class Runs:
     def is_heard(self) -> bool:
         """Whether anything of a system in the plane can be heard."""
         system = self.scenario.system
+        if system.is_spatial:
+            return False
         try:
             check_hearable(system)
         except ArgumentError:
             return False
-        return not system.is_spatial
+        return True
 
     def window(self, run: xr.Dataset, number: int) -> float:
         """Return the length of the windows in which a run is looked at [s]."""
