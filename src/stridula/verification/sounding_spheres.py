@@ -109,7 +109,7 @@ def ball() -> Outcome:
         Curve(np.array(NUMBERS), largest[:, column], where, marks=True)
         for column, where in enumerate(("on the surface", "away from it"))
     ]
-    return Outcome(rows, Sketch("ka", "largest error of the breathing mode's sound [dB]", curves))
+    return Outcome(rows, Sketch("ka", "error of the breathing mode [dB]", curves))
 
 
 def elastic_ball(parts: int = 4, layers: int = 3) -> SolidBody:
