@@ -141,7 +141,9 @@ def test_more_friction_changes_the_ribbon_within_a_second_of_time_played(browsin
     plays_on(page, RATE)
     after = page.evaluate("stridula.shares()")
     assert sum(after) == pytest.approx(1.0)
-    assert after[2] < before[2] - 0.3
+    # It squeals after some 0.4 s, the time its vibration takes to grow; before, it slid.
+    assert before[1] == 0.0
+    assert after[1] > 0.1
     assert shown(page, FRICTION) == 1.5
     until(page, "document.getElementById('shares').textContent.includes('sticking')")
 
