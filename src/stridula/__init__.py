@@ -106,7 +106,22 @@ _HOME = {
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
 # Modules that are public as they stand.
-_PUBLIC = ("analysis", "papers", "plot", "scenarios", "studies", "verification")
+_PUBLIC = (
+    "acoustics",
+    "analysis",
+    "bodies",
+    "connections",
+    "contact",
+    "drives",
+    "histories",
+    "integration",
+    "papers",
+    "plot",
+    "records",
+    "scenarios",
+    "studies",
+    "verification",
+)
 __all__ = ["__version__", *_MODULE]
 
 
