@@ -83,6 +83,7 @@ _HOME = {
     "acoustics.sensation": ("loudness", "loudness_over_time", "roughness", "sharpness"),
     "acoustics.listening": ("PlayableSound", "listen"),
     "acoustics.wav": ("SoundFile", "read_wav", "write_wav"),
+    "analysis.mobilities": ("mobility",),
     "analysis.stability": ("sliding_stability",),
     "analysis": ("regime",),
     "analysis.record_card": ("RecordCard", "card"),

@@ -16,6 +16,7 @@ _HOME = {
     "bodies": "space_films",
     "directivity": "directivities",
     "friction": "laws",
+    "mobility": "mobilities",
     "overview": "timelines",
     "regime_map": "maps",
     "root_loci": "loci",
