@@ -18,6 +18,7 @@ import scipy.io
 
 import stridula as st
 from stridula.analysis.record_card import facts_of as card
+from stridula.cli.running import how_to_get_the_level
 from stridula.cli import bars, running
 from stridula.cli.doubts import doubts
 from stridula.plot.colours import REGIME_COLOURS
@@ -128,7 +129,7 @@ def test_run_writes_record_and_figure_and_says_what_came_of_it(stridula, tmp_pat
         "run.nc",
         "run.png",
     )
-    for word in (*words, "regime", "(confidence 0.50)"):
+    for word in (*words, "squeals", "(confidence 0.50)", "`stridula sound run.nc` prints it at 1 m"):
         assert word in out
     assert st.load_scenario("run.nc").system.contact.friction == st.Coulomb(0.4)
     assert (tmp_path / "run.png").read_bytes().startswith(b"\x89PNG")
@@ -248,7 +249,8 @@ def test_the_card_of_the_violin_says_its_motion(stridula):
     code, out, _ = stridula("run", "violin")
     assert code == 0
     lines = " ".join(out.replace("│", " ").split())
-    assert "regime stick-slip at 195" in lines
+    assert "squeals no, stick-slip (confidence" in lines
+    assert "pitch 195" in lines
     assert "bowed string Helmholtz at 195" in lines
     assert "slips in a period of 196 Hz" in lines
 
@@ -464,28 +466,39 @@ def test_the_card_begins_with_what_is_heard():
     """The swing of the normal force at 23 Hz, which is not the squeal, comes later."""
     record = st.load_scenario("squeal").simulate()
     rows = card(record)
-    assert list(rows)[:3] == ["regime", "normal force", "dominant frequency"]
+    assert list(rows)[:5] == ["squeals", "pitch", "sound level", "normal force", "dominant frequency"]
     found = st.regime(record)
-    assert rows["regime"] == f"squeal at {float(found.frequency):.4g} Hz (confidence {float(found.confidence):.2f})"
+    assert rows["squeals"] == f"yes (confidence {float(found.confidence):.2f})"
+    assert rows["pitch"] == f"{float(found.frequency):.4g} Hz"
     assert rows["normal force"].startswith(f"mean {float(record.normal_force.mean()):.4g} N, fluctuation ")
     assert (rows["simulated"], "ended" in rows) == ("1 s", False)
 
 
 @pytest.mark.parametrize(
-    ("regime", "frequency", "words"),
+    ("regime", "frequency", "answer", "pitch"),
     [
-        ("squeal", 896.04, "squeal at 896 Hz"),
-        ("squeal", 1e5, "squeal at 100000 Hz or more"),
-        ("stick-slip", 0.2733, "stick-slip at 0.2733 Hz"),
-        ("judder", 329.68, "judder, loudest at 329.7 Hz"),
-        ("stable sliding", np.nan, "stable sliding"),
+        ("squeal", 896.04, "yes", "896 Hz"),
+        ("squeal", 1e5, "yes", "100000 Hz or more"),
+        ("stick-slip", 0.2733, "no, stick-slip", "0.2733 Hz"),
+        ("judder", 329.68, "no, judder", "loudest at 329.7 Hz"),
+        ("stable sliding", np.nan, "no, stable sliding", None),
     ],
 )
-def test_the_card_says_at_which_frequency(monkeypatch, regime, frequency, words):
+def test_the_card_says_at_which_frequency(monkeypatch, regime, frequency, answer, pitch):
     record = st.load_scenario("squeal", {"duration": "2 ms"}).simulate()
     found = {"regime": regime, "frequency": frequency, "confidence": 1.0}
     monkeypatch.setattr("stridula.analysis.record_card.regime_of", lambda run: found)
-    assert card(record)["regime"] == f"{words} (confidence 1.00)"
+    rows = card(record)
+    assert (rows["squeals"], rows.get("pitch")) == (f"{answer} (confidence 1.00)", pitch)
+
+
+def test_the_card_says_how_to_get_the_level():
+    squeal = st.load_scenario("squeal", {"duration": "2 ms"})
+    record, belt = squeal.simulate(), st.load_scenario("belt")
+    assert how_to_get_the_level(record, squeal, "a.nc") == "not computed: `stridula sound a.nc` prints it at 1 m"
+    assert how_to_get_the_level(record, squeal, None) == "not computed: --wav FILE.wav computes it at 1 m"
+    assert how_to_get_the_level(record, belt, None) == "none: no body of the system can be heard"
+    assert how_to_get_the_level(record.assign_attrs(ended="energy created"), squeal, None) == ""
 
 
 def test_the_card_names_an_early_end_first_and_a_later_start():
