@@ -9,7 +9,7 @@ import pytest
 import soundfile
 
 import stridula as st
-from stridula.cli import bars
+from stridula.integration import rich_bars
 from stridula.scenarios.load import Scenario
 
 
@@ -301,7 +301,7 @@ def test_an_interrupted_run_says_that_no_sound_was_written(stridula, monkeypatch
     def interrupt(*arguments, **fields):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(bars.Progress, "update", interrupt)
+    monkeypatch.setattr(rich_bars.Progress, "update", interrupt)
     code, _, err = stridula("run", "squeal", "--duration", "0.25", "--wav", "part.wav")
     assert (code, err.endswith("; no sound was written\n")) == (130, True)
     assert not list(tmp_path.iterdir())

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +10,9 @@ import xarray as xr
 from ..checks import ArgumentError, at_least
 from ..disk import check_writable
 from ..integration import Diverged, Interrupted
-from ..integration.watchers import Progress, Watcher
+from ..integration.bars import bar, told_of_time
 from ..records.files import save
 from ..scenarios.load import Scenario, load_scenario
-from .bars import bar
 from .card import print_card
 from .doubts import doubts
 from .exits import FAILED, INTERRUPTED, Stopped
@@ -50,8 +47,8 @@ def run_scenario(
     if wav is not None:
         _check_wav(wav, name, out, plot, scenario)
     try:
-        with _progress(scenario.title or name) as watcher:
-            record = scenario.simulate(watchers=[watcher])
+        with bar(scenario.title or name) as show:
+            record = scenario.simulate(watchers=[told_of_time(show)])
     except (Interrupted, Diverged) as stop:
         interrupted = isinstance(stop, Interrupted)
         kept = _finish(stop.record, scenario, name, out, None if interrupted else plot)
@@ -133,16 +130,3 @@ def _draw(record: xr.Dataset, path: str) -> None:
     from ..plot import save as save_figure
 
     save_figure(overview(record), path)
-
-
-@contextmanager
-def _progress(title: str) -> Iterator[Watcher]:
-    """Show the simulated time and the speed against real time."""
-    with bar(title) as show:
-
-        def watch(report: Progress) -> None:
-            speed = report.time / max(report.wall_time, 1e-9)
-            words = f"{report.time:.3f} of {report.duration:.3f} s, {speed:.2f} x real time"
-            show(report.time, report.duration, words)
-
-        yield watch
