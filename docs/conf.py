@@ -99,6 +99,7 @@ FIGURES = (
     "third_octaves",
     "directivity",
     "surface",
+    "system",
     "bodies",
     "animate",
     "animate_surface",

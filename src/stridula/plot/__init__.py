@@ -25,6 +25,7 @@ _HOME = {
     "spectrum": "spectra",
     "squeal_map": "squeals",
     "surface": "surfaces",
+    "system": "systems",
     "third_octaves": "bands",
     "timeline": "timelines",
     "view": "views",
