@@ -91,6 +91,7 @@ FIGURES = (
     "timeline",
     "friction",
     "mobility",
+    "mode_shapes",
     "root_loci",
     "regime_map",
     "squeal_map",

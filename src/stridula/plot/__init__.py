@@ -17,6 +17,7 @@ _HOME = {
     "directivity": "directivities",
     "friction": "laws",
     "mobility": "mobilities",
+    "mode_shapes": "shapes_of_modes",
     "overview": "timelines",
     "regime_map": "maps",
     "root_loci": "loci",
