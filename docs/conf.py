@@ -97,6 +97,7 @@ FIGURES = (
     "squeal_map",
     "spectrogram",
     "spectrum",
+    "waterfall",
     "third_octaves",
     "directivity",
     "surface",

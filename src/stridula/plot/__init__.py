@@ -31,6 +31,7 @@ _HOME = {
     "timeline": "timelines",
     "view": "views",
     "view_mode": "views",
+    "waterfall": "waterfalls",
 }
 __all__ = list(_HOME)
 
