@@ -10,11 +10,11 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from ..assembly import assemble
 from ..bodies import BodyPoint
 from ..bodies.modes import Modes
 from ..checks import ArgumentError, instance
 from ..linear.structure import Structure
+from ..lowering import assemble
 from ..records.probes import Displacement
 from ..records.variables import described
 from ..system import System
