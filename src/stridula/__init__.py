@@ -83,6 +83,7 @@ _HOME = {
     "acoustics.sensation": ("loudness", "loudness_over_time", "roughness", "sharpness"),
     "acoustics.listening": ("PlayableSound", "listen"),
     "acoustics.wav": ("SoundFile", "read_wav", "write_wav"),
+    "analysis.mobilities": ("mobility",),
     "analysis.stability": ("sliding_stability",),
     "analysis": ("regime",),
     "analysis.record_card": ("RecordCard", "card"),
@@ -106,7 +107,22 @@ _HOME = {
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
 # Modules that are public as they stand.
-_PUBLIC = ("analysis", "papers", "plot", "scenarios", "studies", "verification")
+_PUBLIC = (
+    "acoustics",
+    "analysis",
+    "bodies",
+    "connections",
+    "contact",
+    "drives",
+    "histories",
+    "integration",
+    "papers",
+    "plot",
+    "records",
+    "scenarios",
+    "studies",
+    "verification",
+)
 __all__ = ["__version__", *_MODULE]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -118,6 +118,20 @@ def outlines_of(system: Any) -> tuple[list[Outline], Array]:
         outlines.append(Outline(thing if is_line else thing.body, origin, ends))
     tips = [origins[_thing(contact.tip)] + _offset(contact.tip) for contact in system.contacts]
     return outlines, np.array(tips)
+
+
+def places_in(system: Any) -> Callable[[BodyPoint], Array | None]:
+    """Return what says where a point of a system in the plane is at rest [m], shape (2,), as `lines_of` has it.
+
+    None of a point that touches nothing, is joined to nothing and lies on no line.
+    """
+    origins = _origins(list(_joints(system)))
+
+    def place(point: BodyPoint) -> Array | None:
+        origin = origins.get(_thing(point))
+        return None if origin is None else np.asarray(origin + _offset(point))
+
+    return place
 
 
 def lines_of(system: Any) -> tuple[list[Line], list[Touch]]:

@@ -34,7 +34,10 @@ ENDINGS = {
     "interrupted": "interrupted",
 }
 # Regimes that are cycles of one frequency.
-CYCLES = ("squeal", "stick-slip")
+SQUEAL = "squeal"
+CYCLES = (SQUEAL, "stick-slip")
+# How the level of the sound is found, which takes longer than a card may.
+ASK_FOR_LEVEL = 'not computed: st.equivalent_level(st.radiate(run, system), "A") is LAeq at 1 m'
 # Relative changes of a force below are rounding, not vibration.
 STEADY = 1e-9
 
@@ -52,7 +55,7 @@ class RecordCard:
     title : str
         The title of the run, if it has one.
     facts : mapping
-        What is known, in words, by name: the regime and its tone first.
+        What is known, in words, by name: first whether it squeals, its pitch and its level.
     force : ndarray, shape (columns, 2)
         Least and largest normal force of all contacts together in each stretch of time [N]; empty without samples.
     """
@@ -83,8 +86,8 @@ def card(run: xr.Dataset, system: System | None = None) -> RecordCard:
     Returns
     -------
     RecordCard
-        The regime and its tone, the forces, the shares of the time in each status, the balance of energy, and what was
-        computed. In notebooks the last line of a cell shows it as a table.
+        Whether it squeals, at what pitch, and how the level is found; then the forces, the shares of the time in each
+        status, the balance of energy, and what was computed. In notebooks the last line of a cell shows it as a table.
 
     Raises
     ------
@@ -98,15 +101,33 @@ def card(run: xr.Dataset, system: System | None = None) -> RecordCard:
     return RecordCard(str(given.attrs.get("title", "")), facts_of(given, system), _force_over_time(given))
 
 
-def facts_of(record: xr.Dataset, system: System | None = None) -> dict[str, str]:
-    """Return what came of a run, in words: how it ended if not as asked, then what is heard, then the numbers of it."""
+def facts_of(record: xr.Dataset, system: System | None = None, level: str = ASK_FOR_LEVEL) -> dict[str, str]:
+    """Return the result of a run in words: how it ended if not as asked, whether and how it squeals, then its numbers.
+
+    Parameters
+    ----------
+    record : xarray.Dataset
+        The record.
+    system : System, optional
+        Its system, to tell which motion a bowed string is in.
+    level : str, optional
+        How loud it is, in words, or how that is found; no line says it where empty.
+    """
     lines = _ending(record)
+    if record.sizes["time"] > 1:
+        lines |= _heard(by_point(record)) | ({"sound level": level} if level else {}) | _strings(record, system)
     if record.sizes["time"]:
         lines |= _contact(record) | _energy(record)
-    lines |= _computation(record)
-    # Beside the regime, which comes first.
-    shown = {name: lines.pop(name) for name in ("ended", "regime") if name in lines}
-    return shown | _strings(record, system) | lines
+    return lines | _computation(record)
+
+
+def _heard(record: xr.Dataset) -> dict[str, str]:
+    """Return whether a run squeals, and at what pitch."""
+    found = regime_of(record)
+    regime, interval = str(found["regime"]), record.attrs["sample_interval"]
+    answer = "yes" if regime == SQUEAL else f"no, {regime}"
+    pitch = _pitch(regime, float(found["frequency"]), interval)
+    return {"squeals": f"{answer} (confidence {found['confidence']:.2f})"} | ({"pitch": pitch} if pitch else {})
 
 
 def _force_over_time(record: xr.Dataset) -> Array:
@@ -179,14 +200,14 @@ def _contact(record: xr.Dataset) -> dict[str, str]:
     """Return what came of the contact; of several, of all together and of each one or each surface on its own line."""
     points = by_point(record)
     if "contact" in points.dims:
-        lines = {"regime": _regime(points)}
+        lines = {}
         for name, part in _parts(record, points):
             alone = _one_contact(part) if "contact" not in part.dims else _surface(part)
             lines[name] = "; ".join(words for words in alone.values() if words[:4] != "none")
         unsolved = int(record["unsolved_steps"].sum())
         words = f"{counted(unsolved, 'step')} with contact forces out of tolerance"
         return lines | ({"unsolved": words} if unsolved else {})
-    return _one_contact(record)
+    return {name: words for name, words in _one_contact(record).items() if name != "regime"}
 
 
 def _parts(record: xr.Dataset, points: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
@@ -272,12 +293,18 @@ def _regime(record: xr.Dataset) -> str:
 
 
 def _tone(regime: str, frequency: float, interval: float) -> str:
+    """Return the words that follow a regime: its tone; nothing where there is none."""
+    pitch = _pitch(regime, frequency, interval)
+    return f"{' at ' if regime in CYCLES else ', '}{pitch}" if pitch else ""
+
+
+def _pitch(regime: str, frequency: float, interval: float) -> str:
     """Return at which frequency [Hz] a regime is heard, in words; nothing where no tone is."""
     if math.isnan(frequency):
         return ""
     # Samples hide a cycle that is faster than half their rate.
     hertz = f"{frequency:{'.4g' if frequency < 1e4 else '.0f'}} Hz{' or more' if frequency * interval >= 0.5 else ''}"
-    return f" at {hertz}" if regime in CYCLES else f", loudest at {hertz}"
+    return hertz if regime in CYCLES else f"loudest at {hertz}"
 
 
 def _energy(record: xr.Dataset) -> dict[str, str]:

@@ -75,14 +75,26 @@ def list_() -> None:
 
 
 @app.command()
-def show(name: NameOrFile, out: TextFile = None) -> None:
-    """Print a scenario as TOML, to copy and edit; doubtful values go to standard error."""
+def show(
+    name: NameOrFile,
+    out: TextFile = None,
+    plot: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Draw the system instead, before its run, in space in perspective."),
+    ] = None,
+) -> None:
+    """Print a scenario as TOML, to copy and edit, or draw its system; doubtful values go to standard error."""
     from pathlib import Path
 
     from ..scenarios.show import scenario_text
     from .consoles import put
 
-    put(scenario_text(name), out)
+    if plot is not None:
+        from .drawing import draw_system
+
+        draw_system(name, plot, out)
+    if plot is None or out is not None:
+        put(scenario_text(name), out)
     # Shipped scenarios have no doubtful values, and need no compiler to be shown.
     if Path(name).is_file():
         from .doubts import say_doubts

@@ -9,12 +9,12 @@ from pathlib import Path
 from ..checks import ArgumentError
 from ..disk import check_writable
 from ..integration import Diverged, Interrupted
+from ..integration.bars import bar
 from ..plot.films import animate
 from ..plot.moved_bodies import has_surfaces
 from ..records.files import is_record, load
 from ..scenarios.load import load_scenario
 from ..scenarios.quantities import quantity
-from .bars import bar
 from .exits import FAILED, INTERRUPTED, Stopped
 
 

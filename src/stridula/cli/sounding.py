@@ -87,11 +87,10 @@ def _played(record: xr.Dataset) -> Scenario:
     return scenario_of_tables(tables_of_text(changes[-1][1], "changes")) if changes else load_scenario(record)
 
 
-def write_sound(record: xr.Dataset, system: System, wav: str) -> str:
-    """Write what two ears a metre above what sounds hear of a record; return what was written and how loud it is."""
+def write_sound(record: xr.Dataset, system: System, wav: str) -> tuple[str, str, str]:
+    """Write what two ears a metre above hear of a record; return the file, the levels and notes in words."""
     pressure = radiate(record, system)
-    words = [str(write_wav(wav, pressure)), loudest(pressure), pressure.attrs["notes"]]
-    return "\n".join(word for word in words if word)
+    return str(write_wav(wav, pressure)), loudest(pressure), pressure.attrs["notes"]
 
 
 def check_ending(wav: str) -> None:

@@ -10,14 +10,14 @@ from typing import Any
 import xarray as xr
 
 from ..checks import ArgumentError
+from ..integration.bars import bar
 from ..scenarios.read import read_tables
-from ..studies.computed import SweepProgress, Watcher
+from ..studies.computed import SweepProgress, Watcher, told_of_points
 from ..studies.machines import client_of
 from ..studies.measures import asked_for
 from ..studies.points import Grid
 from ..studies.sweeps import sweep
 from ..studies.swept import failures, usual_failure
-from .bars import bar
 from .exits import FAILED, INTERRUPTED, Stopped
 from .outputs import check_outputs
 from .points import Points
@@ -145,4 +145,4 @@ def _client(address: str | None) -> Iterator[Any]:
 def points_done(title: str) -> Iterator[Watcher]:
     """Show the points done."""
     with bar(title) as show:
-        yield lambda reached: show(reached.done, reached.points, f"{reached.done} of {reached.points} points")
+        yield told_of_points(show)

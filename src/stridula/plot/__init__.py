@@ -16,6 +16,8 @@ _HOME = {
     "bodies": "space_films",
     "directivity": "directivities",
     "friction": "laws",
+    "mobility": "mobilities",
+    "mode_shapes": "shapes_of_modes",
     "overview": "timelines",
     "regime_map": "maps",
     "root_loci": "loci",
@@ -24,10 +26,12 @@ _HOME = {
     "spectrum": "spectra",
     "squeal_map": "squeals",
     "surface": "surfaces",
+    "system": "systems",
     "third_octaves": "bands",
     "timeline": "timelines",
     "view": "views",
     "view_mode": "views",
+    "waterfall": "waterfalls",
 }
 __all__ = list(_HOME)
 

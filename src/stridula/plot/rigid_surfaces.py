@@ -36,21 +36,32 @@ def rigid_surfaces(system: System, others: Iterable[DrawnSurface]) -> dict[Any, 
     """
     radius = BALL * float(np.ptp(np.concatenate([surface.place for surface in others]), axis=0).max())
     found: dict[Any, DrawnSurface] = {}
-    centres: dict[Any, Array] = {}
-
-    def known(point: BodyPoint) -> Array | None:
-        body: Any = point.body
-        return centres[body] + body.offset(point.position) if body in centres else point.place
-
-    left = [one for one in _joined(system) if hasattr(one[0].body, "shapes_at")]
-    while ready := [one for one in left if one[0].body not in centres and known(one[1]) is not None]:
-        ours, other, away = ready[0]
-        body: Any = ours.body
+    for body, (centre, away) in _placed(system).items():
         points = np.array(list(body.points.values())).reshape(-1, 3)
         # A ball touches the other body instead of sticking in it.
         polygons, offsets = _hull(points, radius * (_ball() + away))
-        centres[body] = np.asarray(known(other)) - body.offset(ours.position)
-        found[body] = DrawnSurface(centres[body] + offsets, polygons, body.shapes_at(offsets))
+        found[body] = DrawnSurface(centre + offsets, polygons, body.shapes_at(offsets))
+    return found
+
+
+def centres_of(system: System) -> dict[Any, Array]:
+    """Return where the centres of these rigid bodies are [m], by the body."""
+    return {body: centre for body, (centre, _) in _placed(system).items()}
+
+
+def _placed(system: System) -> dict[Any, tuple[Array, Array]]:
+    """Return centres of rigid bodies, and the direction from what each touches first."""
+    found: dict[Any, tuple[Array, Array]] = {}
+
+    def known(point: BodyPoint) -> Array | None:
+        body: Any = point.body
+        return found[body][0] + body.offset(point.position) if body in found else point.place
+
+    left = [one for one in _joined(system) if hasattr(one[0].body, "shapes_at")]
+    while ready := [one for one in left if one[0].body not in found and known(one[1]) is not None]:
+        ours, other, away = ready[0]
+        body: Any = ours.body
+        found[body] = np.asarray(known(other)) - body.offset(ours.position), away
     return found
 
 

@@ -29,6 +29,7 @@ from ..checks import (
     positive,
     suggestion,
 )
+from ..integration.bars import bar
 from ..linear.equilibrium import HELD, JAMMED, LIFTED_OFF
 from ..linear.structure import SLIDING
 from .measures import MEASURES, Value, value_of
@@ -138,6 +139,7 @@ def calibrate(
     start: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
     spread: float = 0.02,
     watchers: Sequence[Callable[[CalibrationProgress], None]] = (),
+    progress: bool = False,
     **options: Any,
 ) -> xr.Dataset:
     """Find parameters whose run has given measures.
@@ -172,6 +174,9 @@ def calibrate(
         Standard deviation of the others about `start`, as a share of the ranges.
     watchers : sequence of callable, optional
         Called with a `CalibrationProgress` after each generation.
+    progress : bool, optional
+        Whether a bar on standard error shows how many generations are done, the miss of the best set so far and the
+        time left.
     **options
         Arguments of `sweep` such as `overrides`, `duration`, `sample_rate`, `workers` and `client`.
 
@@ -201,9 +206,9 @@ def calibrate(
     is_evaluation = callable(source) and not takes(source, names)
     evaluate = _evaluation(source, names) if is_evaluation else _sweeping(source, aimed, measures or {}, options)
     random = np.random.default_rng(seed)
-    search = _Search(searched, aimed, evaluate, generations, watchers)
     first = _first_population(searched, population, random, start, spread)
-    with suppress(_Met), _own_errors():
+    with _generations_shown(progress) as more, suppress(_Met), _own_errors():
+        search = _Search(searched, aimed, evaluate, generations, [*watchers, *more])
         scipy.optimize.differential_evolution(
             search.misses,
             [(0.0, 1.0)] * len(searched),
@@ -219,6 +224,22 @@ def calibrate(
             updating="deferred",
         )
     return search.dataset()
+
+
+@contextmanager
+def _generations_shown(progress: bool) -> Iterator[list[Callable[[CalibrationProgress], None]]]:
+    """Give the watchers of a search that show a bar, none unless it is asked for."""
+    instance("progress", progress, bool)
+    if not progress:
+        yield []
+        return
+    with bar("calibration", asked=True) as show:
+
+        def watch(reached: CalibrationProgress) -> None:
+            words = f"generation {reached.generation} of {reached.generations}, miss {reached.miss:.4g}"
+            show(reached.generation + 1, reached.generations + 1, words)
+
+        yield [watch]
 
 
 class _Met(Exception):

@@ -15,7 +15,8 @@ from typing import Any
 
 import xarray as xr
 
-from ..checks import ArgumentError, count
+from ..checks import ArgumentError, count, instance
+from ..integration.bars import Show, bar
 from .machines import on_machines
 from .parts import Parts
 from .processes import Helpers
@@ -83,17 +84,38 @@ class Plan:
         return {number: self.values[first : first + self.size] for number, first in enumerate(starts)}
 
 
-def check_options(workers: Any, client: Any, watchers: Any) -> None:
+def told_of_points(show: Show) -> Watcher:
+    """Return what tells a bar of the points done."""
+    return lambda reached: show(reached.done, reached.points, f"{reached.done} of {reached.points} points")
+
+
+def check_options(workers: Any, client: Any, watchers: Any, progress: Any) -> None:
     """Raise ValueError unless a study can be computed so."""
     if workers is not None:
         count("workers", workers)
     if not isinstance(watchers, Sequence):
         raise ArgumentError("watchers", "be a list of callables", watchers)
+    instance("progress", progress, bool)
     if client is not None and not callable(getattr(client, "submit", None)):
         raise ArgumentError("client", "be a client of dask.distributed", client)
 
 
 def computed(
+    plan: Plan,
+    out: str | Path | None,
+    workers: int | None,
+    client: Any,
+    watchers: Sequence[Watcher],
+    progress: bool = False,
+) -> xr.Dataset:
+    """Compute what is not done of a study and return all of it, as `_computed` does, with a bar if it is asked for."""
+    if not progress:
+        return _computed(plan, out, workers, client, watchers)
+    with bar(plan.attributes.get("title", "") or plan.study, asked=True) as show:
+        return _computed(plan, out, workers, client, [*watchers, told_of_points(show)])
+
+
+def _computed(
     plan: Plan, out: str | Path | None, workers: int | None, client: Any, watchers: Sequence[Watcher]
 ) -> xr.Dataset:
     """Compute what is not done of a study and return all of it.

@@ -37,6 +37,7 @@ def ensemble(
     seed: int = 0,
     confidence: float = 0.95,
     workers: int | None = None,
+    progress: bool = False,
     **options: Any,
 ) -> xr.Dataset:
     """Run a system from slightly different starts and return the mean of each measure with its confidence interval.
@@ -67,6 +68,8 @@ def ensemble(
         Level of the interval [1], strictly between 0 and 1.
     workers : int, optional
         Runs at a time; as many as there are processors if left out.
+    progress : bool, optional
+        Whether a bar on standard error shows how far the runs are and how long they will still take.
     **options
         Arguments of `simulate_many` such as `scheme`, `step`, `sample_rate`, `probes` and `device`, in place of those
         of the scenario or the function.
@@ -98,7 +101,7 @@ def ensemble(
             raise ArgumentError(word, "be left out of an ensemble, which sets its own", options[word])
     shares = _shares(runs, perturbation, seed)
     systems = [_perturbed(system, float(share)) for share in shares]
-    results = _run_all(systems, duration, named, options, workers or os.cpu_count() or 1)
+    results = _run_all(systems, duration, named, options | {"progress": progress}, workers or os.cpu_count() or 1)
     return _dataset(named, shares, results, confidence)
 
 

@@ -37,6 +37,7 @@ def sensitivity(
     seed: int = 0,
     confidence: float = 0.95,
     resamples: int = 999,
+    progress: bool = False,
     **options: Any,
 ) -> xr.Dataset:
     """Return Sobol indices of what is measured, and the probability of each regime, under uncertain parameters.
@@ -62,6 +63,8 @@ def sensitivity(
         Level of the intervals [1], strictly between 0 and 1.
     resamples : int, optional
         Bootstrap resamples for the intervals of the indices.
+    progress : bool, optional
+        Whether a bar on standard error shows how many runs are done and how long the others will take.
     **options
         Arguments of `sweep` such as `overrides`, `duration`, `out`, `workers` and `client`.
 
@@ -89,7 +92,7 @@ def sensitivity(
     points = [
         {key: _value(one, float(share)) for (key, one), share in zip(named.items(), row, strict=True)} for row in shares
     ]
-    found = sweep(scenario, points, measures, **options)
+    found = sweep(scenario, points, measures, progress=progress, **options)
     outputs = _outputs(found)
     keys = list(named)
     data: dict[str, Any] = _indices(outputs, len(keys), samples, seed, confidence, resamples)

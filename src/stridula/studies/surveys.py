@@ -41,6 +41,7 @@ def squeal_survey(
     workers: int | None = None,
     client: Any = None,
     watchers: Sequence[Watcher] = (),
+    progress: bool = False,
 ) -> xr.Dataset:
     """Find the modes of steady sliding that grow over parameters, and follow each in time to what becomes of it.
 
@@ -87,6 +88,8 @@ def squeal_survey(
         Machines that compute the points, in place of this one.
     watchers : sequence of callable, optional
         Called with a `SweepProgress` after each point.
+    progress : bool, optional
+        Whether a bar on standard error shows how many points are done and how long the others will take.
 
     Returns
     -------
@@ -109,7 +112,7 @@ def squeal_survey(
     RuntimeError
         If a part fails on other machines; finished parts are kept.
     """
-    check_options(workers, client, watchers)
+    check_options(workers, client, watchers, progress)
     options = Options(
         duration=None if duration is None else _positive("duration", duration, "s"),
         longest=_positive("longest", longest, "s"),
@@ -120,7 +123,7 @@ def squeal_survey(
     )
     rate = None if sample_rate is None else _positive("sample_rate", sample_rate, "Hz")
     plan = _planned(scenario, points, by_key("overrides", overrides), options, rate)
-    return computed(plan, out, workers, client, watchers)
+    return computed(plan, out, workers, client, watchers, progress)
 
 
 def _positive(name: str, given: Any, unit: str) -> float:

@@ -35,6 +35,7 @@ def sweep(
     workers: int | None = None,
     client: Any = None,
     watchers: Sequence[Watcher] = (),
+    progress: bool = False,
 ) -> xr.Dataset:
     """Run a scenario, or what a function makes, at many points of its parameters and return the measures of each.
 
@@ -76,6 +77,8 @@ def sweep(
         Machines that compute the parts, in place of this one.
     watchers : sequence of callable, optional
         Called with a `SweepProgress` after each part.
+    progress : bool, optional
+        Whether a bar on standard error shows how many points are done and how long the others will take.
 
     Returns
     -------
@@ -97,9 +100,9 @@ def sweep(
     RuntimeError
         If a part fails on other machines; finished parts are kept.
     """
-    check_options(workers, client, watchers)
+    check_options(workers, client, watchers, progress)
     plan = _planned(scenario, points, measures, by_key("overrides", overrides), duration, sample_rate, probes)
-    return computed(plan, out, workers, client, watchers)
+    return computed(plan, out, workers, client, watchers, progress)
 
 
 def _planned(

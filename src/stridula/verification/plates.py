@@ -7,6 +7,7 @@ from math import pi, sqrt
 import numpy as np
 from scipy.special import j1
 
+from ..analysis.mobilities import mobility
 from ..arrays import Array
 from ..bodies import Material, ModalBeam, ModalPlate, Rectangle
 from .case import Case, Curve, Outcome, Row, Sketch
@@ -71,14 +72,6 @@ def deflection() -> Outcome:
     return Outcome(rows, Sketch("modes a side", "deflection left out / (F a²/D)", curves, logarithmic=True))
 
 
-def mobility(plate: ModalPlate, place: tuple[float, float], angular: Array) -> Array:
-    """Return the velocity at a point over a harmonic force there [s/kg], at angular frequencies [rad/s]."""
-    modes = plate.modes()
-    own, damping = modes.angular_frequency, modes.damping
-    receptance = plate.shapes(*place) ** 2 / (own**2 - angular[:, None] ** 2 + 2j * damping * own * angular[:, None])
-    return np.asarray(1j * angular * receptance.sum(axis=1))
-
-
 def of_images(plate: ModalPlate, place: tuple[float, float], low: float, high: float) -> tuple[float, float]:
     """Return the mean of the real mobility over that of an infinite plate, in a band [Hz], and what is left out.
 
@@ -127,7 +120,7 @@ def answers() -> Outcome:
     infinite = 1.0 / (8.0 * sqrt(plate.rigidity * plate.surface_density))
     rows, curves = [], []
     for place in ((0.21, 0.17), (0.3, 0.25), (0.13, 0.33)):
-        real = mobility(plate, place, 2.0 * pi * frequency).real
+        real = mobility(plate.at(place), frequency=frequency).values.real
         images, rest = of_images(plate, place, low, high)
         known = of_modes_kept(plate, frequency) + images - 1.0
         rows.append(
