@@ -1,4 +1,4 @@
-"""Bars on standard error: how far a computation has come, and how long it will still take."""
+"""Progress bars on standard error, with the time left."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rich.text import Text
 from ..integration.compiled_code import tell_of_compiling
 from .doings import told_of_doings
 
-# Done, in all, and both in words.
+# Amount done, total amount, and both as text.
 Show = Callable[[float, float, str], None]
 PREPARING, COMPILING = "preparing", "compiling, once: some ten seconds"
 
@@ -21,14 +21,14 @@ class TimeLeft(TimeRemainingColumn):
     """The time left, once it is known."""
 
     def render(self, task: Task) -> Text:
-        """Return it in words."""
+        """Return the time left as text."""
         known = task.total is not None and task.time_remaining is not None and not task.finished
         return super().render(task).append(" left") if known else Text("")
 
 
 @contextmanager
 def bar(title: str) -> Iterator[Show]:
-    """Show a bar where standard error is a terminal, and say so while code is compiled or modes are found."""
+    """Show a progress bar if standard error is a terminal, and name slow preparations such as compilation."""
     console = Console(stderr=True)
     progress = Progress(
         TextColumn("{task.description}", markup=False),

@@ -14,7 +14,7 @@ from ..system import System
 def print_card(
     record: xr.Dataset, title: str, files: list[str], doubtful: list[str], system: System | None = None
 ) -> None:
-    """Print the result of a run, of a bowed string the motion that it is in, and which of its values are doubtful."""
+    """Print the results of a run (for a bowed string also its regime of motion) and a list of doubtful values."""
     table = Table(title=escape(title), show_header=False, title_justify="left")
     for name, words in facts_of(record, system).items():
         table.add_row(name, escape(words))

@@ -1,4 +1,4 @@
-"""What the package does for long, such as finding the modes of large bodies, on a line that does not stay."""
+"""A transient line on standard error during slow work, such as computing the modes of large bodies."""
 
 from __future__ import annotations
 
@@ -7,26 +7,26 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-# Told what is being done, and None when it is done.
+# Called with the name of the work when it starts, and with None when it ends.
 Tell = Callable[[str | None], None]
 
 
 class Doings(logging.Handler):
-    """Hears of what takes long."""
+    """Handler that passes on log records of slow work."""
 
     def __init__(self, tell: Tell) -> None:
         super().__init__(logging.INFO)
         self.tell = tell
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Tell of it."""
+        """Pass on the name of the work."""
         if hasattr(record, "doing"):
             self.tell(record.doing)
 
 
 @contextmanager
 def told_of_doings(tell: Tell) -> Iterator[None]:
-    """Tell of what takes long; whoever was told before is not meanwhile."""
+    """Pass log records of slow work to `tell`, in place of the previous handlers."""
     logger = logging.getLogger("stridula")
     level, handlers = logger.level, logger.handlers[:]
     logger.handlers[:] = [Doings(tell)]
@@ -40,7 +40,7 @@ def told_of_doings(tell: Tell) -> Iterator[None]:
 
 @contextmanager
 def doings_shown() -> Iterator[None]:
-    """Show what takes long where standard error is a terminal, and no bar says so."""
+    """Show slow work on a line if standard error is a terminal and no progress bar shows it."""
     line: Any = None
 
     def tell(doing: str | None) -> None:
@@ -48,7 +48,7 @@ def doings_shown() -> Iterator[None]:
         if doing is None:
             line.stop()
             return
-        # Here, not above: most commands have nothing that takes long.
+        # Imported here because most commands do no slow work.
         from rich.console import Console
         from rich.status import Status
         from rich.text import Text
