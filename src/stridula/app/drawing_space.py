@@ -95,7 +95,7 @@ class Surfaces:
         return {"drawn": blake2b(json.dumps(told).encode(), digest_size=8).hexdigest(), **told}
 
     def shapes(self, live: LiveMarch, chunk: LiveChunk) -> Shapes:
-        """Return where the bodies are at the end of a chunk."""
+        """Return the positions of the bodies at the end of a chunk."""
         spans = [slice(*live.spans[body.name]) for body in self.bodies]
         moved = [body.of(modal[span]) for modal in live.motion for body, span in zip(self.bodies, spans, strict=True)]
         place, height = (float(chunk.contact[name][-1]) for name in ("contact_position", "contact_height"))

@@ -38,7 +38,7 @@ export class Hand {
     return found;
   }
 
-  // One width per second is the fastest; velocities of one sign follow the hand in both directions.
+  // One width per second is the fastest; a velocity of only one sign keeps it in both directions of the hand.
   #drawn() {
     const { low, high } = this.velocity;
     if (low < 0 && high > 0) return this.speed * Math.max(-low, high);
