@@ -394,9 +394,9 @@ def test_a_failed_run_is_drawn_as_far_as_it_went(stridula, monkeypatch, tmp_path
     assert (code, err.count("\n")) == (1, 1)
     assert (tmp_path / "part.png").exists() == (samples > 1)
     words = (
-        "it is drawn in part.png" if samples > 1 else f"no figure was drawn: a figure takes two samples, got {samples}"
+        "it is drawn in part.png" if samples > 1 else f"no figure was drawn: a figure needs two samples, got {samples}"
     )
-    assert err.endswith(f"; nothing was asked to be kept (no --out); {words}\n")
+    assert err.endswith(f"; nothing was kept (no --out); {words}\n")
 
 
 def test_an_interrupted_run_says_that_nothing_was_drawn(stridula, monkeypatch, tmp_path):
@@ -509,7 +509,7 @@ def test_the_card_names_an_early_end_first_and_a_later_start():
     assert rows["simulated"] == "0.05 s, from t = 0.05 s to 0.1 s"
     first.attrs |= {"ended": "energy created", "modes": 1}
     rows = card(first)
-    assert next(iter(rows.items())) == ("ended", "failed: energy came from nowhere at t = 0.05 s")
+    assert next(iter(rows.items())) == ("ended", "failed: energy was created without a source at t = 0.05 s")
     assert rows["step"].endswith(", 1 mode")
     assert rows["normal force"] == "10 N, constant"
 

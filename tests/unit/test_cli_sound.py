@@ -277,7 +277,7 @@ BAD = [
     (("run", "squeal", "--wav", "."), "it is a directory"),
     (("run", "squeal", "--wav", "a.nc", "--out", "a.nc"), "--wav must be another file than --out"),
     (("run", "squeal", "--wav", "a.png", "--plot", "a.png"), "--wav must be another file than --plot"),
-    (("run", "run.nc", "--wav", "run.nc"), "--wav must be another file than what is run"),
+    (("run", "run.nc", "--wav", "run.nc"), "--wav must be another file than the scenario"),
     (("run", "belt", "--wav", "a.wav"), "system must have a body with a surface to be heard"),
     (("run", "round.toml", "--wav", "a.wav"), "track must have a Rectangle as section"),
     (("sound", "open.nc", "--body", "track", "--bands", "a.png"), "--bands must hold a sound, got silence"),

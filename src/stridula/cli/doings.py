@@ -1,4 +1,4 @@
-"""What the package does for long, such as finding the modes of large bodies, on a line that does not stay."""
+"""A transient line on standard error during slow work, such as computing the modes of large bodies."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..doings import told_of_doings
 
 @contextmanager
 def doings_shown() -> Iterator[None]:
-    """Show what takes long where standard error is a terminal, and no bar says so."""
+    """Show slow work on a line if standard error is a terminal and no progress bar shows it."""
     line: Any = None
 
     def tell(doing: str | None) -> None:
@@ -19,7 +19,7 @@ def doings_shown() -> Iterator[None]:
         if doing is None:
             line.stop()
             return
-        # Here, not above: most commands have nothing that takes long.
+        # Imported here because most commands do no slow work.
         from rich.console import Console
         from rich.status import Status
         from rich.text import Text

@@ -1,4 +1,4 @@
-"""`stridula run`: check the outputs, march under a progress bar, write, and close with a card."""
+"""`stridula run`: check the outputs, simulate under a progress bar, write the outputs and print a summary."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ from .outputs import check_outputs
 
 # Ends of runs that can be heard.
 WHOLE = ("finished", "off the track")
-# What a record is not written as, whatever its name says.
+# Extensions that are refused for a record.
 OTHER_FORMATS = (".csv", ".mat", ".png", ".pdf", ".svg", ".wav", ".toml")
 
 
 def run_scenario(
     name: str, overrides: dict[str, Any], out: str | None, plot: str | None, wav: str | None = None
 ) -> None:
-    """Run a scenario, write what was asked for, and print the card.
+    """Run a scenario, write the requested files, and print a summary.
 
     Raises
     ------
     ValueError
-        If the scenario, an override or an output is not usable; nothing is written then.
+        If the scenario, an override or an output is invalid; nothing is written then.
     OSError
         If an output cannot be written.
     Stopped
-        On Ctrl-C, or if the run failed, once what was recorded is written.
+        On Ctrl-C, or if the run failed, after the samples recorded so far are written.
     """
     check_outputs(out, plot)
     if out is not None and Path(out).suffix.lower() in OTHER_FORMATS:
@@ -53,7 +53,7 @@ def run_scenario(
         interrupted = isinstance(stop, Interrupted)
         kept = _finish(stop.record, scenario, name, out, None if interrupted else plot)
         words = [stop.reason]
-        words.append("nothing was asked to be kept (no --out)" if out is None else f"the record so far is in {out}")
+        words.append("nothing was kept (no --out)" if out is None else f"the record so far is in {out}")
         if plot is not None:
             words.append(f"it is drawn in {plot}" if plot in kept else f"no figure was drawn{_why(stop)}")
         if wav is not None:
@@ -70,7 +70,7 @@ def _check_wav(wav: str, name: str, out: str | None, plot: str | None, scenario:
         if other is not None and Path(other).resolve() == Path(wav).resolve():
             raise ArgumentError("--wav", f"be another file than {option}", wav, got=f"{wav!r} for both")
     if Path(name).is_file() and Path(name).resolve() == Path(wav).resolve():
-        raise ArgumentError("--wav", "be another file than what is run", wav, got=f"{wav!r} for both")
+        raise ArgumentError("--wav", "be another file than the scenario", wav, got=f"{wav!r} for both")
     check_writable(wav)
     check_ending(wav)
     check_hearable(scenario.system, scenario.surface_rate)
@@ -122,7 +122,7 @@ def how_to_get_the_level(record: xr.Dataset, scenario: Scenario, out: str | None
 
 def _why(stop: Interrupted | Diverged) -> str:
     samples = stop.record.sizes["time"]
-    return f": a figure takes two samples, got {samples}" if samples < 2 else ""
+    return f": a figure needs two samples, got {samples}" if samples < 2 else ""
 
 
 def _draw(record: xr.Dataset, path: str) -> None:
