@@ -106,7 +106,7 @@ _HOME = {
     ),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
-# Modules that are public as they stand.
+# Modules that are public themselves.
 _PUBLIC = (
     "acoustics",
     "analysis",
@@ -127,7 +127,7 @@ __all__ = ["__version__", *_MODULE]
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public module, or a public name from its home, on first use, so that `import stridula` stays quick."""
+    """Import a public module, or a public name from its module, on first use, so that `import stridula` is fast."""
     if name in _PUBLIC:
         return import_module(f".{name}", __name__)
     if name not in _MODULE:

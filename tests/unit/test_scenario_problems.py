@@ -245,7 +245,7 @@ def test_every_problem_of_bodies_and_contacts_is_told(tmp_path):
         ),
         (
             MASS_ON_FLOOR + '[[drives]]\nkind = "initial equilibrium"\namplitude = 1e-6\n',
-            "drives.0.amplitude must be 0 without a mode that has it, got 1e-06",
+            "drives.0.amplitude must be 0 without a mode, got 1e-06",
         ),
         (MASS_ON_FLOOR + '[[simulation.probes]]\nquantity = "velocity"\nbody = "b"\n', "probes.0.body must be one of "),
     ],
