@@ -1,4 +1,4 @@
-"""Bodies in space in perspective: their surfaces, coloured by the velocity across them, and where they touch."""
+"""Bodies in space in perspective: surfaces coloured by their outward velocity, and contacts."""
 
 from __future__ import annotations
 
@@ -22,30 +22,30 @@ from .motion import ModalMotion
 from .moved_bodies import MovedBodies
 
 VELOCITIES = "RdBu_r"
-# Of units of velocity, and what they stand for.
+# Prefixes of units of velocity, and their factors.
 PREFIXES = (("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9))
-# Darkest a side that turns away from the light gets.
+# Brightness of a side that faces away from the light.
 DARK = 0.72
-# Share of the room that bodies at rest fill.
+# Share of the available area that bodies at rest fill.
 FILLED = 0.92
 MARKER = 3.5
 
 
 class Scene:
-    """The bodies of a system that have a surface, in perspective, to be drawn frame by frame.
+    """Bodies of a system that have a surface, in perspective, to be drawn frame by frame.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
         The figure.
     room : tuple of float
-        Where in it: left and lower edge, width and height, shares of the figure.
+        Area in the figure: left and lower edge, width and height, as shares of the figure.
     system : System
         The system.
     motion : ModalMotion
         Motion of its modes.
     exaggeration : float
-        How many times larger than life departures from the mean are drawn.
+        Factor by which departures from the mean are drawn larger.
     view : tuple of float
         Elevation and azimuth of the eye [rad].
 
@@ -78,7 +78,7 @@ class Scene:
         self._shade = DARK + (1.0 - DARK) * np.clip(normals @ light, 0.0, 1.0)
         self.scale = Normalize(-1.0, 1.0)
         self.sides: Any = Poly3DCollection(self._polygons(0), linewidths=0.15, edgecolors="0.45", zorder=1)
-        # The axes are a square in the middle of their room, which may be wider.
+        # The axes are a square in the middle of their area, which may be wider.
         self.sides.set_clip_on(False)
         self.axes.add_collection3d(self.sides)
         self.markers: dict[str, Any] = {
@@ -103,7 +103,7 @@ class Scene:
     def colour_bar(
         self, axes: Axes, largest: float, words: str = "velocity out of the surface", unit: str = "m/s"
     ) -> None:
-        """Have colours go up to a velocity, and say so, with a prefix to its unit that leaves short numbers."""
+        """Scale the colours to a velocity and draw their bar, with a unit prefix that keeps the numbers short."""
         largest = largest or 1.0
         self.scale = Normalize(-largest, largest)
         prefix, size = next((one for one in PREFIXES if largest >= one[1]), PREFIXES[-1])
@@ -112,7 +112,7 @@ class Scene:
         axes.tick_params(labelsize=8)
 
     def fill(self) -> None:
-        """Draw the bodies as large as the room lets them be."""
+        """Draw the bodies as large as their area allows."""
         self._figure.draw_without_rendering()
         places = np.concatenate([one.surface.place for one in self.bodies])
         x, y, _ = proj3d.proj_transform(*places.T, self.axes.get_proj())
@@ -124,7 +124,7 @@ class Scene:
         self.axes.set_box_aspect(self._sides, zoom=zoom)
 
     def show(self, frame: int, status: Array | None = None) -> None:
-        """Draw a frame; `status` is that of each contact, of which none is drawn without."""
+        """Draw a frame; `status` is that of each contact, and without it no contact is drawn."""
         self.sides.set_verts(self._polygons(frame))
         self.values = np.concatenate([self.moved.velocities(one, frame) for one in self.bodies])
         colours = colormaps[VELOCITIES](self.scale(self.values))
@@ -139,7 +139,7 @@ class Scene:
     def _polygons(self, frame: int) -> Array:
         found = [self.moved.places(one, frame)[one.surface.polygons[one.seen]] for one in self.bodies]
         most = max(corners.shape[1] for corners in found)
-        # All with as many corners: drawn at once they hide each other as they should.
+        # All get the same number of corners: polygons hide each other correctly only if drawn at once.
         return np.concatenate([np.pad(one, ((0, 0), (0, most - one.shape[1]), (0, 0)), mode="edge") for one in found])
 
     def _set_view(self, view: tuple[float, float]) -> None:
