@@ -140,7 +140,7 @@ def test_labels_of_critical_values_do_not_cover_each_other():
 
 
 def test_what_is_no_root_loci_is_told():
-    with pytest.raises(ValueError, match="loci must be what root_loci returned"):
+    with pytest.raises(ValueError, match="loci must be the result of root_loci"):
         plot.root_loci(st.critical_value(hoffmann_at, "friction", 0.5, 1.0))
     with pytest.raises(ValueError, match="loci must be a Dataset"):
         plot.root_loci(0.5)

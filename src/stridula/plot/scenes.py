@@ -1,4 +1,4 @@
-"""Bodies in space in perspective: their surfaces, coloured by the velocity across them, and where they touch."""
+"""Bodies in space in perspective: surfaces coloured by their outward velocity, and contacts."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from .motion import ModalMotion
 from .moved_bodies import MovedBodies, ShownBody
 
 VELOCITIES = "RdBu_r"
-# Of units of velocity, and what they stand for.
+# Prefixes of units of velocity, and their factors.
 PREFIXES = (("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9))
-# Darkest a side that turns away from the light gets.
+# Brightness of a side that faces away from the light.
 DARK = 0.72
 # Share of the room that bodies at rest fill, and rounds in which the zoom for it is found.
 FILLED, ROUNDS = 0.92, 3
@@ -129,13 +129,13 @@ class Scene(Stage):
     figure : matplotlib.figure.Figure
         The figure.
     room : tuple of float
-        Where in it: left and lower edge, width and height, shares of the figure.
+        Area in the figure: left and lower edge, width and height, as shares of the figure.
     system : System
         The system.
     motion : ModalMotion
         Motion of its modes.
     exaggeration : float
-        How many times larger than life departures from the mean are drawn.
+        Factor by which departures from the mean are drawn larger.
     view : tuple of float
         Elevation and azimuth of the eye [rad].
 
@@ -183,7 +183,7 @@ class Scene(Stage):
     def colour_bar(
         self, axes: Axes, largest: float, words: str = "velocity out of the surface", unit: str = "m/s"
     ) -> None:
-        """Have colours go up to a velocity, and say so, with a prefix to its unit that leaves short numbers."""
+        """Scale the colours to a velocity and draw their bar, with a unit prefix that keeps the numbers short."""
         largest = largest or 1.0
         self.scale = Normalize(-largest, largest)
         prefix, size = next((one for one in PREFIXES if largest >= one[1]), PREFIXES[-1])
@@ -192,7 +192,7 @@ class Scene(Stage):
         axes.tick_params(labelsize=8)
 
     def show(self, frame: int, status: Array | None = None) -> None:
-        """Draw a frame; `status` is that of each contact, of which none is drawn without."""
+        """Draw a frame; `status` is that of each contact, and without it no contact is drawn."""
         self.sides.set_verts(self._polygons(frame))
         self.values = np.concatenate([self.moved.velocities(one, frame) for one in self.bodies])
         colours = colormaps[VELOCITIES](self.scale(self.values))
