@@ -1,8 +1,8 @@
-"""The march against hand-written C of the same step (step.c): time per step as a ratio to C's.
+"""The march against hand-written C of the same step (step.c): ratio of the times per step.
 
 One contact on a beam, Coulomb's law, ledger and one probe, for some 30, 100 and 400 modes, separated, sticking and
-sliding. Needs gcc; skipped without. What C reads and writes goes by names: places in arrays by those of the package's
-layout, arguments by those of `march` in step.c.
+sliding. Needs gcc; skipped without. C reads and writes by name: places in arrays are those of the package's layout, and
+arguments those of `march` in step.c.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ Result = dict[str, np.ndarray]
 
 
 class Pair:
-    """One system, ready to be marched by the package and by C."""
+    """A system prepared for the march of the package and of C."""
 
     def __init__(self, given: st.System, compiled: ctypes.CDLL) -> None:
         probe = st.Acceleration(given.track.centre, "y")
@@ -57,7 +57,7 @@ class Pair:
         self.compiled = compiled
 
     def ours(self) -> tuple[Callable[[], None], Callable[[], Result]]:
-        """Return the march of the package, and what it gives."""
+        """Return the march of the package, and a function that returns its results."""
         march = March([self.blocks], [deepcopy(self.state)], self.step, RATIO)
         imposed = Imposed(np.array([[1.0, 0.0, 0.0, 0.0]]), np.zeros((1, 1, at.MOTIONS)), np.zeros((1, 0)))
         chunks = []
@@ -72,7 +72,7 @@ class Pair:
         return run, found
 
     def theirs(self) -> tuple[Callable[[], None], Callable[[], Result]]:
-        """Return the march of C, and what it gives."""
+        """Return the march of C, and a function that returns its results."""
         block, one, state = self.blocks.modes.block, self.arrays.contacts[0], self.state
         slider, (bending, axial), (_, end) = one.bending[0], one.bending, one.axial
         w = self.blocks.contacts.compliance
@@ -114,15 +114,15 @@ class Pair:
         return run, lambda: result(arrays["q"][:end], arrays["energies"], arrays["columns"])
 
     def agree(self, found: Result, expected: Result) -> None:
-        """Stop where the two marches are apart."""
+        """Exit if the results of the two marches differ."""
         for quantity, values in found.items():
-            # Where a force only grazes the border of its cone, rounding has its say in the share of that step.
+            # Where a force only grazes the border of its cone, rounding affects the share of that step.
             tolerance = 4.0 / STEPS if quantity == "steps in each state" else TOLERANCE
             must_agree(f"{quantity} of the march and of step.c", values, expected[quantity], tolerance)
 
 
 def result(positions: np.ndarray, energies: np.ndarray, columns: np.ndarray) -> Result:
-    """Return what must agree; columns are sums over the steps."""
+    """Return the results that must agree; columns are sums over the steps."""
     return {
         "positions": positions,
         "ledgers": energies[LEDGER],
@@ -132,18 +132,18 @@ def result(positions: np.ndarray, energies: np.ndarray, columns: np.ndarray) -> 
 
 
 def parameters(source: Path = SOURCE) -> list[str]:
-    """Return the names of the arguments of the march in C, in their order."""
+    """Return the names of the arguments of the march in C, in order."""
     words = re.search(r"^void march\(([^)]*)\)", source.read_text(encoding="utf-8"), re.MULTILINE)
     return re.findall(r"(\w+)(?:,|$)", words[1])
 
 
 def without_gcc() -> str:
-    """Return why there is nothing to compare with, nothing where there is."""
+    """Return the reason why there is no C to compare with, empty if there is."""
     return "" if shutil.which("gcc") else "skipped: gcc is not installed, so there is no C to compare with"
 
 
 def built(folder: Path, source: Path = SOURCE, numbers: Mapping[str, object] = MappingProxyType({})) -> ctypes.CDLL:
-    """Return a march in C, compiled with the places of the package's layout and other whole numbers of the package."""
+    """Return a march in C, compiled with the places of the package's layout and other integers of the package."""
     known = {**vars(at), **numbers}
     places = {name: place for name, place in known.items() if name.isupper() and isinstance(place, int)}
     lines = [f"enum {{ {name} = {place} }};" for name, place in places.items()]
@@ -154,7 +154,7 @@ def built(folder: Path, source: Path = SOURCE, numbers: Mapping[str, object] = M
 
 
 def apart(rows: Result) -> Result:
-    """Return rows laid out so that no load of one looks like the store of another: a page apart would cost C dearly."""
+    """Return rows laid out so that no load aliases the store of another row: a page apart would slow C down much."""
     width = max(row.size for row in rows.values())
     length = next(n for n in count(width) if n % 8 == 0 and all(off_page(n * k) >= 256 for k in range(1, len(rows))))
     out = aligned(len(rows), length)
@@ -164,12 +164,12 @@ def apart(rows: Result) -> Result:
 
 
 def off_page(numbers: int) -> int:
-    """Return the distance in bytes between two places, whole pages of 4096 bytes left out."""
+    """Return the distance in bytes between two places, modulo pages of 4096 bytes."""
     return min(8 * numbers % 4096, -8 * numbers % 4096)
 
 
 def ratios(pair: Pair) -> tuple[list[float], np.ndarray]:
-    """Return the ratios of the repeats and the steps in each state; stop where the two marches are apart."""
+    """Return the ratios of the repeats and the steps in each state; exit if the results of the two marches differ."""
     taken = []
     for repeat in range(WARM_UP + REPEATS):
         (ours, found), (theirs, expected) = pair.ours(), pair.theirs()

@@ -1,13 +1,13 @@
-"""Frozen contacts in Siconos and here: trajectories until they drift apart, shares of the states, speed.
+"""Frozen contacts in Siconos and Stridula: trajectories until they drift apart, shares of the states, speed.
 
 ``python benchmarks/against_siconos.py --seed 2`` draws sets of parameters from the seed, marches each in both codes and
-prints a line for each. The exit status is 1 if a set misses a tolerance. Siconos runs in a Python of its own, `PEER`;
-without it the comparison is skipped and says so.
+prints a line for each. The exit status is 1 if a set misses a tolerance. Siconos runs in its own Python, `PEER`;
+without it the comparison is skipped with a message.
 
-Siconos marches Moreau-Jean with theta 1/2: implicit midpoint, contact and friction on velocities. Ours is explicit,
-with contact and stick on positions. Each landing, lift-off and turn of slip differs by a fraction of a step, so what
-differs is of first order in the step. It is compared until two of our own runs whose gaps at the start differ by 1e-9 m
-have drifted apart. Where the step is too long for that, it is halved for both.
+Siconos marches Moreau-Jean with theta 1/2: implicit midpoint, contact and friction on velocities. Stridula is explicit,
+with contact and stick on positions. Each landing, lift-off and reversal of slip differs by a fraction of a step, so the
+difference is of first order in the step. Runs are compared until two Stridula runs with initial gaps 1e-9 m apart have
+drifted apart. Where the step is too long for agreement, it is halved for both.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class Pair:
 
     @property
     def held(self) -> bool:
-        """Whether the root is driven at a velocity."""
+        """Whether the root is driven at an imposed velocity."""
         return isinstance(self.drive, st.ImposedVelocity)
 
     @property
@@ -84,7 +84,7 @@ class Pair:
         return normal <= self.friction * abs(coupling)
 
     def system(self, gap: float) -> st.System:
-        """Return our system."""
+        """Return the system for Stridula."""
         return st.System(
             st.PointContact(self.tip, self.point, friction=st.Coulomb(self.friction), gap=gap), [self.drive]
         )
@@ -111,7 +111,7 @@ class Pair:
 def draw(generator: np.random.Generator) -> tuple[list[Pair], int]:
     """Return the sets and the number of draws that jam.
 
-    A jam is Painleve's case: contact and separation are both right, and each code may take the other one.
+    A jam is Painleve's case: contact and separation are both consistent, and the codes may choose differently.
     """
     pairs: list[Pair] = []
     jammed = 0
@@ -125,7 +125,7 @@ def draw(generator: np.random.Generator) -> tuple[list[Pair], int]:
 
 
 def draw_one(generator: np.random.Generator, number: int) -> Pair:
-    """Return a pair of steel beams, pushed across, along or at a velocity in turn, friction from low to high."""
+    """Return a pair of steel beams, pushed across, along or at a velocity in turn, with friction from low to high."""
     steel = st.Material(2.1e11, 7800.0)
     lengths = generator.uniform([0.2, 0.4], [0.6, 1.4])
     heights = generator.uniform(0.003, 0.012, 2)
@@ -151,18 +151,18 @@ def draw_one(generator: np.random.Generator, number: int) -> Pair:
 
 
 def ours(pair: Pair, gap: float, duration: float, step: float) -> xr.Dataset:
-    """Return our run from one gap."""
+    """Return the Stridula run from one initial gap."""
     return st.simulate(pair.system(gap), duration, step=step, sample_rate=SAMPLE_RATE)
 
 
 def theirs(pair: Pair, gaps: list[float], duration: float, step: float) -> dict[str, np.ndarray]:
-    """Return what Siconos gives from some gaps."""
+    """Return the results of Siconos from some initial gaps."""
     with tempfile.TemporaryDirectory() as folder:
         case, answer = Path(folder, "case.npz"), Path(folder, "answer.npz")
         np.savez(case, **pair.case(gaps, duration, step))
         script = Path(__file__).with_name("siconos_march.py")
         done = subprocess.run([PEER, script, case, answer], env=one_thread(), capture_output=True, text=True)
-        # It prints a line for each contact that its solver has not solved, and goes on.
+        # Siconos prints a line for each contact that it has not solved, and continues.
         if done.returncode or done.stdout:
             raise RuntimeError(f"Siconos did not solve {pair.words}: {(done.stderr or done.stdout)[:500]}")
         with np.load(answer) as stored:
@@ -170,18 +170,18 @@ def theirs(pair: Pair, gaps: list[float], duration: float, step: float) -> dict[
 
 
 def one_thread() -> dict[str, str]:
-    """Return the environment in which a process keeps to one core."""
+    """Return an environment that restricts a process to one thread."""
     return os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 
 
 @dataclass(frozen=True)
 class Trajectories:
-    """How far the two codes are apart before our own runs are.
+    """Differences of the two codes until two Stridula runs drift apart.
 
     Attributes
     ----------
     until : float
-        When two of our own runs are apart, or the end [s].
+        Time at which two Stridula runs are apart, or the end [s].
     step : float
         Step of both codes [s].
     apart : ndarray, shape (3,)
@@ -194,12 +194,12 @@ class Trajectories:
 
     @property
     def agree(self) -> bool:
-        """Whether they are within the tolerance."""
+        """Whether the differences are within the tolerance."""
         return bool(np.all(self.apart <= TRAJECTORY_TOLERANCE))
 
 
 def trajectories(pair: Pair) -> Trajectories:
-    """Compare one start; a smaller step for both where they are not within the tolerance."""
+    """Compare one start, with smaller steps for both until the differences are within the tolerance."""
     for step in STEPS:
         own = curves(ours(pair, GAP, DURATION, step))
         twin = curves(ours(pair, GAP + PERTURBATION, DURATION, step))
@@ -225,7 +225,7 @@ def drift(own: np.ndarray, twin: np.ndarray) -> int:
     """Return the number of samples until two runs are apart, by a share of the largest value so far."""
     scale = np.maximum.accumulate(np.abs(own), axis=1)
     apart = np.abs(twin - own) > APART * scale
-    # Before anything has happened the largest value so far is as small as the perturbation.
+    # At first the largest value so far is as small as the perturbation.
     apart &= scale > 0.01 * scale[:, -1:]
     where = np.flatnonzero(apart.any(axis=0))
     return int(where[0]) if where.size else own.shape[1]
@@ -240,7 +240,7 @@ class Shares:
     ours, theirs : ndarray, shape (3,)
         Shares of steps separated, sticking, sliding.
     settles : bool
-        Whether all of our runs end in one state.
+        Whether all Stridula runs end in one state.
     """
 
     ours: np.ndarray
@@ -249,7 +249,7 @@ class Shares:
 
     @property
     def agree(self) -> bool:
-        """Whether they are within the tolerance."""
+        """Whether the differences are within the tolerance."""
         return bool(np.all(np.abs(self.ours - self.theirs) <= SHARE_TOLERANCE))
 
 
@@ -264,7 +264,7 @@ def shares(pair: Pair) -> Shares:
 
 
 def speed(pair: Pair) -> list[float]:
-    """Return how many times faster we march the same steps of the same system, one after the other."""
+    """Return the ratios of the time of Siconos to that of Stridula for the same steps, one after the other."""
     step, ratios = STEPS[0], []
     for _ in range(SPEED_REPEATS):
         own = ours(pair, GAP, DURATION, step).attrs["wall_time"] / DURATION
@@ -273,7 +273,7 @@ def speed(pair: Pair) -> list[float]:
 
 
 def compare(pairs: list[Pair]) -> Iterator[tuple[Pair, Trajectories, Shares]]:
-    """Yield the comparisons of each pair, one Siconos on each core."""
+    """Yield the comparisons of all pairs, with one Siconos process on each core."""
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         both = [(pool.submit(trajectories, pair), pool.submit(shares, pair)) for pair in pairs]
         for pair, (trajectory, share) in zip(pairs, both, strict=True):

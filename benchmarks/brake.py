@@ -1,7 +1,7 @@
 """A brake of 2 x 60 points and some 400 modes against hand-written C of the same step (brake.c) and against real time.
 
-Two pads whose modes springs join, on a disc that turns, under friction at which the brake squeals: timed at its start,
-where all points slide, and when it squeals and points lift off. Without gcc there is no ratio to C.
+Two pads with modes coupled by springs, on a turning disc, with friction at which the brake squeals: timed at the start,
+when all points slide, and in squeal, when points lift off. Without gcc there is no ratio to C.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ MATRICES = [at.KEPT, at.STIFFNESS, at.MOBILITY, at.LOSS]
 
 
 def pad(side: float, disc: st.AxisymmetricBody) -> tuple[st.SurfaceContact, st.Force, list[st.Spring]]:
-    """Return a pad above the disc, or below it, with what presses and what holds it."""
+    """Return a pad above or below the disc, with the force that presses it and the springs that hold it."""
     mesh = st.SolidMesh.sector((0.085, 0.125), (-0.4, 0.4), 0.012, DIVISIONS, axis="y")
     mesh = mesh.moved((0.0, 0.01 * side, 0.0), (0.0, 0.0, 0.5 * np.pi * (1.0 - side)))
     name = "upper pad" if side > 0.0 else "lower pad"
@@ -54,7 +54,7 @@ def pad(side: float, disc: st.AxisymmetricBody) -> tuple[st.SurfaceContact, st.F
 
 
 def brake(turning: float = 20.0) -> st.System:
-    """Return two pads pressed on a disc that turns, in equilibrium at the start; on a slow one they soon stick."""
+    """Return two pads pressed on a turning disc, in equilibrium at the start; on a slow disc they soon stick."""
     profile = st.RectangleProfile({"disc": ((0.06, 0.13), (-0.01, 0.01))})
     disc = st.AxisymmetricBody(profile, IRON, 17e3, "inner", damping=0.001, axis=(0.0, 1.0, 0.0), turning=turning)
     faces, loads, springs = zip(*(pad(side, disc) for side in (1.0, -1.0)), strict=True)
@@ -62,7 +62,7 @@ def brake(turning: float = 20.0) -> st.System:
 
 
 class Pair:
-    """The brake some steps after its start, ready to be marched by the package and by C."""
+    """The brake some steps after its start, prepared for the march of the package and of C."""
 
     def __init__(self, system: st.System, before: int) -> None:
         arrays = assemble(system, [])
@@ -71,14 +71,14 @@ class Pair:
         earlier = March([blocks], [state], STEP, RATIO)
         earlier.advance([imposed_on(arrays, blocks.used, 0, before, STEP)], before // RATIO)
         (state,) = earlier.states
-        # What is recorded of energies goes on from nothing, in both.
+        # Recorded energies start from zero in both.
         state = replace(state, energies=np.zeros(at.ENERGIES))
         self.before, self.arrays = before, arrays
         self.case = Case(blocks, state, imposed_on(arrays, blocks.used, before, STEPS, STEP))
         self.march = March([blocks], [state], STEP, RATIO)
 
     def ours(self) -> Result:
-        """March the package and return what it gives."""
+        """March the package and return its results."""
         march = self.march.copy()
         (chunk,) = march.advance([self.case.imposed], STEPS // RATIO)
         (state,) = march.states
@@ -91,20 +91,20 @@ class Pair:
         }
 
     def sweeps(self) -> float:
-        """Return the mean of the sweeps in a step."""
+        """Return the mean number of sweeps in a step."""
         case = self.case
         (chunk,) = March([case.blocks], [case.state], STEP, 1).advance([case.imposed], STEPS)
         return float(chunk.energies[:, at.ITERATIONS].mean())
 
     def order(self) -> np.ndarray:
-        """Return the modes as C has them: those of the pads, pairs of the disc in two rows, its others."""
+        """Return the modes in the order of C: pads, pairs of the disc in two rows, other modes of the disc."""
         coupled, (disc,) = self.case.blocks.modes.coupled, self.case.blocks.turning
         pairs = disc.pairs.T.ravel()
         others = np.setdiff1d(np.arange(coupled, self.arrays.mode_count), pairs)
         return np.concatenate([np.arange(coupled), pairs, others])
 
     def turns(self) -> np.ndarray:
-        """Return the turns of the pairs in a step: one less the cosines, and sines, of pairs, material and both."""
+        """Return the turns of the pairs in a step: one minus the cosines, and sines, of pairs, material and both."""
         (disc,), (angle,) = self.case.blocks.turning, self.case.imposed.angles[0]
         drag, order = disc.turns * angle
         between = order - drag
@@ -134,7 +134,7 @@ class Pair:
         }  # fmt: skip
 
     def theirs(self, compiled: ctypes.CDLL) -> Result:
-        """March C and return what it gives."""
+        """March C and return its results."""
         arrays = {name: np.ascontiguousarray(array).copy() for name, array in self.in_c().items()}
         modes, solve = self.case.blocks.modes, st.GaussSeidel()
         sizes = {
@@ -160,7 +160,7 @@ class Pair:
 
 
 def agree(found: Result, expected: Result) -> None:
-    """Stop where the two marches are apart."""
+    """Exit if the results of the two marches differ."""
     for quantity, values in found.items():
         must_agree(f"{quantity} of the march and of brake.c", values, expected[quantity], TOLERANCE)
 
@@ -168,7 +168,7 @@ def agree(found: Result, expected: Result) -> None:
 def rows() -> Iterator[Ratio | str]:
     """Yield memory, then speed, sweeps and the ratio to C, sliding and squealing."""
     if not hasattr(os, "wait4"):
-        yield "memory: skipped, this system does not say what a process took"
+        yield "memory: skipped, this system does not report the memory of a process"
     else:
         yield Ratio("peak memory of a fresh process, from meshes to record, over 1 GB", [peak()])
     system = brake()
@@ -177,7 +177,7 @@ def rows() -> Iterator[Ratio | str]:
 
 
 def ratios(regime: str, pair: Pair) -> Iterator[Ratio | str]:
-    """Yield what marches of a pair come to."""
+    """Yield the results of the marches of a pair."""
     words = f"{len(pair.arrays.contacts) // 2} points, {pair.arrays.mode_count} modes, {regime}"
     if missing := without_gcc():
         (ours,) = seconds(pair.ours)

@@ -1,9 +1,9 @@
-"""Closed contacts in space, solved by Siconos' `FrictionContact(3)` and here: forces and residuals side by side.
+"""Closed contacts in space, solved by Siconos' `FrictionContact(3)` and by Stridula: forces and residuals side by side.
 
-``python benchmarks/cones.py --seed 2`` draws problems as those of FCLIB: contacts between bodies of random modes, more
-of these than rows, pressed together and pushed about. Both solve the same complementarity between gaps, slips and
-forces. What is left of it, the residual, is measured the same way on both answers. The exit status is 1 if forces
-differ or a residual of ours is too large. Without Siconos the comparison is skipped and says so.
+``python benchmarks/cones.py --seed 2`` draws problems like those of FCLIB: contacts between bodies of random modes,
+with more modes than rows, under random displacements. Both solve the same complementarity between gaps, slips and
+forces. The residual is computed in the same way for both. The exit status is 1 if forces differ or a residual of
+Stridula is too large. Without Siconos the comparison is skipped with a message.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from stridula.integration.forces import forces_of
 SEED = 2011
 COUNTS = sized((1, 2, 4, 8, 16, 32), (1, 3))
 EACH = sized(5, 2)
-# Modes for each row of the contacts: the compliance is regular then.
+# Modes for each row of the contacts, enough for a regular compliance.
 MODES = 1.5
-# Both solve to 1e-12; forces are as much more apart as the compliance is conditioned, some hundreds.
+# Both solve to 1e-12; the condition of the compliance, some hundreds, multiplies the difference of the forces.
 FORCES, RESIDUAL = 1e-8, 1e-9
 
 Case = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -38,13 +38,13 @@ def drawn(random: np.random.Generator, count: int) -> Case:
     compliance = rows @ rows.T / rows.shape[1] + 0.05 * np.eye(3 * count)
     free = random.standard_normal(3 * count)
     free[::3] -= 1.0
-    # One at least is closed.
+    # At least one contact is closed.
     free[0] = -1.0 - abs(free[0])
     return compliance, free, random.uniform(0.1, 0.7, count)
 
 
 def here(case: Case) -> np.ndarray:
-    """Return the forces as the march finds them, as they push, shape (3 contacts,)."""
+    """Return the forces of the march, with the signs of the push, shape (3 contacts,)."""
     compliance, free, friction = case
     count = len(friction)
     pairs = np.zeros((4 * count, 4 * count))
@@ -61,7 +61,7 @@ def here(case: Case) -> np.ndarray:
 
 
 def residual(case: Case, forces: np.ndarray) -> float:
-    """Return what is left of the complementarity: how far forces less displacements, projected, are from forces."""
+    """Return the residual of the complementarity: forces less the projection of forces minus displacements."""
     compliance, free, friction = case
     moved = (free + compliance @ forces).reshape(-1, 3)
     pushed = forces.reshape(-1, 3)
@@ -80,7 +80,7 @@ def projected(forces: np.ndarray, friction: np.ndarray) -> np.ndarray:
 
 
 def there(cases: list[Case]) -> list[np.ndarray]:
-    """Return the forces that Siconos finds."""
+    """Return the forces of Siconos."""
     with tempfile.TemporaryDirectory() as folder:
         given, answers = Path(folder) / "cases.npz", Path(folder) / "answers.npz"
         words = ("compliance", "free", "friction")

@@ -1,18 +1,18 @@
 """Many one-second runs of the squeal case on a GPU: runs per second, against the processor and the card's peak.
 
-    python benchmarks/gpu.py              measure; a line and no more without a GPU
+    python benchmarks/gpu.py              measure; without a GPU only a line that says so
     python benchmarks/gpu.py --dry-run    compile for compute capability 9.0 without a GPU: registers, local memory
     python benchmarks/gpu.py --map 1000   also a map of 1000 x 1000 runs, friction by angle
-    python benchmarks/gpu.py --short      a few short runs against the processor, also on the simulator of numba
+    python benchmarks/gpu.py --short      a few short runs against the processor, also on numba's simulator
 
-Operations of a step, products and sums by themselves, from `_kernels.mode_rows`. A fixed mode takes 25: its push 3,
-its step 7, work 2 and loss 4, the next position 5, and 2 for each of its two sums. A harmonic takes 28: its row 1, push
-2, step 7, work 2 and loss 4, slope 3, trace 7, softness 2; and 6 for a sine and a cosine, which bending and axial
-harmonics share. What a step does once, some 150, is left out.
+Operations of a step, products and sums counted separately, from `_kernels.mode_rows`. A fixed mode takes 25: its push
+3, its step 7, work 2 and loss 4, the next position 5, and 2 for each of its two sums. A harmonic takes 28: its row 1,
+push 2, step 7, work 2 and loss 4, slope 3, trace 7, softness 2; and 6 for a sine and a cosine, which bending and axial
+harmonics share. The some 150 operations that a step does once are left out.
 
-It moves 9 doubles for a fixed mode, 12 for a harmonic and 4 for a sine and cosine: a third of an operation a byte. So
-the card's memory, not its arithmetic, is what one run per thread is expected to come up against, at a few per cent of
-the peak in double precision.
+It moves 9 doubles for a fixed mode, 12 for a harmonic and 4 for a sine and cosine: a third of an operation a byte. The
+memory of the card, not its arithmetic, is expected to limit one run per thread, at a few per cent of the peak in double
+precision.
 """
 
 from __future__ import annotations
@@ -47,13 +47,13 @@ from systems import FORCES, TOLERANCE, Case, squeal
 TITLE = "runs per second on a GPU over those on all cores"
 DURATION, SAMPLE_RATE = sized((1.0, 100.0), (1e-3, 1e4))
 CHUNK = 10
-# How far [samples] runs on a card and on the processor are alike.
+# Number of samples over which runs on a card and on the processor agree.
 SAMPLES_ALIKE = 2
 RATIO_RUNS = sized((1_000, 10_000), (3,))
 SIZES = (1_000, 3_000, 10_000, 30_000, 100_000)
 THREADS = (32, 64, 128, 256)
 RUNS_OF_THE_PROCESSOR = 4 * LANES
-# Runs of a map that are on the card at a time.
+# Runs of a map on the card at a time.
 RUNS_AT_A_TIME = 100_000
 # Units of double precision in a multiprocessor, by compute capability (CUDA programming guide, arithmetic throughput).
 UNITS = {(6, 0): 32, (7, 0): 32, (8, 0): 32, (9, 0): 64, (10, 0): 64, (6, 1): 4, (7, 5): 2, (8, 6): 2, (8, 9): 2}
@@ -63,14 +63,14 @@ DRY = (9, 0)
 
 @dataclass(frozen=True)
 class Timing:
-    """Step [s] of a run, steps a sample, samples.
+    """Time step, steps in a sample and samples of a run.
 
     Attributes
     ----------
     step : float
         Time step [s].
     ratio, samples : int
-        Steps a sample, and samples of a run.
+        Steps in a sample, and samples of a run.
     """
 
     step: float
@@ -79,13 +79,13 @@ class Timing:
 
 
 def timing() -> Timing:
-    """Return the timing that the package chooses."""
+    """Return the default timing of the package."""
     chosen = st.simulate(squeal(radians(45.0), 1.5), 2.0 / SAMPLE_RATE, sample_rate=SAMPLE_RATE, probes=[]).attrs
     return Timing(chosen["step"], chosen["steps_per_sample"], round(DURATION * SAMPLE_RATE))
 
 
 def cases(frictions: Iterable[float], angles: Iterable[float], step: float) -> Iterator[Case]:
-    """Yield every friction at every angle; a start that is apart does not depend on friction."""
+    """Yield every friction at every angle; the start is separated and does not depend on friction."""
     scheme, frictions = st.ExactModal(), list(frictions)
     for angle in angles:
         arrays = assemble(squeal(angle, 1.0), [])
@@ -123,7 +123,7 @@ def march_of(kind, some, at: Timing):
 
 
 def go(march, some, samples: int) -> float:
-    """March through some samples and return the seconds that took."""
+    """March through some samples and return the wall time [s]."""
     imposed, began = [one.imposed for one in some], time.perf_counter()
     for done in range(0, samples, CHUNK):
         march.advance(imposed, min(CHUNK, samples - done))
@@ -131,7 +131,7 @@ def go(march, some, samples: int) -> float:
 
 
 def agree(some: list[Case], at: Timing) -> None:
-    """Stop where some runs are not the same on the card and on the processor, before chaos parts them."""
+    """Exit if runs on the card and on the processor differ before chaos separates them."""
     few, sides = some[:LANES], []
     for kind in (CudaMarch, March):
         march = march_of(kind, few, at)
@@ -161,20 +161,20 @@ def operations(blocks: Blocks) -> int:
 
 
 def peak(device) -> float:
-    """Return the operations per second of a card in double precision, not a number where its units are not known."""
+    """Return the operations per second of a card in double precision, NaN for an unknown card."""
     units = UNITS.get(tuple(device.compute_capability), np.nan)
     return 2.0 * units * device.MULTIPROCESSOR_COUNT * 1e3 * device.CLOCK_RATE
 
 
 def occupancy(registers: int, threads: int) -> float:
-    """Return the share of the warps of a multiprocessor that its registers have room for."""
+    """Return the share of the warps of a multiprocessor for which its registers suffice."""
     warps = threads // WARP
     per_warp = -(-registers * WARP // 256) * 256
     return REGISTERS // (per_warp * warps) * warps / MOST_WARPS
 
 
 def rows() -> Iterator[Ratio | str]:
-    """Yield the ratio to the processor, or say why there is none."""
+    """Yield the ratio to the processor, or the reason why there is none."""
     try:
         require_cuda()
     except RuntimeError as error:
@@ -232,7 +232,7 @@ def measure(at: Timing) -> None:
 
 
 def map_of(side: int, at: Timing) -> None:
-    """March a map of friction by angle and print its time, all that the processor does for it included."""
+    """March a map of friction by angle and print its time, including the work of the processor."""
     began, marched = time.perf_counter(), 0.0
     for some in batched(grid(side * side, at.step), RUNS_AT_A_TIME):
         marched += go(march_of(CudaMarch, some, at), some, at.samples)
@@ -241,7 +241,7 @@ def map_of(side: int, at: Timing) -> None:
 
 
 def dry_run() -> None:
-    """Compile the march for a card that is not there and print what a thread takes."""
+    """Compile the march for a card that is not present and print the resources of a thread."""
     from numba import cuda, types
     from numba.cuda import dispatcher
 
@@ -274,7 +274,7 @@ def dry_run() -> None:
 
 
 def _resources(assembler: str, source: Path, most: int) -> tuple[int, ...]:
-    """Return registers of a thread, bytes of its stack, and of those stored and loaded for want of registers."""
+    """Return registers of a thread, bytes of its stack, and bytes stored and loaded for lack of registers."""
     target = f"-arch=sm_{DRY[0]}{DRY[1]}"
     command = [assembler, target, "-v", f"-maxrregcount={most}", str(source), "-o", str(source.with_suffix(".cubin"))]
     words = subprocess.run(command, check=True, capture_output=True, text=True).stderr
@@ -286,7 +286,7 @@ def _resources(assembler: str, source: Path, most: int) -> tuple[int, ...]:
 
 
 def main() -> None:
-    """Measure, or say why not."""
+    """Measure, or print why not."""
     words = arguments(__doc__)
     words.add_argument("--dry-run", action="store_true", help="compile without a GPU")
     words.add_argument("--map", type=int, default=0, metavar="SIDE", help="also a map of SIDE x SIDE runs")

@@ -1,4 +1,4 @@
-"""The machine in words: what ratios depend on, and nothing that names it."""
+"""Description of the machine, as far as ratios depend on it, without its name."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def description() -> list[str]:
 
 
 def processor() -> str:
-    """Return the name that the processor gives itself."""
+    """Return the model name of the processor."""
     listed = Path("/proc/cpuinfo")
     if listed.exists():
         for line in listed.read_text(encoding="utf-8").splitlines():
@@ -49,10 +49,10 @@ def vector_bits() -> str:
 
 
 def compiler() -> str:
-    """Return the C compiler that the reference is built with."""
+    """Return the C compiler of the reference."""
     return printed("gcc", "--version").partition("\n")[0] if shutil.which("gcc") else "none"
 
 
 def printed(*command: str) -> str:
-    """Return what a command prints."""
+    """Return the output of a command."""
     return subprocess.run(command, capture_output=True, text=True).stdout.strip()

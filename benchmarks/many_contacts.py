@@ -1,4 +1,4 @@
-"""The march of many contacts against hand-written C of the same step (contacts.c): time per step as a ratio to C's.
+"""The march of many contacts against hand-written C of the same step (contacts.c): ratio of the times per step.
 
 A body of 100 and 200 modes pressed on a belt at 8, 20 and 40 points, Coulomb's law, ledger included. Needs gcc;
 skipped without.
@@ -31,7 +31,7 @@ TOLERANCE, BAR = 1e-6, 1.5
 
 
 class Pair:
-    """One system, ready to be marched by the package and by C."""
+    """A system prepared for the march of the package and of C."""
 
     def __init__(self, contacts: int, modes: int, compiled: ctypes.CDLL) -> None:
         system = slab(contacts, modes)
@@ -42,14 +42,14 @@ class Pair:
         self.compiled, self.count = compiled, contacts
 
     def ours(self) -> Result:
-        """March the package and return what it gives."""
+        """March the package and return its results."""
         march = self.march.copy()
         (chunk,) = march.advance([self.case.imposed], STEPS // RATIO)
         (state,) = march.states
         return result(state.modal[at.Q], state.energies, chunk.contacts[:, :, [at.NORMAL_FORCE, at.TANGENTIAL_FORCE]])
 
     def theirs(self) -> Result:
-        """March C and return what it gives."""
+        """March C and return its results."""
         modes, contacts, state = self.case.blocks.modes, self.case.blocks.contacts, deepcopy(self.case.state)
         scale, count, solve = scale_of(modes), self.count, st.GaussSeidel()
         size, number = 2 * count, scale.size
@@ -75,13 +75,13 @@ class Pair:
 
 
 def result(positions: np.ndarray, ledger: np.ndarray, forces: np.ndarray) -> Result:
-    """Return what must agree: forces are sums over all contacts and samples."""
+    """Return the results that must agree: forces are sums over all contacts and samples."""
     kept = [at.CONTACT_WORK, at.FRICTION_LOSS, at.DAMPING_LOSS]
     return {"positions": positions, "ledgers": ledger[kept], "forces": forces.reshape(-1, 2).sum(axis=0)}
 
 
 def agree(found: Result, expected: Result) -> None:
-    """Stop where the two marches are apart."""
+    """Exit if the results of the two marches differ."""
     for quantity, values in found.items():
         must_agree(f"{quantity} of the march and of contacts.c", values, expected[quantity], TOLERANCE)
 

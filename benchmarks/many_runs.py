@@ -49,7 +49,7 @@ def of_the_march(modes: int) -> list[float]:
 
 
 def same_march(found: list[Chunk], expected: list[Chunk]) -> None:
-    """Stop where the recorded forces differ."""
+    """Exit if the recorded forces differ."""
     here, there = ([run.contacts[..., FORCES] for run in runs] for runs in (found, expected))
     must_agree("forces of runs marched side by side and alone", here, there, TOLERANCE)
 

@@ -18,13 +18,13 @@ TITLE = f"map of {SIDE} x {SIDE} points: squeal over friction and angle, {DURATI
 LONGEST_WALL_TIME = 20.0
 ASKED = ("--vary", f"friction=0.2:2.0:{SIDE}", "--vary", f"angle=10deg:80deg:{SIDE}", "--duration", f"{DURATION}")
 VERB = "from stridula.cli import main; main()"
-# The commit whose sources it is compared with, and the bar.
+# Commit of the sources to compare with, and the bar.
 BEFORE, SHARE = "4514ce1", 0.7
 ROOT = Path(__file__).resolve().parents[1]
 
 
 def rows() -> Iterator[Ratio | str]:
-    """Yield the wall time of the whole command over its bar, over that of one worker, and over that of before."""
+    """Yield the wall time of the command over its bar, over that of one worker, and over that of older sources."""
     all_cores, one = seconds(sweep, lambda: sweep("--workers", "1"), agree=same)
     bar = [LONGEST_WALL_TIME] * REPEATS
     yield Ratio("whole command with its figure, over 20 s", over(all_cores, bar), most=1.0)
@@ -33,7 +33,7 @@ def rows() -> Iterator[Ratio | str]:
 
 
 def over_before() -> Iterator[Ratio | str]:
-    """Yield the wall time of the whole command over that of the sources of before, or why there is none."""
+    """Yield the wall time of the whole command over that with the older sources, or the reason why there is none."""
     if SHORT or shutil.which("git") is None:
         yield f"the map of the sources of {BEFORE} takes {'the usual form' if SHORT else 'git, which is not installed'}"
         return
@@ -47,7 +47,7 @@ def over_before() -> Iterator[Ratio | str]:
 
 @contextmanager
 def sources_of_before() -> Iterator[Path | None]:
-    """Put the sources of before into a folder of their own, where git has them."""
+    """Check the older sources out into a folder, if git has them."""
     with tempfile.TemporaryDirectory() as folder:
         packed = Path(folder) / "sources.tar"
         asked = ["git", "-C", str(ROOT), "archive", "--output", str(packed), BEFORE, "src"]
@@ -59,13 +59,13 @@ def sources_of_before() -> Iterator[Path | None]:
 
 
 def same(found: bytes, expected: bytes) -> None:
-    """Stop where two files differ."""
+    """Exit if two files differ."""
     if found != expected:
         raise SystemExit("maps of one worker and of all must be the same bytes, differ")
 
 
 def sweep(*options: str, sources: Path | None = None) -> bytes:
-    """Run the command in an empty folder, by other sources if they are given, and return the file it writes."""
+    """Run the command in an empty folder, with other sources if given, and return the file that it writes."""
     environment = os.environ | ({"PYTHONPATH": str(sources)} if sources else {})
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "map.nc"

@@ -1,6 +1,6 @@
 """Time and memory of the modes of meshed bodies of ten, thirty and a hundred thousand degrees of freedom.
 
-A fresh process each: it meshes a disc, finds its modes up to 6 kHz and how all others yield at four points.
+A fresh process for each: it meshes a disc and computes its modes up to 6 kHz and the residual shapes of four points.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ import stridula as st
 from ratios import FORM, Ratio, show, sized
 
 TITLE = "modes of meshed bodies: a ring of iron that yields at four points"
-# Elements along radius, angle and axis, seconds and bytes over which time and memory are taken.
+# Elements along radius, angle and axis; units of time [s] and memory [bytes].
 DIVISIONS = sized(((6, 48, 2), (10, 80, 3), (16, 120, 4)), ((1, 8, 1),))
 SECOND, BYTES = 1.0, 1e9
 
 
 def rows() -> Iterator[Ratio | str]:
-    """Yield seconds and memory of each mesh, once: they are long beside all that disturbs them."""
+    """Yield time and memory of each mesh, measured once: they are long compared with disturbances."""
     for divisions in DIVISIONS:
         taken, peak, free, modes = measured(divisions)
         words = f"{free} degrees of freedom, {modes} modes and residual shapes"
         yield Ratio(f"{words}: time over 1 s", [taken / SECOND])
         if peak is None:
-            yield f"{words}: memory skipped, this system does not say what a process took"
+            yield f"{words}: memory skipped, this system does not report the memory of a process"
         else:
             yield Ratio(f"{words}: peak memory over 1 GB", [peak / BYTES])
 
@@ -52,7 +52,7 @@ def measured(divisions: tuple[int, int, int]) -> tuple[float, float | None, int,
 
 
 def find_modes(divisions: tuple[int, int, int]) -> None:
-    """Print the seconds that the modes of a ring take, its degrees of freedom and its modes."""
+    """Print the time for the modes of a ring [s], its degrees of freedom and its number of modes."""
     began = time.perf_counter()
     mesh = st.SolidMesh.sector((0.06, 0.13), (0.0, 6.283185307179586), 0.02, divisions)
     places = {f"foot {k}": int(mesh.nodes_of("top")[k * len(mesh.nodes_of("top")) // 4]) for k in range(4)}

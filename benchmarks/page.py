@@ -1,14 +1,14 @@
-"""The page under the hand: time from slider to ear, pictures a second and drop-outs, with the server on one core.
+"""The page in use: time from slider to ear, pictures per second and drop-outs, with the server on one core.
 
     python benchmarks/page.py                                   two minutes
     python benchmarks/page.py --minutes 10 --write docs/performance.md
     python benchmarks/page.py --map on off --busy               with a map and without, a busy process beside the server
-    python benchmarks/page.py --cores 1                         browser and all on one core
-    python benchmarks/page.py --short                           some seconds; the server alone where there is no browser
+    python benchmarks/page.py --cores 1                         everything on one core, browser included
+    python benchmarks/page.py --short                           some seconds; the server alone without a browser
 
-It needs Debian's chromium and playwright. Chromium plays into a sink without a sound card, at the pace of one. From
-slider to ear: from the key that moves the friction slider to the moment the first sample computed with it leaves the
-queue of the player, and the limiter's look-ahead and what the browser says of its output on top.
+It needs Debian's chromium and playwright. Chromium plays to a sink at the pace of a sound card. Time from slider to
+ear: from the key that moves the friction slider to the moment when the first sample computed with it leaves the queue
+of the player, plus the look-ahead of the limiter and the output latency that the browser reports.
 """
 
 from __future__ import annotations
@@ -50,13 +50,13 @@ def memory(process: int) -> float:
 
 
 def processor_time(process: int) -> float:
-    """Return the processor time that a process has taken [s]."""
+    """Return the processor time of a process [s]."""
     fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / TICKS
 
 
 def idle() -> str:
-    """Start the server and return what it takes before anybody plays."""
+    """Start the server and return its memory and processor time before any use."""
     server, address = served()
     try:
         with urllib.request.urlopen(address) as page:
@@ -70,7 +70,7 @@ def idle() -> str:
 
 @contextmanager
 def busy(wanted: bool) -> Iterator[None]:
-    """Keep the core of the server busy meanwhile, if wanted: a process of the same priority that never rests."""
+    """Keep the core of the server busy, if wanted, by a process of the same priority that never rests."""
     if not wanted:
         yield
         return
@@ -84,7 +84,7 @@ def busy(wanted: bool) -> Iterator[None]:
 
 
 def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
-    """Play for some minutes, turning the friction every second and a half; return what was seen."""
+    """Play for some minutes, changing the friction every 1.5 s; return the measurements."""
     from playwright.sync_api import sync_playwright
 
     server, address = served()
@@ -99,7 +99,7 @@ def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
                 page.click("#map-on")
             page.click("#sound")
             time.sleep(5.0)
-            # What is settled is measured: drop-outs count from the very first sample.
+            # Latencies count once the page has settled, drop-outs from the first sample.
             page.evaluate("stridula.stats.latencies.length = 0")
             began, ticks, number = time.monotonic(), processor_time(server.pid), 0
             while time.monotonic() - began < 60.0 * minutes:
@@ -124,7 +124,7 @@ def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
 
 
 def table(seen: dict[str, list[float]], words: str) -> list[str]:
-    """Return what was seen as lines of Markdown."""
+    """Return the measurements as lines of Markdown."""
     latency, fps = np.array(seen["latency"]), np.array(seen["fps"])
     first, last = seen["memory"][0], seen["memory"][-1]
     return [
@@ -142,7 +142,7 @@ def table(seen: dict[str, list[float]], words: str) -> list[str]:
 
 
 def circumstances(minutes: float, with_map: bool, is_busy: bool) -> str:
-    """Return what was measured, in words."""
+    """Return a description of the measurement."""
     words = f"{minutes:g} minutes, {'with maps computed beside it' if with_map else 'without maps'}"
     words += ", a busy process on the core of the server" * is_busy
     cores = len(os.sched_getaffinity(0))

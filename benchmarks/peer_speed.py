@@ -1,4 +1,4 @@
-"""Time of a step of Siconos over ours (against_siconos.py): the same modal system and steps, one after the other."""
+"""Time of a step of Siconos over that of Stridula (against_siconos.py): the same modal system and steps, in turn."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ TITLE = "time of a step of Siconos over ours"
 
 
 def rows() -> Iterator[Ratio | str]:
-    """Yield the ratio, or say that Siconos is missing."""
+    """Yield the ratio, or a line that Siconos is missing."""
     if not peer.installed():
         yield "skipped: Siconos is not installed (Debian: python3-siconos)"
         return
     pairs, _ = peer.draw(np.random.default_rng(peer.SEED))
     if not peer.trajectories(pairs[0]).agree:
-        raise SystemExit("Siconos and we must agree on the first system of the comparison: see against_siconos.py")
+        raise SystemExit("Siconos and Stridula must agree on the first system: see against_siconos.py")
     peer.ours(pairs[0], peer.GAP, peer.SPEED_DURATION, peer.STEPS[0])
     modes = pairs[0].rows.shape[1]
     yield Ratio(f"{modes} modes, first system of the comparison, 1 us", peer.speed(pairs[0]))

@@ -1,7 +1,7 @@
-"""Ratios of what is timed in turns in one process, and their table; what the sides of a ratio must agree in.
+"""Ratios of times measured in turns in one process, their table, and the agreement of the sides of a ratio.
 
-With `--short` among the arguments of any benchmark, all that is `sized` is small: seconds show that everything runs and
-agrees, and the ratios mean nothing.
+With `--short` among the arguments of any benchmark, everything `sized` is small: a run of seconds shows that all parts
+work and agree, but its ratios mean nothing.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import numpy as np
 import machine
 
 SHORT = "--short" in sys.argv
-# For processes of its own.
+# Arguments for child processes.
 FORM = ("--short",) if SHORT else ()
 Size, Found = TypeVar("Size"), TypeVar("Found")
 
@@ -32,23 +32,23 @@ def sized(usual: Size, short: Size) -> Size:
     return short if SHORT else usual
 
 
-# Rounds that count, and those before them, in which things are compiled.
+# Rounds that count, and rounds before them for compilation.
 REPEATS, WARM_UP = sized((5, 1), (1, 0))
 HEAD = ("quantity", "bar", "min", "median", "max", "")
 
 
 @dataclass(frozen=True)
 class Ratio:
-    """What a ratio is, its value in each repeat, and its bar: least or most that the median may be.
+    """A ratio: its quantity, its value in each repeat, and its bar, the smallest or largest median allowed.
 
     Attributes
     ----------
     quantity : str
-        What over what.
+        Description, as "one quantity over another".
     values : list of float
         One value for each repeat.
     least, most : float or None
-        The bar, if it has one.
+        Smallest or largest median allowed, None without a bar.
     """
 
     quantity: str
@@ -63,30 +63,30 @@ class Ratio:
         return (self.least is not None and median < self.least) or (self.most is not None and median > self.most)
 
     def cells(self) -> tuple[str, ...]:
-        """Return its line of the table."""
+        """Return the cells of its line in the table."""
         bar = f">= {self.least:g}" if self.least is not None else f"<= {self.most:g}" if self.most is not None else ""
         spread = (min(self.values), statistics.median(self.values), max(self.values))
         return self.quantity, bar, *map(short, spread), "misses" if self.misses and not SHORT else ""
 
 
-# A line that is not a ratio says why there is none.
+# A line that is not a ratio gives the reason why there is none.
 Lines = Iterable[Ratio | str]
 
 
 def short(value: float) -> str:
-    """Return three digits or all of an integer."""
+    """Return a number to three digits, or as an integer from 100 on."""
     return f"{value:.0f}" if value >= 100.0 else f"{value:.3g}"
 
 
 def seconds(*sides: Callable[[], Found], agree: Callable[[Found, Found], None] | None = None) -> list[list[float]]:
-    """Return the seconds that each side took in each repeat: in turns, after a first round that compiles.
+    """Return the wall times of each side in each repeat [s], taken in turns after a first round that compiles.
 
     Parameters
     ----------
     *sides : callable
-        What is timed.
+        Functions to time.
     agree : callable, optional
-        It stops where what a side returns and what the first one returns are not the same, as they should be.
+        Function that exits if the result of a side differs from that of the first.
     """
     taken: list[list[float]] = [[] for _ in sides]
     for repeat in range(WARM_UP + REPEATS):
@@ -104,7 +104,7 @@ def seconds(*sides: Callable[[], Found], agree: Callable[[Found, Found], None] |
 
 
 def must_agree(quantity: str, found: object, expected: object, tolerance: float) -> None:
-    """Stop, in one line, where two sides are further apart than a share of the largest value."""
+    """Exit with a one-line message if two sides differ by more than a share of the largest value."""
     found, expected = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
     same_shape = found.shape == expected.shape
     apart = np.abs(found - expected).max() / (np.abs(expected).max() or 1.0) if same_shape else np.inf
@@ -113,16 +113,16 @@ def must_agree(quantity: str, found: object, expected: object, tolerance: float)
 
 
 def arguments(description: str) -> argparse.ArgumentParser:
-    """Return a parser of a benchmark's own arguments; the short form is chosen before it is asked."""
+    """Return a parser of a benchmark's own arguments; `--short` has taken effect before."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
-        "--short", action="store_true", help="run all of it small: it runs and agrees, and measures nothing"
+        "--short", action="store_true", help="run everything small, to check that it works and agrees; measures nothing"
     )
     return parser
 
 
 def over(above: list[float], below: list[float], factor: float = 1.0) -> list[float]:
-    """Return the ratios of two sides, repeat by repeat."""
+    """Return the ratios of two sides for each repeat."""
     return [factor * one / other for one, other in zip(above, below, strict=True)]
 
 
@@ -135,7 +135,7 @@ def as_text(title: str, lines: Lines) -> Iterator[str]:
 
 
 def laid_out(cells: tuple[str, ...]) -> str:
-    """Return a line of the table on a terminal."""
+    """Return a line of the table for a terminal."""
     quantity, bar, *numbers, verdict = cells
     return f"{quantity:<66}{bar:>8}{''.join(f'{number:>9}' for number in numbers)}  {verdict}".rstrip()
 
@@ -159,7 +159,7 @@ def show(title: str, lines: Lines) -> None:
 
 
 def write_between(begin: str, end: str, target: Path, lines: list[str]) -> None:
-    """Replace what stands between two marks of a page."""
+    """Replace the lines between two marks of a page."""
     before, _, rest = target.read_text(encoding="utf-8").partition(begin)
     _, mark, after = rest.partition(end)
     if not mark:
@@ -168,10 +168,10 @@ def write_between(begin: str, end: str, target: Path, lines: list[str]) -> None:
 
 
 def peak_memory(script: str) -> float:
-    """Return the peak memory of a fresh process that runs a script with the word child [bytes]."""
+    """Return the peak memory of a fresh process that runs a script with the argument ``child`` [bytes]."""
     process = subprocess.Popen([sys.executable, script, "child", *FORM])
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode:
-        raise RuntimeError(f"the run whose memory is taken ended with exit code {process.returncode}")
+        raise RuntimeError(f"the run for the memory measurement ended with exit code {process.returncode}")
     return float(usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024))

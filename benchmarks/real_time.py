@@ -1,8 +1,8 @@
-"""The paper's cases against real time, on one core: simulated time over wall time, all of `simulate` included.
+"""The paper's cases against real time, on one core: simulated time over wall time of the whole `simulate`.
 
 Alone, and as eight runs side by side; recorded at 1 kHz without probes and at the default 100 kHz with the
-acceleration of the track; at the step that the package chooses and at 10 µs. Of the six cases the slowest stands in
-the table.
+acceleration of the track; at the step that the package chooses and at 10 µs. The table
+shows the slowest of the six cases.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ STEPS = {"default step": None, "10 us": 1e-5}
 
 
 def rows() -> Iterator[Ratio]:
-    """Yield the slowest case of each way to run."""
+    """Yield the slowest case for each kind of run."""
     systems = {name: load_scenario(name).system for name in CASES}
     for record, options in RECORDS.items():
         for words, step in STEPS.items():
@@ -36,7 +36,7 @@ def rows() -> Iterator[Ratio]:
 
 
 def slowest(systems: dict[str, st.System], speed: Callable[[st.System], float]) -> tuple[str, list[float]]:
-    """Return the case with the lowest median, and its values: all cases in each repeat, the first round apart."""
+    """Return the case with the lowest median, and its values: all cases in each repeat, without the first round."""
     rounds = [{name: speed(system) for name, system in systems.items()} for _ in range(WARM_UP + REPEATS)][WARM_UP:]
     values = {name: [one[name] for one in rounds] for name in systems}
     return min(values.items(), key=lambda item: statistics.median(item[1]))
@@ -50,7 +50,7 @@ def alone(system: st.System, given: dict) -> float:
 
 
 def side_by_side(system: st.System, given: dict) -> float:
-    """Return the speed of runs in one vector, their simulated times added up."""
+    """Return the speed of runs in one vector, with the sum of their simulated times."""
     began = time.perf_counter()
     st.simulate_many([system] * LANES, DURATION, workers=1, **given)
     return LANES * DURATION / (time.perf_counter() - began)

@@ -1,4 +1,4 @@
-"""How time grows: with modes, with laws of friction, with contacts, with runs, with cores."""
+"""Growth of time with modes, laws of friction, contacts, runs and cores."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from systems import (
 
 TITLE = "scaling"
 SAMPLES, RATIO = sized(200, 10), 100
-# Laws of about the ratio of the sliding case, and how much longer than Coulomb's a step may take.
+# Laws with about the ratio of the sliding case, and the largest time of a step over that under Coulomb's law.
 LAWS = {
     "exponential weakening": st.ExponentialWeakening(0.12, 0.1, 0.1),
     "linear weakening": st.LinearWeakening(0.12, 0.1, 0.1),
@@ -88,7 +88,7 @@ def plates() -> Iterator[Ratio]:
 
 
 def stepping(system: st.System) -> Callable[[], object]:
-    """Return what marches a system."""
+    """Return a function that marches a system."""
     step = 0.2 * limit_of(system)
     case = case_of(system, step)
     return marching(March([case.blocks], [case.state], step, RATIO), [case], SAMPLES)

@@ -1,4 +1,4 @@
-"""Many short squeals with their regimes over the march alone: what Python takes beside the compiled loop."""
+"""Many short squeals with their regimes over the march alone: the overhead of Python beside the compiled loop."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from stridula.analysis.regimes import TAKEN, regime_of
 from stridula.integration.marches import March
 from systems import SCHEME, Case, case_of, limit_of, marching, squeals
 
-# The ratio is that of 10 000 runs: what does not grow with the runs takes a millisecond.
+# The ratio equals that of 10 000 runs: the part that does not grow with the runs takes a millisecond.
 RUNS, DURATION = sized((1000, 0.2), (8, 0.02))
 WORKERS, RATE = 2, 20e3
 TITLE = f"{RUNS} squeals of {DURATION:g} s with their regimes, {WORKERS} workers"
@@ -29,13 +29,13 @@ def rows() -> Iterator[Ratio]:
 
 
 def regimes(systems: Sequence[st.System]) -> list[Any]:
-    """Simulate systems, none of which has been looked at before, and return their regimes."""
+    """Simulate systems without any cached results, and return their regimes."""
     given = {"sample_rate": RATE, "probes": (), "workers": WORKERS, "labelled": False, "variables": TAKEN}
     return st.simulate_many([replace(system) for system in systems], DURATION, regime_of, **given)
 
 
 def marches(systems: Sequence[st.System]) -> Any:
-    """Return what marches the same systems, all made ready before, eight side by side in each of the threads."""
+    """Return a function that marches the same systems, prepared before, eight side by side in each thread."""
     interval = 1.0 / RATE
     shortest = min(SCHEME.default_fraction * limit_of(system) for system in systems)
     ratio = int(-(-interval // shortest))

@@ -2,7 +2,7 @@
 
 ``python3 siconos_cones.py cases.npz answers.npz`` reads for each case k ``compliance_k`` (3 n, 3 n), rows of normal and
 both tangents of each contact, ``free_k`` (3 n,), displacements without forces, and ``friction_k`` (n,). It writes
-``forces_k`` (3 n,) as they push, so that displacements are free plus compliance times forces, and ``time_k`` [s].
+``forces_k`` (3 n,), with signs such that displacements are free plus compliance times forces, and ``time_k`` [s].
 """
 
 from __future__ import annotations

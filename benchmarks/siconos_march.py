@@ -1,6 +1,6 @@
-"""March frozen modal systems in contact with Siconos; runs under a Python that has it, with NumPy and nothing else.
+"""March frozen modal systems in contact with Siconos; needs a Python with Siconos and NumPy only.
 
-Moreau-Jean only: in Siconos 4.4.0 Moreau-Jean-Bilbao knows neither friction nor external forces.
+Moreau-Jean only: in Siconos 4.4.0 Moreau-Jean-Bilbao has neither friction nor external forces.
 
 ``python3 siconos_march.py case.npz answer.npz`` reads one case with several starts. Arrays of the case:
 
@@ -11,20 +11,20 @@ rows (2, modes)
 load (modes,)
     Constant modal forces.
 gap (runs,)
-    Distance at the start, which is at rest [m].
+    Initial gap; runs start at rest [m].
 friction, speed
     Coefficient [1]; velocity of the frame that carries the tip [m/s].
 step, steps, stride
     Step [s], steps of a run, steps of a sample.
 
-Arrays of the answer, normal force compressive, tangential force on the track along +x, as Stridula has them:
+Arrays of the answer, normal force compressive, tangential force on the track along +x, as in Stridula:
 
 normal_impulse, tangential_impulse, path (runs, samples)
     Impulses of each sample [N s]; tangential displacement of the tip against the track at its end [m].
 shares (runs, 3)
     Shares of steps separated, sticking, sliding.
 wall_time (runs,)
-    Of the march alone [s].
+    Wall time of the march alone [s].
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ import siconos.numerics as sn
 THETA = 0.5
 TOLERANCE = 1e-12
 SEPARATED, STICKING, SLIDING = range(3)
-# The pivots leave round-off of 1e-9 on sliding contacts; sticking is further inside the cone.
+# Pivoting leaves round-off of 1e-9 on sliding contacts; sticking is further inside the cone.
 INSIDE = 1.0 - 1e-6
-# The carriage is a free mode of mass 1 in a row this small, so that friction cannot slow it: it adds its square to W.
+# Row of the carriage, a free mode of mass 1: so small that friction cannot slow it. Its square is added to W.
 CARRIAGE = 1e-6
 
 
@@ -66,7 +66,7 @@ def march(case: dict[str, np.ndarray], run: int) -> tuple[np.ndarray, np.ndarray
 
 
 def state(normal: float, tangential: float, friction: float) -> int:
-    """Return the state that the impulses of a step mean."""
+    """Return the state that follows from the impulses of a step."""
     if normal <= 0.0:
         return SEPARATED
     return STICKING if abs(tangential) < INSIDE * friction * normal else SLIDING

@@ -1,4 +1,4 @@
-"""Systems in space: shipped rigs and faces in contact against real time, and what it costs that a disc turns."""
+"""Systems in space: shipped rigs and faces in contact against real time, and the cost of a turning disc."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def rows() -> Iterator[Ratio]:
 
 
 def speeds(system: st.System) -> tuple[list[float], list[float]]:
-    """Return simulated time over wall time in each repeat, and the mean of the sweeps in a step."""
+    """Return simulated time over wall time in each repeat, and the mean number of sweeps in a step."""
     found, sweeps = [], []
     for repeat in range(WARM_UP + REPEATS):
         began = time.perf_counter()
@@ -55,7 +55,7 @@ def disc(turning: float) -> st.AxisymmetricBody:
 
 
 def lined(divisions: tuple[int, int, int]) -> st.System:
-    """Return a lining that is pressed on a disc that turns."""
+    """Return a lining pressed on a turning disc."""
     mesh = st.SolidMesh.sector((0.085, 0.125), (-0.4, 0.4), 0.012, divisions, axis="y")
     pad = st.SolidBody(mesh, LINING, cutoff=12e3, damping=0.01, contact_faces=["bottom"], name="pad")
     face = st.SurfaceContact(pad, "bottom", disc(20.0), friction=st.Coulomb(0.3), stiffness=3e12)
@@ -67,7 +67,7 @@ def lined(divisions: tuple[int, int, int]) -> st.System:
 
 
 def turning() -> list[float]:
-    """Return the time with pairs that are carried round over that without, so slowly that they agree."""
+    """Return the time with turning pairs over that without; the disc turns so slowly that results agree."""
     slow, place = 1e-9, (0.12, 0.0, 0.0)
 
     def rider(plate: st.AxisymmetricBody, **words: float) -> st.System:

@@ -1,6 +1,6 @@
 """Speed and memory of the squeal case with 60 + 40 + 20 modes at 0.8 µs, over their bars.
 
-Memory is taken first: a process counts what the one that made it held then.
+Memory is measured first: a process also counts the memory that its parent held.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def squeal() -> st.System:
 def rows() -> Iterator[Ratio | str]:
     """Yield memory, then speed under both schemes."""
     if not hasattr(os, "wait4"):
-        yield "memory: skipped, this system does not say what a process took"
+        yield "memory: skipped, this system does not report the memory of a process"
     else:
         yield Ratio(
             f"peak memory of a fresh process, {2.0 * DURATION:g} s, over 400 MB",

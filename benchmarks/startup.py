@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from ratios import Ratio, seconds, show
 
 TITLE = "start-up: wall time of a fresh process over its bar"
-# What to run, the seconds to divide by, and whether they are a bar.
+# Code to run, time to divide by [s], and whether it is a bar.
 PROCESSES = {
     "import stridula, over 0.7 s": (("import stridula",), 0.7, True),
     "import all that simulate needs, over 0.7 s": (("import stridula; stridula.simulate",), 0.7, False),
@@ -25,7 +25,7 @@ def rows() -> Iterator[Ratio]:
 
 
 def fresh(given: tuple[str, ...]) -> None:
-    """Run code with arguments in a process of its own."""
+    """Run code with arguments in a fresh process."""
     subprocess.run([sys.executable, "-c", *given], check=True, capture_output=True)
 
 

@@ -2,11 +2,11 @@
 
     python benchmarks/suite.py                               print the table
     python benchmarks/suite.py --write docs/performance.md   also write it there, between its two marks
-    python benchmarks/suite.py --short                       see in seconds that all of it runs and agrees
+    python benchmarks/suite.py --short                       check in seconds that everything runs and agrees
 
-Each section runs on its own, too: `python benchmarks/scaling.py`. A ratio whose median is on the wrong side of its bar
-is marked; the exit status is 0 all the same, because a machine may be busy. It is 1, and a line says why, where the two
-sides of a ratio do not agree.
+Each section also runs alone: `python benchmarks/scaling.py`. A ratio whose median is on the wrong side of its bar
+is marked; the exit status is 0 all the same, because a machine may be busy. It is 1, with
+a message, if the two sides of a ratio do not agree.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ import startup
 import surveys
 from ratios import arguments, as_markdown, as_text, write_between
 
-# Memory first: see there.
+# Memory first: see `speed_and_memory`.
 SECTIONS = (
     speed_and_memory,
     against_c,
@@ -74,10 +74,10 @@ def measure() -> list[str]:
 def main() -> None:
     """Measure, and write if asked to."""
     words = arguments(__doc__)
-    words.add_argument("--write", type=Path, metavar="FILE", help="also write the table into this page")
+    words.add_argument("--write", type=Path, metavar="FILE", help="also write the table to this page")
     chosen = words.parse_args()
     if chosen.write and chosen.short:
-        words.error("--short measures nothing to write")
+        words.error("--short has no measurements to write")
     page = measure()
     if chosen.write:
         write_between(BEGIN, END, chosen.write, page)

@@ -1,4 +1,4 @@
-"""A survey of squeal over two parameters of a brake: what each mode that grows becomes, in a run of its own."""
+"""A squeal survey over two parameters of a brake, with a run for each mode that grows."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from ratios import Ratio, show, sized
 
 POINTS, WORKERS, DURATION = sized((10, 2, 0.04), (1, 1, 2e-4))
 TITLE = f"survey of {POINTS} x {POINTS} points: a brake over friction and turning, runs of {DURATION:g} s"
-# The shipped brake with 16 points on each pad; a mode begins at a twentieth of where it ends to be linear.
+# The shipped brake with 16 points on each pad; a mode starts at a twentieth of its linear range.
 PADS = {f"bodies.{side} pad.mesh.divisions": [2, 2, 1] for side in ("upper", "lower")}
 AMPLITUDE = 0.05
 
 
 def rows() -> Iterator[Ratio]:
-    """Yield the time of the survey, once: it is long beside all that disturbs it."""
+    """Yield the time of the survey, measured once: it is long compared with disturbances."""
     frictions, speeds = np.linspace(0.35, 0.55, POINTS), np.linspace(10.0, 30.0, POINTS)
     grid = st.Grid({"friction": frictions, "bodies.disc.turning": speeds})
     began = time.perf_counter()

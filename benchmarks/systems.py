@@ -1,4 +1,4 @@
-"""The systems that are timed, and what it takes to march them without a record."""
+"""The systems to time, and their march without a record."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from stridula.scenarios import load_scenario
 SCHEME = st.ExactModal()
 REGIMES = ("separated", "sticking", "sliding")
 STEEL, STRIP = st.Material(2.1e11, 7800.0), st.Rectangle(0.020, 0.008)
-# Elements of the slider, bending and axial modes of the track, by the modes that come to.
+# Elements of the slider, bending and axial modes of the track, by the resulting number of modes.
 SIZES = {
     30: (4, 10, 6),
     60: (9, 18, 12),
@@ -35,10 +35,10 @@ SIZES = {
 FEET = 8
 # Lines on a plate: along a side, where each mode is one wave, and across, where it is two.
 LINES = {"along a side": None, "across": st.Line((0.05, 0.05), 0.4)}
-# How long [s] runs that differ by round-off alone are alike, and to which share of the largest force.
+# Time over which runs agree that differ by round-off alone [s], and tolerance relative to the largest force.
 BEFORE_CHAOS, TOLERANCE = 0.02, 1e-6
 FORCES = [at.NORMAL_FORCE, at.TANGENTIAL_FORCE]
-# Of which some are marched many at once.
+# Number and options of the runs marched side by side.
 RUNS, GIVEN = sized(64, 8), {"duration": sized(1.0, 0.05), "sample_rate": 1e3, "probes": ()}
 
 
@@ -54,7 +54,7 @@ def beams(size: tuple[int, int, int], regime: str) -> st.System:
 
 
 def on_a_beam(modes: int) -> st.System:
-    """Return a short rod that slides on a beam of bending modes alone, as a plate has."""
+    """Return a short rod that slides on a beam with bending modes only, like a plate."""
     return sliding_on(st.ModalBeam(STEEL, STRIP, 0.5, bending_modes=modes, axial_modes=0, damping=0.2))
 
 
@@ -97,13 +97,13 @@ def squeals(runs: int) -> list[st.System]:
 
 
 def same_start(found: Sequence[xr.Dataset], expected: Sequence[xr.Dataset]) -> None:
-    """Stop where the forces of two lists of runs differ before chaos parts them."""
+    """Exit if the forces of two lists of runs differ before chaos separates them."""
     here, there = ([run.normal_force.sel(time=slice(0.0, BEFORE_CHAOS)) for run in runs] for runs in (found, expected))
     must_agree("normal forces of the same runs at the start", here, there, TOLERANCE)
 
 
 def pad(contacts: int) -> st.System:
-    """Return a block on eight springy feet, of which some are pressed on a belt: the same modes, whatever touches."""
+    """Return a block on eight springy feet, of which some are pressed on a belt: the same modes for any number."""
     size = 2 + 2 * FEET
     stiffness, both = np.zeros((size, size)), np.zeros((2, size))
     both[:, :2] = np.eye(2)
@@ -125,7 +125,7 @@ def pad(contacts: int) -> st.System:
 
 
 def slab(contacts: int, modes: int) -> st.System:
-    """Return a body of given modes, pressed on a belt at points along it: every mode moves both ways at every point."""
+    """Return a body of given modes, pressed on a belt at points along it: every mode moves every point both ways."""
     order = np.arange(modes) // 2
     lean = np.where(np.arange(modes) % 2, 1.2, 0.3)
     positions = (np.arange(contacts) + 0.5) / contacts
@@ -140,16 +140,16 @@ def slab(contacts: int, modes: int) -> st.System:
 
 @dataclass(frozen=True)
 class Case:
-    """A run about to march, and what is imposed on it, the same at every step.
+    """A run prepared to march, with constant loads and imposed motion.
 
     Attributes
     ----------
     blocks : Blocks
-        The system as the march reads it.
+        The system in the arrays of the march.
     state : State
-        Where it starts.
+        Initial state.
     imposed : Imposed
-        Signals and motion: one row where they do not change and the march takes one.
+        Signals and motion: one row where they are constant and the march accepts one.
     """
 
     blocks: Blocks
@@ -158,13 +158,13 @@ class Case:
 
 
 def limit_of(system: st.System) -> float:
-    """Return the longest step [s] of a system."""
+    """Return the largest step of a system [s]."""
     arrays = assemble(system, [])
     return SCHEME.limit(arrays.angular_frequency, arrays.damping_rate)
 
 
 def case_of(system: st.System, step: float, steps: int = 1) -> Case:
-    """Return a system about to march; several steps of what is imposed where the march does not take one row."""
+    """Return a system prepared to march; imposed motion has several steps where the march does not accept one row."""
     arrays = assemble(system, [])
     blocks = blocks_of(arrays, SCHEME, step)
     whole = imposed_on(arrays, blocks.used, 0, steps, step)
@@ -173,6 +173,6 @@ def case_of(system: st.System, step: float, steps: int = 1) -> Case:
 
 
 def marching(march: March, some: Sequence[Case], samples: int) -> Callable[[], object]:
-    """Return what marches some runs on by a number of samples, from the same state each time it is called."""
+    """Return a function that marches runs by a number of samples, from the same state in each call."""
     imposed = [one.imposed for one in some]
     return lambda: march.copy().advance(imposed, samples)
