@@ -106,8 +106,8 @@ IDS = [module_of(path) or "stridula" for path in FILES]
 
 
 @pytest.mark.parametrize("path", FILES, ids=IDS)
-def test_only_assembly_and_integration_see_the_kernels(path):
-    if module_of(path).split(".")[0] not in ("assembly", "integration", "_kernels"):
+def test_only_lowering_and_integration_see_the_kernels(path):
+    if module_of(path).split(".")[0] not in ("lowering", "integration", "_kernels"):
         assert not sees_kernels(imports(path))
 
 

@@ -131,7 +131,7 @@ def test_a_force_accelerates_the_slider_along_its_direction(component, direction
 
 def test_components_add_and_equal_histories_are_one_load():
     """One force of two components is two forces; two forces with equal histories are one row of loads."""
-    from stridula.assembly import assemble
+    from stridula.lowering import assemble
 
     both = pair(lambda rod: [st.Force(rod.root, x=0.1, axial=-0.3, history=st.Ramp(0.01))], 0.5)
     apart = pair(

@@ -11,8 +11,8 @@ from numba.core import config
 
 from .._kernels.parts import Imposed, Parts, Records
 from ..arrays import Array
+from ..lowering.blocks import Blocks
 from ..records.state import State
-from .blocks import Blocks
 from .contact_solve import GaussSeidel
 from .marches import March
 

@@ -15,8 +15,9 @@ import xarray as xr
 
 from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
-from ..assembly import Assembly, ContactRows
 from ..checks import ArgumentError, choice, count
+from ..lowering import Assembly, ContactRows
+from ..lowering.schemes import Scheme
 from ..records import Probe
 from ..records.dataset import RECORDED
 from ..records.plain import PlainRecord
@@ -25,7 +26,6 @@ from .contact_solve import GaussSeidel
 from .cuda_march import CudaMarch, require_cuda
 from .marches import March
 from .run import Run
-from .schemes import Scheme
 from .simulate import Arrays, Asked
 from .surface_records import ALL_POINTS
 from .together import march_together

@@ -9,10 +9,12 @@ import numpy as np
 import xarray as xr
 
 from .._kernels.layout import COLUMNS, ENERGIES
-from ..assembly import Assembly, assemble
 from ..bodies import is_track
 from ..bodies.ordinary import of_ordinary_size
 from ..checks import ArgumentError, at_least, at_most, instance, positive
+from ..lowering import Assembly, assemble
+from ..lowering.schemes import CentralDifference, ExactModal, Scheme
+from ..lowering.stepping import Stepping
 from ..records import Acceleration, Probe
 from ..records.by_surface import groups
 from ..system import System
@@ -20,8 +22,6 @@ from .contact_solve import GaussSeidel
 from .marches import March
 from .point_records import PointRecord, bytes_of
 from .run import Run
-from .schemes import CentralDifference, ExactModal, Scheme
-from .stepping import Stepping
 from .stops import Diverged, Interrupted
 from .surface_records import ALL_POINTS, SurfaceRecord
 from .timing import Timing

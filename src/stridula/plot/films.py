@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from ..cards import VIEW
 from ..checks import instance, positive
-from ..integration.schemes import Scheme
 from ..lines import check_in_plane
+from ..lowering.schemes import Scheme
 from ..records.variables import STATUS_WORDS
 from ..system import System
 from .motion import SAMPLE_RATE, Timing, motion_of

@@ -11,10 +11,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..arrays import Array
-from ..assembly import assemble
 from ..cards import VIEW
 from ..checks import ArgumentError, count, instance
 from ..lines import lines_of
+from ..lowering import assemble
 from ..system import System
 from .motion import ModalMotion
 from .moved_bodies import MovedBodies, extent_of, has_surfaces, surfaces_of

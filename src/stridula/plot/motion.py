@@ -10,11 +10,11 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from ..assembly import assemble
 from ..checks import ArgumentError, at_most, non_negative, positive
 from ..integration import simulate
-from ..integration.schemes import ExactModal, Scheme
 from ..integration.simulate import choose_timing
+from ..lowering import assemble
+from ..lowering.schemes import ExactModal, Scheme
 from ..records import Displacement, ModalDisplacement, ModalVelocity, Probe
 from ..system import System
 from .reels import FEWEST_FRAMES, check_frames

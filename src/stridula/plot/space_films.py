@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from ..cards import VIEW
 from ..checks import positive
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..system import System
 from .motion import SAMPLE_RATE, ModalMotion, Motion, Timing, motion_of
 from .moved_bodies import check_surfaces, extent_of, largest_departure, surfaces_of

@@ -11,7 +11,7 @@ import xarray as xr
 from ..arrays import Array
 from ..cards import VIEW, eye_of
 from ..checks import STATUS_WORDS, ArgumentError, positive
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..system import System
 from .colours import STATUS_COLOURS
 from .mode_films import motion_of_mode, over_largest, shapes_of_mode

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..arrays import Array
 from ..integration import SCHEMES
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import exp, sqrt
 
 from ..contact import ExponentialWeakening, FrictionLaw, LinearWeakening, Stribeck
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
 from .instabilities import exponents, only_sliding
 from .sliders import Slider

@@ -13,7 +13,7 @@ from ..bodies import FiniteElementBeam, Material, Section
 from ..contact import PointContact, RigidTrack
 from ..drives import Gravity, InitialVelocity
 from ..integration import simulate
-from ..integration.schemes import CentralDifference, Scheme
+from ..lowering.schemes import CentralDifference, Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, schemes

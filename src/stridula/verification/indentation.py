@@ -10,7 +10,7 @@ from ..bodies import Material, ModalBeam, PointMass, Rectangle
 from ..contact import HertzStiffness, PointContact, RigidTrack
 from ..drives import InitialVelocity
 from ..integration import simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..records import Velocity
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme

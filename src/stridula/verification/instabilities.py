@@ -15,7 +15,7 @@ from ..bodies import ReducedBody
 from ..contact import Coulomb, PointContact, RigidTrack
 from ..drives import Force, InitialState
 from ..integration import simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme

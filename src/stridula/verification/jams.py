@@ -11,7 +11,7 @@ from ..bodies import FiniteElementBeam, Material, Rectangle
 from ..contact import Coulomb, PointContact, RigidTrack
 from ..drives import Drive, Gravity, InitialVelocity
 from ..integration import simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
 

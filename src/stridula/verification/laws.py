@@ -17,7 +17,7 @@ from ..connections import Spring
 from ..contact import LuGre, PointContact, RateAndState, RigidTrack
 from ..drives import Force, InitialState
 from ..integration import simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme

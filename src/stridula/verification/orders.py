@@ -14,7 +14,7 @@ from ..contact import PointContact
 from ..drives import Drive, Force, InitialVelocity
 from ..histories import Harmonic
 from ..integration import ExactModal, simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, schemes

@@ -15,7 +15,7 @@ from ..contact import Coulomb, FrictionLaw, PointContact, RigidTrack, StaticKine
 from ..drives import Force, InitialState
 from ..histories import Harmonic
 from ..integration import simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme

@@ -12,11 +12,11 @@ from ..connections import Spring
 from ..contact import Coulomb, PointContact, RigidTrack
 from ..drives import Force, Gravity, InitialVelocity
 from ..integration import simulate
-from ..integration.schemes import Scheme
 from ..linear.equilibrium import find_equilibrium
 from ..linear.modes import modes_of
 from ..linear.structure import Structure
 from ..linear.vibration import vibration
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme

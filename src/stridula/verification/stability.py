@@ -15,7 +15,7 @@ from ..bodies import FiniteElementBeam, ModalBeam, ReducedBody
 from ..contact import Coulomb, PointContact
 from ..drives import Force, InitialState
 from ..integration import simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
 from .frequencies import SQUARE, STEEL

@@ -16,9 +16,9 @@ from ..contact import Coulomb, PointContact, RigidTrack, SurfaceContact
 from ..drives import Force, InitialEquilibrium, InitialState
 from ..histories import Constant
 from ..integration import simulate
-from ..integration.schemes import Scheme
 from ..linear.equilibrium import find_equilibrium
 from ..linear.structure import Structure
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..scenarios.load import load_scenario
 from ..system import System

@@ -12,11 +12,11 @@ from ..contact import PointContact
 from ..drives import Force
 from ..histories import Sampled
 from ..integration import simulate
-from ..integration.schemes import Scheme
 from ..linear.equilibrium import find_equilibrium
 from ..linear.modes import modes_of
 from ..linear.structure import SEPARATED, Structure
 from ..linear.vibration import vibration
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
