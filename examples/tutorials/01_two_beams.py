@@ -56,19 +56,18 @@ print(f"{found.regime.item()} at {found.frequency.item():.0f} Hz, confidence {fo
 # %%
 # One burst
 # ---------
-# Measures of ``stridula.analysis`` find the bursts between two stops. Here are 4 ms from the middle of the longest
-# one.
+# Measures of ``stridula.analysis`` find the bursts between two stops. Below are 4 ms about the highest force.
 
 bursts = analysis.bursts(run)
 lengths = bursts[:, 1] - bursts[:, 0]
 print(f"{len(bursts)} bursts of {1e3 * lengths.mean():.0f} ms on average")
-middle = bursts[lengths.argmax()].mean()
-shown = run.sel(time=slice(middle - 0.002, middle + 0.002))
+highest = float(run.time[run.normal_force.argmax("time")])
+shown = run.sel(time=slice(highest - 0.002, highest + 0.002))
 plot.timeline(shown, ["normal_force", "tangential_force", "status"])
 
 # %%
-# In each period the tip slides, leaves the track and lands again. The normal force is zero in between, and it is
-# never negative.
+# In each period the tip lands, sticks or slides, and leaves the track again. The normal force is zero in between, and
+# it is never negative.
 #
 # Linear theory
 # -------------
