@@ -1,6 +1,7 @@
 """Sphinx settings, and what is written before each build: the API page, tables, and the paper from end to end.
 
-Everything written lies in ``_generated`` or is ``api.rst``; neither is kept under version control.
+Everything written lies in ``_generated``, ``gallery`` or ``tutorials`` or is ``api.rst``; none of it is kept under
+version control.
 """
 
 from __future__ import annotations
@@ -18,10 +19,11 @@ from sphinx.util import logging
 
 HERE = Path(__file__).resolve().parent
 SOURCES = HERE.parent / "src"
+EXAMPLES = HERE.parent / "examples"
 GENERATED = HERE / "_generated"
 PAPER = GENERATED / "paper"
 VERIFICATION = GENERATED / "verification"
-sys.path.insert(0, str(SOURCES))
+sys.path[:0] = [str(SOURCES), str(HERE)]
 
 import stridula  # noqa: E402
 
@@ -38,12 +40,15 @@ extensions = [
     # Formulas without a network: MathJax is copied into the pages.
     "sphinx-mathjax-offline",
     "numpydoc",
+    "sphinx_design",
+    "sphinx_gallery.gen_gallery",
 ]
 templates_path = ["_templates"]
 exclude_patterns = [
     "_build",
     "_generated/*.rst",
     "_generated/**/*.md",
+    "_generated/examples/**",
     "paper-search.rst",
     "convergence-table.rst",
     "step-first-contacts-table.rst",
@@ -53,7 +58,8 @@ exclude_patterns = [
     "peers.rst",
 ]
 highlight_language = "python"
-nitpicky = False
+# Every name in a role has a page here; words of other projects are written as code.
+nitpicky = True
 
 autosummary_generate = True
 autosummary_imported_members = False
@@ -64,6 +70,23 @@ numpydoc_class_members_toctree = False
 # Every public docstring is there, begins with one line that ends with a full stop, and names no argument that is not
 # there, each with its type and in order. Not PR01: where names and units say it all, one line is enough.
 numpydoc_validation_checks = {"GL03", "GL08", "PR02", "PR03", "PR04", "PR10", "SS03", "SS06"}
+
+# Scripts are copied and run there, so that what they write lies with the rest of what is generated.
+GALLERIES = {"gallery": EXAMPLES, "tutorials": EXAMPLES / "tutorials"}
+sphinx_gallery_conf = {
+    "examples_dirs": [f"_generated/examples/{name}" for name in GALLERIES],
+    "gallery_dirs": list(GALLERIES),
+    "filename_pattern": r"\.py$",
+    "within_subsection_order": "FileNameSortKey",
+    "capture_repr": ("_repr_html_",),
+    "image_scrapers": ("shown",),
+    "first_notebook_cell": "%matplotlib inline",
+    "abort_on_example_error": True,
+    "download_all_examples": False,
+    "write_computation_times": False,
+    "min_reported_time": 1e6,
+    "show_signature": False,
+}
 
 html_theme = "pydata_sphinx_theme"
 html_title = f"stridula {version}"
@@ -80,9 +103,9 @@ html_theme_options = {
     "footer_end": [],
     "show_toc_level": 1,
     "show_prev_next": False,
-    "header_links_before_dropdown": 10,
+    "header_links_before_dropdown": 6,
 }
-html_sidebars = {"**": []}
+html_sidebars = {"index": []}
 
 logger = logging.getLogger(__name__)
 
@@ -119,6 +142,13 @@ MODULES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("stridula.studies", "More on ensembles and sweeps", ()),
     ("stridula.papers.laulagnet_2011", "Laulagnet 2011", ()),
 )
+# The tables of scenarios with which a page of keys begins: its name and title.
+KEYS = {
+    "": ("pair", "Keys of two beams"),
+    "bodies: finite-element beam": ("bodies", "Keys of bodies"),
+    "bodies: axisymmetric": ("meshed", "Keys of bodies with meshes"),
+    "contacts": ("contacts", "Keys of contacts, drives and simulation"),
+}
 HOMES = {
     "bodies": "Bodies",
     "contact": "Contacts and friction",
@@ -152,6 +182,15 @@ def write(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     if not path.exists() or path.read_text(encoding="utf-8") != text:
         path.write_text(text, encoding="utf-8")
+
+
+def write_pages(folder: Path, pages: dict[str, str]) -> None:
+    """Write the pages of a folder, and forget those that are no more."""
+    for old in folder.glob("*.rst"):
+        if old.stem not in pages:
+            old.unlink()
+    for name, text in pages.items():
+        write(folder / f"{name}.rst", text)
 
 
 def list_table(head: Sequence[str], rows: Iterable[Sequence[str]], widths: Sequence[int]) -> str:
@@ -253,19 +292,22 @@ def equilibrium_table() -> str:
     return list_table(["variable", "unit", "meaning"], rows, [26, 14, 60])
 
 
-def scenario_tables() -> str:
-    """Return a table of keys for every table of a scenario file."""
+def scenario_pages() -> dict[str, str]:
+    """Return pages with a table of keys for every table of a scenario file, by their names."""
     from stridula.scenarios.schema import ScenarioTable
 
     seen: dict[type, str] = {}
     collect(ScenarioTable, "", seen)
-    parts = []
+    pages: dict[str, str] = {}
     for model, path in seen.items():
+        if path in KEYS:
+            name, title = KEYS[path]
+            pages[name] = f"{title}\n{'=' * len(title)}\n\n"
         texts = model.descriptions()  # type: ignore[attr-defined]
         rows = [[f"``{key}``", default(field), plain(texts.get(key, ""))] for key, field in fields(model).items()]
-        title = path or "Top of the file"
-        parts += [title, "^" * len(title), "", list_table(["key", "default", "meaning"], rows, [22, 18, 60])]
-    return "\n".join(parts)
+        head = path or "Top of the file"
+        pages[name] += f"{head}\n{'-' * len(head)}\n\n{list_table(['key', 'default', 'meaning'], rows, [22, 18, 60])}\n"
+    return pages
 
 
 def fields(model: type) -> dict[str, Any]:
@@ -324,8 +366,25 @@ def check_measures() -> None:
 
     page = (HERE / "measures.rst").read_text(encoding="utf-8")
     for name in analysis.__all__:
-        if not any(f":{role}:`{name}`" in page for role in ("func", "class", "data")):
+        if not any(
+            words in page
+            for words in (f":func:`{name}`", f":func:`{name} <", f":class:`{name}`", f"``analysis.{name}``")
+        ):
             logger.warning("measures.rst does not say what %s is", name)
+
+
+# The examples
+
+
+def copy_examples() -> None:
+    """Copy the scripts of the galleries with their headers, and forget those that are no more."""
+    for name, folder in GALLERIES.items():
+        sources = {path.name: path for path in (*folder.glob("*.py"), *folder.glob("*.rst"))}
+        for old in (GENERATED / "examples" / name).glob("*"):
+            if old.name not in sources:
+                old.unlink()
+        for path in sources.values():
+            write(GENERATED / "examples" / name / path.name, path.read_text(encoding="utf-8"))
 
 
 # The paper
@@ -393,20 +452,40 @@ def run_verification() -> None:
         verify(VERIFICATION, report=lambda line: logger.info("  %s", line))
 
 
-def verification_page() -> str:
-    """Return every case with its figure and its rows."""
+def verified() -> list[dict[str, Any]]:
+    """Return the rows of all cases."""
+    return json.loads((VERIFICATION / "verification.json").read_text(encoding="utf-8"))  # type: ignore[no-any-return]
+
+
+def verification_summary() -> str:
+    """Return a table of the cases, each with a link to its page."""
     from stridula.verification.cases import CASES
 
-    rows = json.loads((VERIFICATION / "verification.json").read_text(encoding="utf-8"))
+    rows = verified()
     good = sum(row["holds"] for row in rows)
-    lines = [f"{good} of {len(rows)} quantities are within their tolerance.", ""]
+    cells = []
     for case in CASES:
-        lines += [case.title, "^" * len(case.title), "", f"Source: {plain(case.source)}.", ""]
+        own = [row["holds"] for row in rows if row["case"] == case.name]
+        within = f"{sum(own)} of {len(own)}" if own else "not run here"
+        cells.append([f":doc:`/_generated/verified/{case.name}`", plain(case.source), within])
+    tree = [".. toctree::", "   :hidden:", "", *(f"   /_generated/verified/{case.name}" for case in CASES)]
+    table = list_table(["case", "source", "quantities within"], cells, [34, 50, 16])
+    return "\n".join([f"{good} of {len(rows)} quantities are within their tolerance.", "", table, *tree, ""])
+
+
+def verification_pages() -> dict[str, str]:
+    """Return a page for each case, its figure and its rows, by its name."""
+    from stridula.verification.cases import CASES
+
+    head = ["quantity", "scheme", "expected", "obtained", "error", "tolerance", "within", "tolerance from"]
+    rows, pages = verified(), {}
+    for case in CASES:
+        lines = [case.title, "=" * len(case.title), "", f"Source: {plain(case.source)}.", ""]
         lines += [f".. figure:: /_generated/verification/{case.name}.png", f"   :alt: {plain(case.title)}", ""]
         cells = [verification_cells(row) for row in rows if row["case"] == case.name]
-        head = ["quantity", "scheme", "expected", "obtained", "error", "tolerance", "within", "tolerance from"]
         lines += [list_table(head, cells, [17, 10, 12, 12, 9, 9, 6, 25]) if cells else "Not run here.\n"]
-    return "\n".join(lines)
+        pages[case.name] = "\n".join(lines)
+    return pages
 
 
 def verification_cells(row: dict[str, Any]) -> list[str]:
@@ -427,11 +506,13 @@ def setup(app: Sphinx) -> None:
     write(HERE / "api.rst", page)
     write(GENERATED / "variables.rst", variables_table())
     write(GENERATED / "equilibrium.rst", equilibrium_table())
-    write(GENERATED / "scenario-keys.rst", scenario_tables())
+    write_pages(GENERATED / "keys", scenario_pages())
     write(GENERATED / "shipped.rst", shipped_table())
     check_measures()
+    copy_examples()
     reproduce_paper()
     write(GENERATED / "claims.rst", claims_page())
     write(GENERATED / "figures.rst", figures_page())
     run_verification()
-    write(GENERATED / "verification.rst", verification_page())
+    write(GENERATED / "verification.rst", verification_summary())
+    write_pages(GENERATED / "verified", verification_pages())

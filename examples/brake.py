@@ -1,7 +1,12 @@
-"""A disc brake: two lined pads on a disc with a hat that turns: which modes grow, what becomes of them, how pads press.
+"""
+Disc brake
+==========
 
-The disc is of cast iron, held at the flange of its hat. Each pad is a backing plate of steel with a lining, whose face
-touches the disc with all its points through the stiffness of its rough surface; springs hold the backing plates.
+Two lined pads press on a disc with a hat that turns: which modes grow, their limit cycle, and how the pads press.
+:doc:`../brake` explains it.
+
+The disc is of cast iron, held at the flange of its hat. Each pad is a backing plate of steel with a lining, whose
+face touches the disc with all its points through the stiffness of its rough surface; springs hold the backing plates.
 """
 
 from dataclasses import replace

@@ -1,4 +1,8 @@
-"""A brake pad on a disc: which modes grow in sliding, and the first hundredth of a second of what they do.
+"""
+Pad on a disc, node by node
+===========================
+
+Which modes of a brake pad on a disc grow in sliding, and the first hundredth of a second of their growth.
 
 A disc of cast iron, clamped inside, turns under a pad of friction material that springs hold and 600 N press. Both are
 elastic bodies in space; the pad touches with fifteen of its nodes, each of which slides, sticks or lifts off by itself.

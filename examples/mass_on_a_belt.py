@@ -1,4 +1,8 @@
-"""Stick-slip of a mass on a moving belt under four laws of friction: who swings, how far, and why.
+"""
+A mass on a belt
+================
+
+Stick-slip of a mass on a moving belt, held by a spring, under four laws of friction: who swings, how far, and why.
 
 Where friction falls with the slip velocity, the mass sticks to the belt until its spring tears it off, slides back and
 sticks again. With equal static and kinetic friction it swings by belt velocity over frequency each way, as any start

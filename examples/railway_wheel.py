@@ -1,4 +1,9 @@
-"""A railway wheel that squeals in a curve: the modes that grow, standing and rolling, and the limit cycle.
+"""
+Railway wheel
+=============
+
+A railway wheel that squeals in a curve: the modes that grow, standing and rolling, and the limit cycle.
+:doc:`../wheel` explains it.
 
 The shipped scenario ``wheel``. The rim creeps sideways over a rail point; along the rail nothing slips, for the rail
 moves below the hub as the wheel turns.

@@ -1,3 +1,11 @@
+"""
+Ten lines
+=========
+
+One steel strip is dragged along another at 1 cm/s under 50 N. It sticks, lets go, squeals for some 20 ms, and sticks
+again.
+"""
+
 from math import radians
 
 import stridula as st

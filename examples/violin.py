@@ -1,4 +1,9 @@
-"""The G string of a violin under a bow: Helmholtz motion, and Schelleng's diagram of the bow forces that keep it up.
+"""
+Violin
+======
+
+The G string of a violin under a bow: Helmholtz motion, and Schelleng's diagram of the bow forces that keep it up.
+:doc:`../violin` explains it.
 
 The shipped scenario ``violin`` has a bow 8 mm wide; the diagram is that of a narrow one, for which theory is.
 """
@@ -35,6 +40,10 @@ top = st.ModalPlate(st.Material(8e9, 430.0, 0.3), 3e-3, 0.35, 0.2, cutoff=10e3, 
 heard = st.radiate(run, st.Bridge(top.at((0.19, 0.1))), (0.17, 0.1, 1.0))
 st.write_wav("violin.wav", heard)
 print(f"through a top of spruce {float(st.equivalent_level(heard, 'A').max()):.0f} dB at a metre")
+st.listen(heard)
+
+# %%
+# Schelleng's diagram: the bow force goes slowly from that of a note to another one, and stays there.
 
 
 def most(place: float) -> float:
@@ -73,7 +82,6 @@ def note(place: float) -> tuple[float, xr.Dataset]:
     raise RuntimeError(f"no attack at {place:g} of the length settles in Helmholtz motion")
 
 
-# Schelleng's diagram: the bow force goes slowly from that of a note to another one, and stays there.
 PLACES, SHARES = np.geomspace(0.05, 0.2, 7), np.geomspace(0.004, 4.0, 13)
 motions = []
 for place in PLACES:

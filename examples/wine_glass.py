@@ -1,4 +1,9 @@
-"""A wet finger on the rim of a wine glass: which mode grows, what it becomes, and the beats that one hears.
+"""
+Wine glass
+==========
+
+A wet finger on the rim of a wine glass: the mode that grows, its limit cycle, and the beats that you hear.
+:doc:`../glass` explains it.
 
 The shipped scenario ``glass``. The glass turns below a finger that stays where it is, as in Franklin's armonica; seen
 from a glass that stands, the finger goes round.

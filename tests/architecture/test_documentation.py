@@ -13,7 +13,8 @@ import pytest
 import stridula
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.rst"))]
+SCRIPTS = [path for folder in (".", "tutorials") for path in sorted((ROOT / "examples" / folder).glob("*.py"))]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.rst")), *SCRIPTS]
 HELP = ROOT / "src" / "stridula" / "cli" / "commands.py"
 # What readers stumbled over, and what it is called instead.
 RIDDLES = {
@@ -49,6 +50,20 @@ def test_formulas_take_no_network():
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
     assert "sphinx-mathjax-offline" in settings()["extensions"]
     assert any(name.startswith("sphinx-mathjax-offline") for name in extras["docs"])
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.name)
+def test_scripts_have_a_title_for_the_gallery_and_say_what_they_are(script):
+    title, line, *words = ast.get_docstring(ast.parse(script.read_text(encoding="utf-8"))).splitlines()
+    assert line == "=" * len(title)
+    assert len(" ".join(words).split()) > 8
+
+
+def test_the_gallery_has_all_scripts_and_stops_where_one_fails():
+    words = (ROOT / "docs" / "conf.py").read_text(encoding="utf-8")
+    assert r'"filename_pattern": r"\.py$"' in words
+    assert '"abort_on_example_error": True' in words
+    assert {script.parent.name for script in SCRIPTS} == {"examples", "tutorials"}
 
 
 @pytest.mark.parametrize("page", [*PAGES, HELP], ids=lambda page: page.name)

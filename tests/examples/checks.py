@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -38,7 +39,7 @@ GIVEN: dict[str, Callable[[], object]] = {
         record("squeal.nc"),
         Path("my-squeal.toml").write_text(blocks(SCENARIOS, "toml")[0][1], encoding="utf-8"),
     ),
-    "start.rst": lambda: pad(Path("pad.npz"), "tip", "back"),
+    "python.rst": lambda: pad(Path("pad.npz"), "tip", "back"),
 }
 
 
@@ -53,7 +54,7 @@ def check_readme(names: Mapping[str, Any], printed: str) -> None:
     assert float((back**2).mean()) == pytest.approx(float((heard**2).mean()), rel=0.05)
 
 
-def check_start(names: Mapping[str, Any], printed: str) -> None:
+def check_python(names: Mapping[str, Any], printed: str) -> None:
     """The wall and its spring of 0.1 MN/m together hold the drag: at least the kinetic, at most the static friction."""
     reach = 1e5 * 1e-4
     stop = names["braked"].normal_force.sel(contact="stop", time=slice(0.02, None))
@@ -65,6 +66,20 @@ def check_start(names: Mapping[str, Any], printed: str) -> None:
     assert names["whole"].sizes["time"] == 2 * names["second"].sizes["time"]
     # The last run is watched to its end.
     assert printed.rstrip().endswith(" s of 1 s")
+
+
+def check_start(names: Mapping[str, Any], printed: str) -> None:
+    """More friction makes it squeal, and linear theory has the mode that is named."""
+    assert re.search(r"modes grow, one of them at 28\d\d Hz", printed)
+    assert re.findall(r"^(0\.8|1\.1) squeal$", printed, re.MULTILINE) == ["0.8", "1.1"]
+    assert names["found"].sizes == {"friction": 4, "angle": 3}
+
+
+def check_coming_from(names: Mapping[str, Any], printed: str) -> None:
+    """The rig has its one growing mode; a chain of springs comes back from its file."""
+    assert re.findall(r"^(\d+) Hz, real part", printed, re.MULTILINE) == ["2273"]
+    np.testing.assert_allclose(names["body"].modes().angular_frequency, [100.0, 200.0])
+    assert names["run"].attrs["ended"] == "finished"
 
 
 def check_maps(names: Mapping[str, Any], printed: str) -> None:
@@ -108,6 +123,8 @@ CHECKS: dict[str, Callable[[Mapping[str, Any], str], None]] = {
     "scenarios.rst": check_scenarios,
     "sound.rst": check_sound,
     "start.rst": check_start,
+    "coming-from.rst": check_coming_from,
+    "python.rst": check_python,
     "surveys.rst": check_surveys,
 }
 WRITTEN = {

@@ -45,6 +45,16 @@ def check_ten_lines(names: Mapping[str, Any], printed: str, folder: Path) -> Non
     assert unstable_frequencies(replace(names["system"], contact=contact), sense=1.0).size == 0
 
 
+def check_stick_on_a_plate(names: Mapping[str, Any], printed: str, folder: Path) -> None:
+    """It squeals, and at 2 m it is quieter in every direction than a metre above."""
+    assert printed.startswith("squeal; plate with ")
+    assert names["heard"].sizes["listener"] == 2
+    near, levels = float(st.equivalent_level(names["heard"], "A").max()), names["levels"]
+    assert levels.size == 11
+    assert levels.max() < near
+    assert (folder / "directivity.png").read_bytes().startswith(b"\x89PNG")
+
+
 def check_mass_on_a_belt(names: Mapping[str, Any], printed: str, folder: Path) -> None:
     """Stick-slip between constant coefficients has a closed form; a law between them gives no smaller swing.
 
@@ -187,6 +197,7 @@ CHECKS: dict[str, Callable[[Mapping[str, Any], str, Path], None]] = {
     "mass_on_a_belt.py": check_mass_on_a_belt,
     "pin_on_disc.py": check_pin_on_disc,
     "railway_wheel.py": check_railway_wheel,
+    "stick_on_a_plate.py": check_stick_on_a_plate,
     "ten_lines.py": check_ten_lines,
     "wine_glass.py": check_wine_glass,
     "violin.py": check_violin,
@@ -205,5 +216,5 @@ def test_example(path, tmp_path, monkeypatch, capsys):
 
 
 def test_the_readme_shows_the_ten_lines():
-    ten_lines = (ROOT / "examples" / "ten_lines.py").read_text(encoding="utf-8")
+    _, _, ten_lines = (ROOT / "examples" / "ten_lines.py").read_text(encoding="utf-8").rpartition('"""\n\n')
     assert ("python", ten_lines) in blocks(ROOT / "README.md", "python")

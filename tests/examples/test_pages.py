@@ -93,7 +93,8 @@ def test_the_run_that_the_readme_shows_squeals(stridula):
 
 
 def test_whole_scenarios_of_a_page_are_good_and_parts_are_toml(tmp_path):
-    texts = [text for _, text in blocks(SCENARIOS, "toml")]
+    pages = (SCENARIOS, SCENARIOS.with_name("scenarios-space.rst"))
+    texts = [text for page in pages for _, text in blocks(page, "toml")]
     assert all(tomllib.loads(text) for text in texts)
     whole = [text for text in texts if text.startswith("title")]
     assert len(whole) == 2

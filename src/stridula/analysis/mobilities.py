@@ -38,7 +38,7 @@ def mobility(
 
     With the modes of the body, their traces a at the response and b at the excitation along the directions::
 
-        Y(w) = i w sum_k a_k b_k / (w_k² - w² + i w d_k) + i w F
+        Y(w) = i w sum_k a_k b_k / (w_k**2 - w**2 + i w d_k) + i w F
 
     F is the static flexibility of the modes that a cutoff left out, of a body that keeps it as residual shapes. The
     body is free of contact; with a `system` all its springs and dashpots act, between all its bodies, and all its
