@@ -1,1 +1,1 @@
-"""Compiled kernels: numpy and numba only."""
+"""Compiled kernels of the march, which depend on numpy and numba only."""

@@ -1,4 +1,4 @@
-"""What a step leaves of a contact: shares of its states, its anchor, the work of its forces, the state of its law."""
+"""Bookkeeping of a contact after a step: shares of its states, anchor, work of its forces, state of its law."""
 
 import numba
 
@@ -19,7 +19,7 @@ def add(array, row, run, value, zero):
 
 @numba.njit(**OPTIONS)
 def share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, run, zero):
-    """Share the step before among the states of contact `i` and count this one; return the share closed in this one."""
+    """Divide the step before among the states of contact `i` and count this step; return its closed share."""
     base, tally = i * at.CARRIED, i * at.SUMS
     _, _, status, jammed = touch
     free_gap, free_slip, gap, _ = moved
@@ -55,13 +55,13 @@ def share_states(i, touch, moved, before, carried, sums, w, away, law, at_rest, 
 
 @numba.njit(**OPTIONS)
 def centred(motion, n, column, zero):
-    """Return the motion of a step, half that of the step before and after."""
+    """Return the motion of a step, half the sum over the steps before and after."""
     return 0.5 * (read(motion, n + 2, column, zero) - read(motion, n, column, zero))
 
 
 @numba.njit(**OPTIONS)
 def driven_work(i, touch, motion, n, run, runs, zero):
-    """Return what the motions imposed on contact `i` give through its forces in step `n`."""
+    """Return the work of the motions imposed on contact `i` through its forces in step `n`."""
     column = i * at.MOTIONS * runs + run
     tip = centred(motion, n, column + at.TIP_MOTION * runs, zero)
     track = centred(motion, n, column + at.TRACK_MOTION * runs, zero)
@@ -81,7 +81,7 @@ def keep_state(i, slip, status, before, carried, contacts, step, run, runs, zero
 
 @numba.njit(**OPTIONS)
 def keep_forces(i, touch, moved, carried, contacts, closed, run, zero):
-    """Carry status and normal force of contact `i` to the next step; return what friction took."""
+    """Carry status and normal force of contact `i` to the next step; return the loss to friction."""
     base, law = i * at.CARRIED, contacts.codes[i]
     normal, tangential, status, _ = touch
     slip = moved[3]
@@ -113,7 +113,7 @@ def keep_motion(i, moved, before, carried, run, zero):
 
 @numba.njit(**OPTIONS)
 def keep_place(i, carried, place, run, zero):
-    """Carry where contact `i` is; return half the way of the last two steps."""
+    """Carry the place of contact `i`; return half its advance in the last two steps."""
     base = i * at.CARRIED
     way = 0.5 * (place - held(carried, base + at.ABSCISSA_BEFORE, run, zero))
     hold(carried, base + at.ABSCISSA_BEFORE, run, held(carried, base + at.ABSCISSA, run, zero))
@@ -123,7 +123,7 @@ def keep_place(i, carried, place, run, zero):
 
 @numba.njit(**OPTIONS)
 def store_in(i, gap, contacts, state, run, zero):
-    """Add what a contact that yields stores in this step to the work of the contacts."""
+    """Add the energy that a yielding contact stores in this step to the work of the contacts."""
     yields = yields_of(i, contacts.constants, run, zero)
     if anywhere(yields[0] > 0.0):
         earlier = held(state.carried, i * at.CARRIED + at.EARLIER_GAP, run, zero)
@@ -133,7 +133,7 @@ def store_in(i, gap, contacts, state, run, zero):
 
 @numba.njit(**OPTIONS)
 def stored_in_contacts(contacts, carried, count, run, zero):
-    """Return the energy that contacts which yield store half a step ago."""
+    """Return the energy stored in yielding contacts half a step ago."""
     energy = zero
     for i in range(count):
         yields = yields_of(i, contacts.constants, run, zero)
@@ -149,10 +149,10 @@ def stored_in_contacts(contacts, carried, count, run, zero):
 
 @numba.njit(**OPTIONS)
 def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, runs, zero):
-    """Do the bookkeeping of contact `i` in step `n`, but for where it is.
+    """Do the bookkeeping of contact `i` in step `n`, except for its place.
 
-    `touch` are normal and tangential force, status and whether it is jammed, `moved` gap and slip without these forces,
-    then with them.
+    `touch` are normal and tangential force, status and whether it jams, `moved` gap and slip without these forces, then
+    with them.
     """
     law, carried, sums = contacts.codes[i], state.carried, contacts.sums
     before = carried_by(carried, i, run, zero)
@@ -179,7 +179,7 @@ def keep_books(i, w, touch, moved, contacts, state, imposed, timing, n, run, run
 
 @numba.njit(**OPTIONS)
 def credit(energies, work, lost, convected, run, zero):
-    """Add what a step of the modes came to: work of the contacts, what damping took, work of slopes carried along."""
+    """Add the energies of a step of the modes: work of the contacts, loss to damping, convection work."""
     add(energies, at.CONTACT_WORK, run, work, zero)
     add(energies, at.DAMPING_LOSS, run, lost, zero)
     add(energies, at.CONVECTION_WORK, run, convected, zero)

@@ -1,8 +1,8 @@
-"""LuGre's bristles in space, where their deflection and friction are vectors of the tangent plane.
+"""Bristles of LuGre's law in space, where their deflection and friction are vectors in the tangent plane.
 
 Over a step at the slip velocity v the ratio of forces is ``holds z + drags v``, for the deflection z at its beginning
-and two numbers of the slip speed |v| alone. At a given speed the contact is thus one with linear friction; the speed is
-the one at which it then slides.
+and two functions of the slip speed |v| alone. At a given speed friction is thus linear; the speed sought is the one at
+which the contact then slides.
 """
 
 import math
@@ -22,9 +22,9 @@ ROUND_OFF = 1e-15
 
 @numba.njit(inline="always", **STRICT)
 def shares_at(laws, number, speed, step):
-    """Return how deflection and slip velocity make the ratio over a step at a speed, and their slopes."""
+    """Return the factors of deflection and slip velocity in the ratio over a step at a speed, and their slopes."""
     kept, share, passed, passed_slope, share_slope = bristles_over(laws, number, speed, step)
-    # Of a change of the deflection over the step half is felt, and its rate.
+    # The ratio uses the mean deflection, hence half of its change over the step, and its rate.
     felt = 0.5 * laws[number, 3] + laws[number, 4] / step
     holds, drags = laws[number, 3] - felt * passed * share, felt * step * share + laws[number, 5]
     return holds, drags, -felt * kept * passed_slope, felt * step * share_slope * passed_slope
@@ -49,7 +49,7 @@ def braked(drag, matrix, pull, right):
 def pressed_at(holds, drags, normal, free, state, w):
     """Return normal force, slip velocity and ratios under ``holds z + drags v``, by Newton's method within a bracket.
 
-    `free` are gap and slip velocity without forces, and what velocity a unit of displacement is; `normal` a guess.
+    `free` are gap and slip velocity without forces, and the velocity for a unit of displacement; `normal` is a guess.
     """
     gap, velocity, rate = free
     pulled = holds * state[0], holds * state[1]
@@ -87,7 +87,7 @@ def pressed_at(holds, drags, normal, free, state, w):
 
 @numba.njit(**STRICT)
 def slope_of_speed(shares, normal, moved, ratio, rate, state, w):
-    """Return by how much less the slip grows than the speed at which it is taken."""
+    """Return the derivative of the assumed speed minus the resulting slip speed, by the assumed speed."""
     _, drags, holds_slope, drags_slope = shares
     size = math.hypot(moved[0], moved[1])
     if size == 0.0:
@@ -109,7 +109,7 @@ def slope_of_speed(shares, normal, moved, ratio, rate, state, w):
 
 @numba.njit(**STRICT)
 def slide_on_bristles(gap, slips, w, laws, number, before, step):
-    """Return normal force, both tangential forces, status and whether it is jammed, under LuGre's law.
+    """Return normal force, both tangential forces, status and whether it jams, under LuGre's law.
 
     Newton's method for the slip speed within a bracket, from that of the last two slips. Arguments are those of
     `space.solve_one_in_space`.
@@ -153,7 +153,7 @@ def slide_on_bristles(gap, slips, w, laws, number, before, step):
 
 
 def next_bristles(laws, number, status, state, velocity, step):
-    """Return the deflections of bristles after a step along both tangents, none where the bodies are apart."""
+    """Return the deflections of bristles along both tangents after a step, those at rest if the bodies are apart."""
     return next_bristles_of_run(laws, number, status, state, velocity, step)
 
 

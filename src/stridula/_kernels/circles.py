@@ -1,7 +1,7 @@
-"""Contacts that move round a body, along a circle: a path that is closed.
+"""Contacts that move round a body along a circle, a closed path.
 
-Where a contact has moved on by an angle, its rows on a pair of order n are those where it started, turned by n times
-that angle. Its slip is that of the material under it, so that what it slides on is seen with the rows where it will be.
+After a contact has advanced by an angle, its rows on a pair of order n are its initial rows, turned by n times that
+angle. Its slip is relative to the material under it, hence evaluated with the rows at the new place.
 """
 
 import math
@@ -31,7 +31,7 @@ from .waves import sine_and_cosine_of_half_turns
 
 @numba.njit(**OPTIONS)
 def set_rows_at(rows, at_start, turns, begin, end, i, angle, run):
-    """Put the rows of contact `i` and of its second tangent at an angle from where it started."""
+    """Set the rows of contact `i` and of its second tangent at an angle from its initial place (step 2)."""
     for k in range(begin, end, 2):
         s, c = sine_and_cosine_of_half_turns(load(turns, k, ORDER, run) * (angle / math.pi))
         for row in (2 * i, 2 * i + 1, 2 * i + 3):
@@ -51,9 +51,9 @@ def product_of(rows, row, others, other, begin, end, run, zero):
 
 @numba.njit(**OPTIONS)
 def go_round(i, moved, modes, paths, contacts, turning, state, imposed, n, run, runs, zero):
-    """Move contact `i` on along its circle; return what its body adds to the gap there, and its slip.
+    """Advance contact `i` along its circle (steps 2 and 3); return what its body adds to the gap there, and its slip.
 
-    `moved` are its abscissa at the end of the step, and how far the surface moves along the circle by turning.
+    `moved` are its abscissa at the end of the step, and the advance of the surface along the circle by turning.
     """
     place, track = moved
     rows, turns, body = modes.rows, turning.rows, paths.body_of[i]
@@ -68,7 +68,7 @@ def go_round(i, moved, modes, paths, contacts, turning, state, imposed, n, run, 
         if paths.spans[s, at.KIND] == at.ROUND:
             first = paths.spans[s, at.BEGIN]
     rise, slip = two_products(rows, row, POSITION, first, end, run, zero)
-    # Where the material is now that will be under it.
+    # The present place of the material that will be under the contact.
     slip -= product(rows, row + 1, Q, first, begin, run, zero)
     slip -= product_of(rows, row + 1, turns, PASSED, begin, end, run, zero)
     before = read(imposed.motion, n - 1 if n > 0 else 0, (i * at.MOTIONS + at.TRACK_MOTION) * runs + run, zero)
@@ -81,9 +81,9 @@ def go_round(i, moved, modes, paths, contacts, turning, state, imposed, n, run, 
 
 @numba.njit(**OPTIONS)
 def convected(i, place, modes, paths, contacts, turning, carried, run, zero):
-    """Return the work on contact `i` of the slope of its body, which its new place has carried it along.
+    """Return the convection work of contact `i`, from the slope of its body along the circle.
 
-    It is what the rows of a step lose, against those two steps ago, on the displacements of then.
+    It is the change of its rows over the last two steps, times the displacements two steps ago.
     """
     rows, turns, row, body, value = modes.rows, turning.rows, CONTACTS + 2 * i, paths.body_of[i], spread(0.0)
     rate = held(contacts.constants, i * at.CONTACT_CONSTANTS + at.ALONG, run, zero)

@@ -1,4 +1,4 @@
-"""Relative displacements of all contacts for unit forces on each, where contacts move along paths."""
+"""Step 4 for contacts that move along paths: relative displacements of all contacts for unit forces on each."""
 
 import numba
 
@@ -11,15 +11,15 @@ from .modes import OPTIONS, product, two_products
 
 @numba.njit(**OPTIONS)
 def set_compliance(rows, faces, spans, first_span, paths, count, run, zero):
-    """Put the compliance of bodies of uncoupled modes: that of constant rows, and what paths add.
+    """Set the compliance of bodies of uncoupled modes: that of constant rows plus that of paths.
 
-    Contacts that share a path, or are on the body of another one's path, are soft together.
+    Contacts that share a path, or lie on the body of another contact's path, are coupled.
     """
     for i in range(count):
         if not moves_along(paths, i):
             continue
         for j in range(count):
-            # Of two contacts on the same path, or of two paths, the pair is taken once.
+            # Each pair of contacts on paths is taken once.
             if j > i and moves_along(paths, j):
                 continue
             set_pair(rows, faces, spans, first_span, i, j, 2 * count, run, zero)
@@ -33,7 +33,7 @@ def moves_along(paths, i):
 
 @numba.njit(**OPTIONS)
 def set_pair(rows, faces, spans, first_span, i, j, size, run, zero):
-    """Put the compliance of contact `i`, which is on a path, for forces on contact `j`, and the other way round."""
+    """Set the compliance of contact `i`, which is on a path, for forces on contact `j`, and the reverse."""
     for side in range(2):
         normal = component(faces, 2 * i + side, COMPLIANCE + size + 2 * j, run, zero)
         tangential = component(faces, 2 * i + side, COMPLIANCE + size + 2 * j + 1, run, zero)
@@ -54,7 +54,7 @@ def set_pair(rows, faces, spans, first_span, i, j, size, run, zero):
 
 @numba.njit(**OPTIONS)
 def shared(spans, first_span, i, begin):
-    """Return whether a span of a path is one of contact `i`, too."""
+    """Return whether a span of a path also belongs to contact `i`."""
     for s in range(first_span[i], first_span[i + 1]):
         if spans[s, at.KIND] != at.CONSTANT and spans[s, at.BEGIN] == begin:
             return True
@@ -63,9 +63,9 @@ def shared(spans, first_span, i, begin):
 
 @numba.njit(**OPTIONS)
 def set_compliance_of_coupled(modes, faces, blocks, coupled, places, count, run, zero):
-    """Put the compliance of bodies of which some have coupled modes.
+    """Set the compliance of bodies of which some have coupled modes.
 
-    It is symmetric but where stiffness and damping of these do not commute.
+    It is symmetric except where stiffness and damping of these modes do not commute.
     """
     rows = modes.rows
     for j in range(2 * count):

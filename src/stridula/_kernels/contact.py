@@ -1,4 +1,4 @@
-"""The exact solve of one point contact with friction over one step."""
+"""Step 5, the state of one point contact with friction: the exact solution over one step."""
 
 import math
 
@@ -21,27 +21,27 @@ from .friction import (
 from .lanes import choose, magnitude
 
 SEPARATED, STICKING, SLIDING = 0, 1, 2
-# Steps of Newton's or Halley's method for a slip velocity; the bracketed search takes over from what they do not find.
+# Steps of Newton's or Halley's method for a slip velocity; a bracketed search takes over where they fail.
 NEWTON = 12
 # Relative steps of these methods whose square, and whose cube, are round-off.
 QUADRATIC, CUBIC = 1e-8, 1e-4
 # Trials of a root search; each at least halves the bracket in the end.
 TRIALS = 200
-# Halvings of a bracket that leave nothing of it.
+# Halvings that reduce a bracket to round-off.
 HALVINGS = 60
 
 
 @numba.njit(inline="always", **STRICT)
 def solve_contact(gap, slip, strayed, w, law, laws, i, before, let_go, step):
-    """Return (normal force, tangential force, status, jammed) that close `gap` under a law of friction.
+    """Return (normal force, tangential force, status, jammed) that close `gap` under a law of friction (step 5).
 
-    `gap` is the gap [m] at the end of the step without contact force, `slip` how far the tip moves along the track in
-    the step without it, `strayed` how far a stick is from its anchor. The compliance `w` [m/N], rows (nn, nt, tn, tt),
-    is the relative displacement of the tip against the track for unit forces (on the tip and its opposite on the
-    track), the first index that of the displacement. The tangential force acts on the track along the tangent. `before`
-    are status, slips of the last two steps, the later first, internal state and both forces of the last step.
+    `gap` is the gap [m] at the end of the step without contact force, `slip` the motion of the tip along the track in
+    the step without it [m], `strayed` the distance of a stick from its anchor [m]. The compliance `w` [m/N], rows (nn,
+    nt, tn, tt), is the relative displacement of the tip against the track for unit forces (on the tip and its opposite
+    on the track), the first index that of the displacement. The tangential force acts on the track along the tangent.
+    `before` are status, slips of the last two steps, the later first, internal state and both forces of the last step.
     Velocity-dependent laws see the slip velocity of `velocity_at`. A contact that was let go is no longer held by its
-    static coefficient, and of two consistent states slides.
+    static coefficient, and slides where both states are consistent.
     """
     if gap >= 0.0:
         return 0.0, 0.0, SEPARATED, False
@@ -70,7 +70,7 @@ def solve_contact(gap, slip, strayed, w, law, laws, i, before, let_go, step):
 
 @numba.njit(**STRICT)
 def stick_or_slide(gap, slip, strayed, w, law, laws, i, before, let_go, step):
-    """Return the contact under a law with a static coefficient, or whose ratio depends on the slip speed."""
+    """Return the contact (5b, 5c) under a law with a static coefficient, or whose ratio depends on the slip speed."""
     normal, tangential = sticking_forces(gap, slip + strayed, w)
     sense = 1.0 if tangential >= 0.0 else -1.0
     held = holding_ratio(law, laws, i, before[0] == STICKING and not let_go)
@@ -86,7 +86,7 @@ def stick_or_slide(gap, slip, strayed, w, law, laws, i, before, let_go, step):
     elif law > at.STATIC_KINETIC:
         velocity, ratio = sliding_velocity(gap, slip, w, law, laws, i, before, sense, step)
         if sense * slip_at(velocity, before, step) < 0.0:
-            # Friction brings it to rest within the step, viscous friction with more than the static one.
+            # Friction brings the contact to rest within the step, viscous friction even beyond the static ratio.
             most = max(held, abs(ratio))
             if abs(tangential) <= most * normal:
                 return normal, tangential, STICKING, False
@@ -97,7 +97,7 @@ def stick_or_slide(gap, slip, strayed, w, law, laws, i, before, let_go, step):
 
 @numba.njit(**STRICT)
 def sticking_forces(gap, slip, w):
-    """Return the normal and the tangential force that close `gap` and undo `slip`."""
+    """Return the normal and the tangential force that close `gap` and undo `slip` (5b)."""
     w_nn, w_nt, w_tn, w_tt = w
     determinant = w_nn * w_tt - w_nt * w_tn
     return (w_nt * slip - w_tt * gap) / determinant, (w_nn * slip - w_tn * gap) / determinant
@@ -105,7 +105,7 @@ def sticking_forces(gap, slip, w):
 
 @numba.njit(**STRICT)
 def solve_coulomb(gap, slip, w, mu):
-    """Return the contact that closes `gap` below zero under one coefficient of friction."""
+    """Return the contact (5b, 5c) that closes a `gap` below zero under one coefficient of friction."""
     normal, tangential = sticking_forces(gap, slip, w)
     sense = 1.0 if tangential >= 0.0 else -1.0
     free = w[0] - sense * mu * w[1]
@@ -117,11 +117,11 @@ def solve_coulomb(gap, slip, w, mu):
 
 @numba.njit(**STRICT)
 def turn_round(gap, slip, last_slip, w, ratio, held):
-    """Return the contact of a slip that comes to an end within the step, as numbers of runs.
+    """Return the contact of a slip that ends within the step (5d), as numbers of runs.
 
-    It slides on for the share of the step until it stops; for the rest it is held, or slides back where that takes more
-    than the ratio `held`. The forces are means over the step. Where the slip does not end, or would jam, `turns` is
-    false and the rest has no meaning.
+    The contact slides on for the share of the step until it stops; for the rest it is held, or slides back where
+    holding takes more than the ratio `held`. The forces are means over the step. Where the slip does not end, or would
+    jam, `turns` is false and the other results have no meaning.
 
     Returns
     -------
@@ -130,7 +130,7 @@ def turn_round(gap, slip, last_slip, w, ratio, held):
     normal, tangential : float
         Forces [N].
     slides : bool
-        Whether it slides back.
+        Whether the contact slides back.
     """
     w_nn, w_nt, w_tn, w_tt = w
     along = choose(last_slip < 0.0, -ratio, ratio)
@@ -138,7 +138,7 @@ def turn_round(gap, slip, last_slip, w, ratio, held):
     on, back = -gap / free_on, -gap / free_back
     farther = slip + (w_tn - along * w_tt) * on
     share = last_slip / (last_slip - farther)
-    # Held from where it stops: what the last slip brings along is used up until then.
+    # Held from where it stops: the last slip is used up by then.
     undone, area = slip - last_slip, 1.0 / (w_nn * w_tt - w_nt * w_tn)
     pressed, needed = (w_nt * undone - w_tt * gap) * area, (w_nn * undone - w_tn * gap) * area
     slides = magnitude(needed) > held * pressed
@@ -152,14 +152,14 @@ def turn_round(gap, slip, last_slip, w, ratio, held):
 
 @numba.njit(**STRICT)
 def slide_as_prescribed(gap, slip, strayed, w_nn, law, laws, i, before, step):
-    """Return the contact of bodies that no force moves along the tangent: the slip is what it is."""
+    """Return the contact of bodies that no force moves along the tangent: the slip is given."""
     status, last_slip = before[0], before[1]
     normal = -gap / w_nn
     if slip == 0.0 or slip + strayed == 0.0:
         return normal, 0.0, STICKING, False
     ratio = sliding_ratio(law, laws, i, abs(velocity_at(slip, before, step)))
     if status == SLIDING and last_slip * slip < 0.0:
-        # Sliding on until it stops, back from then on.
+        # Sliding on until it stops, then back (5d).
         ratio *= (slip + last_slip) / (slip - last_slip)
     return normal, math.copysign(1.0, slip) * ratio * normal, SLIDING, False
 
@@ -168,21 +168,21 @@ def slide_as_prescribed(gap, slip, strayed, w_nn, law, laws, i, before, step):
 def velocity_at(slip, before, step):
     """Return the slip velocity at the middle of the last step and this one, of second order.
 
-    Of the velocities that three slips give it is the one that best damps a sawtooth from step to step, to which their
-    mean would be blind: under stiff friction it falls to a third in each.
+    Of all second-order combinations of three slips it damps a sawtooth from step to step best, which the mean would not
+    see: under stiff friction the sawtooth falls to a third in each step.
     """
     return (9.0 * slip + 6.0 * before[1] + before[2]) / (16.0 * step)
 
 
 @numba.njit(inline="always", **STRICT)
 def slip_at(velocity, before, step):
-    """Return the slip in a step at whose beginning the slip velocity is `velocity`."""
+    """Return the slip of a step with the slip velocity `velocity` at its beginning."""
     return (16.0 * step * velocity - 6.0 * before[1] - before[2]) / 9.0
 
 
 @numba.njit(**STRICT)
 def velocity_under(ratio, gap, slip, w, before, step):
-    """Return the slip velocity under a ratio of forces that closes the gap, endless where that jams."""
+    """Return the slip velocity under forces of a given ratio that close the gap, infinite where that jams."""
     w_nn, w_nt, w_tn, w_tt = w
     free = w_nn - ratio * w_nt
     if free <= 0.0:
@@ -192,7 +192,7 @@ def velocity_under(ratio, gap, slip, w, before, step):
 
 @numba.njit(inline="always", **STRICT)
 def slide_on(gap, slip, w, law, laws, i, before, step):
-    """Return the ratio of forces of a contact that slides on in its sense, 0 where that is not settled at once."""
+    """Return the ratio of forces of a contact that slides on in its sense, 0 where that is not certain at once."""
     w_nn, w_nt, w_tn, w_tt = w
     # The first parameter of every such law is its ratio at rest.
     at_rest = math.copysign(laws[i, 0], before[1])
@@ -207,8 +207,8 @@ def slide_on(gap, slip, w, law, laws, i, before, step):
 def sliding_velocity(gap, slip, w, law, laws, i, before, sense, step):
     """Return slip velocity and ratio of forces of a contact that slides under a law whose ratio depends on the speed.
 
-    Halley's method for the speed, from the one that the ratio of the last step leads to: mostly one evaluation of the
-    law, whose own expansion gives the ratio at what is found.
+    Halley's method for the speed, from the speed under the ratio of the last step: mostly one evaluation of the law,
+    whose expansion gives the ratio at the result.
     """
     w_nn, w_nt, w_tn, w_tt = w
     ratio = abs(before[5] / before[4]) if before[4] > 0.0 else sliding_ratio(law, laws, i, 0.0)
@@ -250,7 +250,7 @@ def slide_with_state(gap, slip, w, law, laws, i, before, step):
     w_nn, w_nt, w_tn, w_tt = w
     velocity, ratio, slope = velocity_with_state(gap, slip, w, law, laws, i, before, step)
     status = STICKING if abs(velocity) < sticking_speed(law, laws, i) else SLIDING
-    # Where the ratio is flat in the velocity it gives the forces to round-off, where it is steep, in creep, the motion.
+    # A ratio that is flat in the velocity gives the forces to round-off; a steep one, in creep, gives the motion.
     free = w_nn - ratio * w_nt
     if -gap / (free * free) * (w_nn * w_tt - w_nt * w_tn) * 9.0 * slope <= 16.0 * step:
         normal = -gap / (w_nn - ratio * w_nt)
@@ -265,8 +265,8 @@ def slide_with_state(gap, slip, w, law, laws, i, before, step):
 def velocity_with_state(gap, slip, w, law, laws, i, before, step):
     """Return the slip velocity under a law with internal state, the ratio of the forces there and its slope.
 
-    Newton's method from the velocity of the last two slips, never down to a hundredth at once: the ratio of a
-    law with age goes with the logarithm.
+    Newton's method from the velocity of the last two slips, with steps that keep more than a hundredth of it: the ratio
+    of a law with age depends on the logarithm.
     """
     w_nn, w_nt, w_tn, w_tt = w
     velocity = (3.0 * before[1] - before[2]) / (2.0 * step)
@@ -290,10 +290,11 @@ def velocity_with_state(gap, slip, w, law, laws, i, before, step):
 
 @numba.njit(**STRICT)
 def slip_velocity(gap, slip, w, law, laws, i, before, sense, step):
-    """Return the slip velocity that the forces at that velocity lead to.
+    """Return the slip velocity that results from the forces at that velocity.
 
-    `sense` is that of a law which was found to slide, 0 for a law with internal state. The root is bracketed and found
-    by false position (Illinois), with the velocity as ``scale sinh(y)``, so that creep and sliding are on one line.
+    `sense` is the sense of sliding of a set-valued law, 0 for a law with internal state. The root is bracketed and
+    found by false position (Illinois), with the velocity as ``scale sinh(y)``, so that creep and sliding share one
+    scale.
     """
     state = before[3]
     ratio = ratio_at(law, laws, i, state, 0.0, sense, step)
@@ -344,7 +345,7 @@ def slip_velocity(gap, slip, w, law, laws, i, before, sense, step):
 
 @numba.njit(**STRICT)
 def slipping_velocity(gap, slip, w, law, laws, i, before, sense, step):
-    """Return the largest slip velocity that a weakening law leads to where it could also stick, 0 if none."""
+    """Return the largest slip velocity under a weakening law where sticking is also possible, 0 if there is none."""
     highest = sense * velocity_under(sense * least_ratio(law, laws, i), gap, slip, w, before, step)
     low, high = 0.0, highest
     for _ in range(HALVINGS):
@@ -367,7 +368,7 @@ def slipping_velocity(gap, slip, w, law, laws, i, before, sense, step):
 
 @numba.njit(**STRICT)
 def ratio_at(law, laws, i, state, velocity, sense, step):
-    """Return tangential over normal force at a slip velocity, at rest about to slide in `sense`."""
+    """Return tangential over normal force at a slip velocity; at rest, that of incipient sliding in `sense`."""
     if set_valued(law):
         return sense * sliding_ratio(law, laws, i, abs(velocity))
     return state_ratio(law, laws, i, state, velocity, step)
@@ -375,15 +376,16 @@ def ratio_at(law, laws, i, state, velocity, sense, step):
 
 @numba.njit(inline="always", **STRICT)
 def landed_share(gap_before, gap):
-    """Return the share of a step that is left when an open contact closes; without it `gap` would be reached."""
+    """Return the share of a step that remains after an open contact closes; without contact `gap` would be reached."""
     return choose(gap < 0.0, gap, -1.0) / (choose(gap < 0.0, gap, -1.0) - gap_before)
 
 
 @numba.njit(inline="always", **STRICT)
 def closed_share(normal, tangential, gap, w_nn, w_nt):
-    """Return the share of the step before that a contact was still closed in which is open now.
+    """Return the share of the step before in which a contact that is open now was still closed.
 
-    The force went from `normal` through zero to what it would take to hold the contact closed, at the same ratio.
+    The force is taken straight from `normal` through zero to the force that would hold the contact closed, at the same
+    ratio.
     """
     free = w_nn - tangential / normal * w_nt
     return normal / (normal + gap / choose(free > 0.0, free, w_nn))
@@ -391,9 +393,10 @@ def closed_share(normal, tangential, gap, w_nn, w_nt):
 
 @numba.njit(inline="always", **STRICT)
 def stuck_share(normal, tangential, gap, slip, w, mu):
-    """Return the share of the step before that a contact still stuck in which slides now.
+    """Return the share of the step before in which a contact that slides now still stuck.
 
-    The tangential force went from `tangential` through the border of the cone to what sticking on would take.
+    The tangential force is taken straight from `tangential` through the border of the cone to the force that would keep
+    it stuck.
     """
     pressed, needed = sticking_forces(gap, slip, w)
     sense = choose(needed < 0.0, -1.0, 1.0)

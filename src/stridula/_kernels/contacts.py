@@ -1,6 +1,6 @@
-"""Any number of contacts in one step: block Gauss-Seidel over the exact solve of one, started from the forces before.
+"""Step 5 for any number of contacts: block Gauss-Seidel over the exact solution of one, from the last forces.
 
-What belongs to contact `i` of a run lies in rows ``i * count + what``.
+Numbers of contact `i` of a run lie in rows ``i * count + kind``.
 """
 
 import math
@@ -18,15 +18,15 @@ from .solves import carried_by, forces_of_one, strayed
 from .space import free_of_own, is_second, put_second, solve_in_space
 from .yielding import comes_close, forces_yielding, forces_yielding_in_space, yields_anywhere, yields_of
 
-# Sweeps after which, and then between which, the forces of the states that were found are solved for directly.
+# Sweeps before the first direct solve for the forces of the states found, and between direct solves.
 FIRST_DIRECT_SOLVE, SWEEPS_PER_DIRECT_SOLVE = 1, 8
 # Sweeps after which a contact that has broken away in this step is no longer held by its static coefficient.
 PATIENCE = 24
-# What is kept of contacts that have not, so that those in space know that it is late.
+# Mark of the other contacts, so that those in space know that it is late.
 LATE = 0.25
-# Gaps and slips left to undo, relative to what the forces undo, over the tolerance of the forces.
+# Tolerance of the gaps and slips that remain, relative to those that the forces undo, over that of the forces.
 GAPS = 0.01
-# Least share of the last change that is taken to be still to come.
+# Smallest ratio assumed of the changes still to come to the last change.
 LEAST_TO_COME = 0.1
 # Change of a force by rounding alone, relative to the largest.
 ROUND_OFF = 1e-14
@@ -42,9 +42,9 @@ def is_alone(sizes):
 
 @numba.njit(**OPTIONS)
 def start_from_last(contacts, carried, touching, sizes, run, zero):
-    """Let contacts that were closed begin with the forces of the last step, in runs in which any touches."""
+    """Start contacts that were closed from the forces of the last step, in runs with any contact touching."""
     faces, now = contacts.faces, contacts.now
-    # One contact is solved at once.
+    # A single contact needs no start: it is solved at once.
     warm = zero if is_alone(sizes) else choose(touching > 0.5, 1.0, zero)
     displace_freely(faces, now, sizes.contacts, run, zero)
     for i in range(sizes.contacts):
@@ -69,9 +69,9 @@ def start_from_last(contacts, carried, touching, sizes, run, zero):
 
 @numba.njit(**OPTIONS)
 def carried_or_found(carried, i, let_go, normal, tangential, run, zero):
-    """Return what contact `i` carries; when it is late, with the forces found last in the place of the last step's.
+    """Return the numbers that contact `i` carries; when it is late, with forces of the last sweep as the last forces.
 
-    A law that weakens has slow and fast slips for the same forces; from the ratio found last it stays with one of them.
+    A weakening law has slow and fast slips for the same forces; from the ratio of the last sweep it keeps one of them.
     """
     status, last_slip, earlier_slip, state, last_normal, last_tangential = carried_by(carried, i, run, zero)
     late = choose(let_go > 0.0, normal, zero) > 0.0
@@ -81,7 +81,7 @@ def carried_or_found(carried, i, let_go, normal, tangential, run, zero):
 
 @numba.njit(**PASTED)
 def forces_of_this(i, gap, slip, w, forces, contacts, carried, let_go, step, run, runs, zero):
-    """Return normal force, tangential force, status and whether it is jammed of contact `i` of the plane."""
+    """Return normal force, tangential force, status and whether it jams, for contact `i` of the plane."""
     away, at_rest = (
         strayed(carried, i, run, zero),
         held(contacts.constants, i * at.CONTACT_CONSTANTS + at.AT_REST, run, zero),
@@ -103,7 +103,7 @@ def forces_of_this(i, gap, slip, w, forces, contacts, carried, let_go, step, run
 
 @numba.njit(**PASTED)
 def forces_of_this_in_space(i, contacts, carried, let_go, step, run, runs, zero):
-    """Return normal force, both tangential forces, status and whether it is jammed of contact `i` in space."""
+    """Return normal force, both tangential forces, status and whether it jams, for contact `i` in space."""
     free, laws = free_of_own(contacts, carried, i, run, runs, zero)
     gap, slips, strays, w, law, number, before = free
     yields = yields_of(i, contacts.constants, run, zero)
@@ -120,14 +120,14 @@ def forces_of_this_in_space(i, contacts, carried, let_go, step, run, runs, zero)
 
 @numba.njit(**OPTIONS)
 def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
-    """Solve contacts that may touch in turn, in runs not `done`; return what changed.
+    """Solve contacts that may touch in turn, in runs not `done`; return the changes.
 
     Returns
     -------
     change, largest : float or vector
         Largest change of a force, and the largest force.
     misfit, reach : float or vector
-        Largest gap or slip that a contact still had to undo, and the largest that the forces of one undo.
+        Largest gap or slip that a contact still had to undo, and the largest gap that the force of one undoes.
     settled : float or vector
         Whether no state changed.
     """
@@ -191,7 +191,7 @@ def sweep_once(contacts, carried, sizes, step, done, run, runs, zero):
 
 @numba.njit(**OPTIONS)
 def rounding_of_slips(carried, sizes, run, zero):
-    """Return the slip that rounding makes of abscissas, whose difference it is."""
+    """Return the rounding error of slips, which are differences of abscissas."""
     farthest = zero
     for i in range(sizes.contacts):
         farthest = largest_of(farthest, magnitude(held(carried, i * at.CARRIED + at.MATERIAL, run, zero)))
@@ -200,17 +200,17 @@ def rounding_of_slips(carried, sizes, run, zero):
 
 @numba.njit(**OPTIONS)
 def largest_of(one, other):
-    """Return the larger of two numbers, the first where one is none."""
+    """Return the larger of two numbers, the first if either is not a number."""
     return choose(other > one, other, one)
 
 
 @numba.njit(**PASTED)
 def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
-    """Solve contacts in turn until no force changes; return sweeps made and error estimated from the changes.
+    """Solve contacts in turn until no force changes; return the number of sweeps and the error from the changes.
 
-    The error is relative to the largest force. Sweeps that only creep towards the forces of states they have found are
-    helped by a direct solve. A contact that was held and breaks away may find no consistent state in which it could be
-    held again: it then lets go. Which runs lie side by side does not matter: one that is done changes no more.
+    The error is relative to the largest force. A direct solve helps sweeps that converge slowly with unchanged states.
+    A contact that was held and breaks away may have no consistent state in which it could be held again: it is then let
+    go. Results do not depend on the runs side by side: a run that is done does not change.
     """
     done = choose(touching > 0.5, zero, 1.0)
     rounding = rounding_of_slips(carried, sizes, run, zero)
@@ -222,14 +222,14 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
         )
         goes_on = done < 0.5
         exact = change <= ROUND_OFF * largest
-        # The changes of a linear iteration fall by a constant factor, which tells what is still to come. The first ones
-        # from forces that were nearly right fall faster.
+        # The changes of a linear iteration fall by a constant factor, which gives the sum of those still to come. From
+        # forces that were nearly right, the first changes fall faster.
         falls = choose(change < before, before, math.inf) < math.inf
         size = choose(largest > 0.0, largest, 1.0)
         to_come = largest_of(change / choose(falls, before - change, 1.0), zero + LEAST_TO_COME)
         estimate = choose(falls, change / size * to_come, math.inf)
         estimate = choose(exact, change / size, estimate)
-        # Where many rows see few modes, forces creep on among sets that close the same gaps.
+        # With more rows than modes, forces keep drifting among sets that close the same gaps.
         closed = misfit <= GAPS * timing.tolerance * reach + rounding
         estimate = choose(closed, choose(reach > 0.0, misfit, zero) / choose(reach > 0.0, reach, 1.0), estimate)
         error, made = choose(goes_on, estimate, error), choose(goes_on, sweep + 1.0, made)
@@ -239,8 +239,8 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
         if everywhere(done > 0.5):
             break
         before = change
-        # In space the directions of friction turn from sweep to sweep: a solve after each of the first is Newton's
-        # method on these. Late it finds ever other forces of contacts that hold the same motions.
+        # In space the directions of friction turn from sweep to sweep: a direct solve after each of the first sweeps is
+        # Newton's method for them. Late solves only find other forces for the same motions.
         early = sweep + 1 <= SWEEPS_PER_DIRECT_SOLVE if sizes.space else sweep + 1 == FIRST_DIRECT_SOLVE
         late = sizes.space and sweep + 1 > PATIENCE
         if early or ((sweep + 1) % SWEEPS_PER_DIRECT_SOLVE == 0 and not late):
@@ -260,6 +260,6 @@ def solve_all(contacts, carried, touching, sizes, timing, run, runs, zero):
 
 @numba.njit(fastmath=False, **ENTRY)
 def solve_closed(contacts, carried, sizes, timing):
-    """Solve the contacts of one run, as a step of the march does."""
+    """Solve the contacts of one run like a step of the march."""
     start_from_last(contacts, carried, 1.0, sizes, 0, 0.0)
     return solve_all(contacts, carried, 1.0, sizes, timing, 0, 1, 0.0)

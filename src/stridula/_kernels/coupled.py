@@ -1,7 +1,8 @@
-"""What the march does to modes that springs or their own damping join: the first blocks, whose states are not scaled.
+"""March of modes coupled by springs or by their damping: the first blocks, whose states are not scaled.
 
-The matrices lie in blocks like the modes, ``matrices[block, kind * places + j, lane]``: what mode `j` does to a block.
-``reach[block]`` has the first such mode and the one after the last: springs join few modes, and residual shapes none.
+The matrices lie in blocks like the modes, ``matrices[block, kind * places + j, lane]``: the effect of mode `j` on a
+block. ``reach[block]`` has the first such mode and the one after the last: springs couple few modes, and residual
+shapes none.
 """
 
 import numba
@@ -14,7 +15,7 @@ from .modes import OPTIONS, complete, stored_energy
 
 @numba.njit(**OPTIONS)
 def try_coupled(rows, matrices, reach, coupled, places, run, zero):
-    """Put increment and position at the end of the step without contact force into the rows."""
+    """Set increment and position at the end of the step without contact force in the rows (step 1)."""
     for k in range(coupled):
         increment = load(rows, k, FORCE, run)
         for j in range(reach[k, 0], reach[k, 1]):
@@ -27,7 +28,7 @@ def try_coupled(rows, matrices, reach, coupled, places, run, zero):
 
 @numba.njit(**OPTIONS)
 def respond(rows, matrices, reach, coupled, places, run, row, response, zero):
-    """Put the increments for forces on the modes, given by a row, into another one."""
+    """Set a row to the increments for forces on the modes, given by another row."""
     for k in range(coupled):
         moved = spread(0.0)
         for j in range(reach[k, 0], reach[k, 1]):
@@ -37,7 +38,7 @@ def respond(rows, matrices, reach, coupled, places, run, row, response, zero):
 
 @numba.njit(**OPTIONS)
 def complete_coupled(rows, matrices, reach, coupled, places, run, zero):
-    """Complete the step under the push of the contacts; return the work of the push and what damping took."""
+    """Complete the step under the push of the contacts (step 6); return work of the push and loss to damping."""
     respond(rows, matrices, reach, coupled, places, run, PUSH, POSITION, zero)
     for k in range(coupled):
         store(rows, k, INCREMENT, run, load(rows, k, INCREMENT, run) + load(rows, k, POSITION, run))

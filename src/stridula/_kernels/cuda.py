@@ -1,7 +1,7 @@
-"""The march on a graphics card: the very source of `march`, one run per thread.
+"""The march on a graphics card: the same source as `march`, one run per thread.
 
-Everything is a number there: the plain functions of `lanes` are what they say. Runs side by side lie so in memory, and
-threads read whole lines of it. Double precision; products and sums are fused as the compiler for the card sees fit.
+All values are scalars there, so the plain functions of `lanes` apply. Runs are adjacent in memory, so that threads read
+whole lines of it. Double precision; the compiler for the card decides which products and sums are fused.
 """
 
 from types import FunctionType
@@ -14,10 +14,10 @@ _PACKAGE = __name__.rpartition(".")[0]
 
 
 def on_card(function, known=None):
-    """Return a function of this package compiled for the card, and with it all that it calls, from the same code.
+    """Return a function of this package compiled for the card from the same code, with all functions that it calls.
 
-    Numba would take the functions that it compiled for the processor, but not the plain ones under them: it knows
-    vectors in their place.
+    Numba would accept the functions compiled for the processor, but not the plain functions below them, which it
+    replaces by vector operations.
     """
     known = {} if known is None else known
     plain = getattr(function, "py_func", function)

@@ -1,10 +1,10 @@
-"""The forces of all contacts at once, from the states found last: linear systems, until no state has to change.
+"""Direct solve for the forces of all contacts, from their last states: linear systems, until no state has to change.
 
-Unknown are the normal forces of those that are closed and the tangential forces of those that are held; where a contact
-slides, its tangential force is the ratio found last times its normal force. Contacts that pull then open, open ones
-that overlap close, those held beyond their cone slide and those that slide against their friction are held: an active
-set. The system lies in blocks like the compliance, ``scratch[row, block, lane]``: a row for each unknown, with what it
-displaces at all equations, one for right sides, then those named below. Runs side by side have the equations of all.
+The unknowns are the normal forces of closed contacts and the tangential forces of held contacts; where a contact
+slides, its tangential force is the last ratio times its normal force. Then contacts that pull open, open contacts that
+overlap close, contacts held beyond their cone slide and contacts that slide against their friction are held: an active
+set. The system lies in blocks like the compliance, ``scratch[row, block, lane]``: a row for each unknown, with its
+displacements at all equations, a row for right sides, then those named below. Runs side by side share all equations.
 """
 
 import math
@@ -22,17 +22,17 @@ from .solves import strayed
 from .space import direction, is_second
 from .yielding import give_of, yields_anywhere, yields_of
 
-# Rows of the scratch before its end: displacements to come back to, multipliers of two unknowns, what a normal force
-# displaces with the tangential one that goes with it, and which equations a run has.
+# Rows of the scratch before its end: displacements to restore, multipliers of two unknowns, displacements under a
+# normal force with its tangential force, and whether a run has an equation.
 SAVED, MULTIPLIERS, MORE_MULTIPLIERS, ALONG, HAS = range(-5, 0)
-# Before these lie masks of the lanes of a block that come after each lane, last lane first.
-# Rows of the scratch but the masks and those of the unknowns.
+# Before these lie masks of the lanes of a block that follow each lane, last lane first.
+# Rows of the scratch other than the masks and those of the unknowns.
 FURTHER_ROWS = 6
 
-# Share of the cone that a force may be beyond it by rounding.
+# Ratio by which a force may exceed its cone by rounding.
 BEYOND = 1.0 + 1e-9
-# Systems solved before states that still change are given up, and of these in a row that may leave as many contacts at
-# odds as before, all of which change: then the last of them changes alone (Judice & Pires 1994).
+# Largest number of systems solved before giving up, and of successive systems without fewer contacts at odds in which
+# all of these change state; after that only the last of them changes (Judice & Pires 1994).
 TRIALS, BLOCKS_IN_VAIN = 100, 3
 # Overlap of an open contact that is rounding, relative to the largest displacement without forces.
 TOUCH = 1e-12
@@ -40,9 +40,9 @@ TOUCH = 1e-12
 
 @numba.njit(**OPTIONS)
 def solve_states(contacts, carried, sizes, step, run, tried, zero):
-    """Put forces and states of all contacts into what they are, ratios of sliding kept, and what they displace.
+    """Solve for forces, states and displacements of all contacts, with the ratios of sliding kept, in runs `tried`.
 
-    `tried` says in which runs. Where no states are found that admit forces nothing is changed; returns where that is.
+    Nothing changes in runs where no consistent states are found; returns where that is so.
     """
     now, codes, scratch = contacts.now, contacts.codes, contacts.scratch
     keep_found(contacts, sizes, run, zero)
@@ -97,7 +97,7 @@ def farthest(now, count, run, zero):
 
 @numba.njit(**OPTIONS)
 def keep_found(contacts, sizes, run, zero):
-    """Keep forces, states and displacements to come back to, and put the ratios of those that slide."""
+    """Save forces, states and displacements to restore, and set the ratios of sliding contacts."""
     now, saved = contacts.now, contacts.scratch.shape[0] + SAVED
     for i in range(sizes.contacts):
         here = i * at.IN_STEP
@@ -117,7 +117,7 @@ def keep_found(contacts, sizes, run, zero):
 
 @numba.njit(**OPTIONS)
 def put_back(contacts, sizes, given_up, run, zero):
-    """Put back what was kept, in runs that are given up."""
+    """Restore the saved values in runs that are given up."""
     if not anywhere(given_up > 0.5):
         return
     now, saved = contacts.now, contacts.scratch.shape[0] + SAVED
@@ -138,16 +138,16 @@ def put_back(contacts, sizes, given_up, run, zero):
 
 @numba.njit(**OPTIONS)
 def compare(contacts, carried, sizes, slack, active, run, zero):
-    """Put which state each contact wants, in runs that are `active`.
+    """Set the state that each contact wants, in runs that are `active`.
 
-    Laws but Coulomb's say by themselves, in a sweep, when a contact breaks away or comes to rest.
+    Under laws other than Coulomb's, only a sweep decides when a contact breaks away or comes to rest.
 
     Returns
     -------
     at_odds, last : float or vector
-        How many contacts want another than they have, and the number of the last of them.
+        Number of contacts that want another state, and the index of the last of them.
     fails : float or vector
-        Where a contact can have none.
+        Where a contact has no consistent state.
     """
     now, at_odds, last, fails = contacts.now, zero, zero - 1.0, zero
     for j in range(sizes.contacts):
@@ -198,7 +198,7 @@ def change(contacts, carried, sizes, j, in_space, step, active, run, zero):
     stops = choose(wanted < SLIDING - 0.5, status, zero) > SLIDING - 0.5
     normal = held(now, here + at.NORMAL_NOW, run, zero)
     first, second = held(now, here + at.TANGENTIAL_NOW, run, zero), zero
-    # A contact that closes slides the way that it moves, one that breaks away as it was pulled.
+    # A contact that closes slides in the direction of its motion, one that breaks away in that of its force.
     along, across = choose(closes, velocity_of(contacts, carried, j, run, zero), first), zero
     if in_space:
         second = held(now, there + at.TANGENTIAL_NOW, run, zero)
@@ -229,7 +229,7 @@ def change(contacts, carried, sizes, j, in_space, step, active, run, zero):
 
 @numba.njit(**OPTIONS)
 def velocity_of(contacts, carried, i, run, zero):
-    """Return the velocity along the tangent of pair `i` that friction acts against, in units of a ninth of a slip."""
+    """Return the velocity along the tangent of pair `i` that friction opposes, in units of a ninth of a slip."""
     slip = component(contacts.faces, 2 * i + 1, DISPLACEMENT, run, zero)
     if not (is_second(contacts.codes, i) or is_second(contacts.codes, i + 1)):
         return 9.0 * slip
@@ -244,7 +244,7 @@ def velocity_of(contacts, carried, i, run, zero):
 
 @numba.njit(**OPTIONS)
 def soften_closed(contacts, carried, j, closes, step, run, zero):
-    """Put how contact `j` yields about its indentation, in runs in which it has closed."""
+    """Set the yielding of contact `j` about its indentation, in runs in which it has closed."""
     yields = yields_of(j, contacts.constants, run, zero)
     if not yields_anywhere(yields):
         return
@@ -266,7 +266,7 @@ def equation(now, i, which, run, zero):
 
 @numba.njit(**OPTIONS)
 def number_equations(contacts, count, run, zero):
-    """Number the equations of all contacts and put where they are and which a run has; return how many there are."""
+    """Number the equations of all contacts, set their places and whether a run has each; return their number."""
     now, codes, scratch = contacts.now, contacts.codes, contacts.scratch
     size, has = 0, scratch.shape[0] + HAS
     for i in range(count):
@@ -305,7 +305,7 @@ def is_held(now, i, run, zero):
 
 @numba.njit(**OPTIONS)
 def put_columns(contacts, sizes, j, in_space, size, run, zero):
-    """Put what the forces of contact `j` displace at every equation."""
+    """Set the displacements under the forces of contact `j` at every equation."""
     now, faces, scratch = contacts.now, contacts.faces, contacts.scratch
     ratio, swerve = held(now, j * at.IN_STEP + at.RATIO, run, zero), zero
     if in_space:
@@ -329,9 +329,9 @@ def put_columns(contacts, sizes, j, in_space, size, run, zero):
 
 @numba.njit(**OPTIONS)
 def put_column(scratch, places, displaced, row, column, give, size, run, zero):
-    """Put what an unknown displaces at every equation, given by a row, and by how much more its own contact gives.
+    """Set the displacements under an unknown at every equation, from a row, with the additional give of its contact.
 
-    Where this run has no such equation, the unknown is zero.
+    The unknown is zero where this run has no such equation.
     """
     has = scratch.shape[0] + HAS
     for i in range(size):
@@ -343,7 +343,7 @@ def put_column(scratch, places, displaced, row, column, give, size, run, zero):
 
 @numba.njit(**OPTIONS)
 def put_rights(contacts, carried, j, in_space, size, run, zero):
-    """Put the right sides of contact `j`: gap and slip undone."""
+    """Set the right sides of contact `j`: gap and slip to undo."""
     now, scratch, here = contacts.now, contacts.scratch, j * at.IN_STEP
     gap, beyond = held(now, here + at.FREE_GAP, run, zero), held(now, here + at.BEYOND, run, zero)
     of_normal = equation(now, j, at.NORMAL_EQUATION, run, zero)
@@ -358,7 +358,7 @@ def put_rights(contacts, carried, j, in_space, size, run, zero):
 
 @numba.njit(**OPTIONS)
 def found_forces(contacts, j, i, size, run, zero):
-    """Return the normal force of contact `j` and the tangential one of its pair `i` that were found."""
+    """Return the normal force of contact `j` and the tangential force of its pair `i` from the solution."""
     now, scratch = contacts.now, contacts.scratch
     normal = component(scratch, equation(now, j, at.NORMAL_EQUATION, run, zero), size, run, zero)
     tangential = held(now, i * at.IN_STEP + at.RATIO, run, zero) * normal
@@ -371,7 +371,7 @@ def found_forces(contacts, j, i, size, run, zero):
 
 @numba.njit(**OPTIONS)
 def take(contacts, j, i, size, regular, run, zero):
-    """Take the forces found for pair `i` of contact `j` in runs that are `regular`; return by how much they changed."""
+    """Accept the forces of pair `i` of contact `j` in runs that are `regular`; return their changes."""
     now, here = contacts.now, i * at.IN_STEP
     normal, tangential = held(now, here + at.NORMAL_NOW, run, zero), held(now, here + at.TANGENTIAL_NOW, run, zero)
     pressed, pulled = found_forces(contacts, j, i, size, run, zero)
@@ -383,10 +383,10 @@ def take(contacts, j, i, size, regular, run, zero):
 
 @numba.njit(**OPTIONS)
 def eliminate(scratch, size, per_block, run, regular, zero):
-    """Solve the system in place by Gauss's elimination without exchange of rows; return where it is regular.
+    """Solve the system in place by Gaussian elimination without pivoting; return where it is regular.
 
-    A contact's own compliance is on the diagonal. What this loses of digits, the sweep that follows finds. Two unknowns
-    are taken from all that follow at once.
+    A contact's own compliance is on the diagonal. The next sweep recovers the digits lost here. Two unknowns are
+    eliminated from all later equations at once.
     """
     one, other = scratch.shape[0] + MULTIPLIERS, scratch.shape[0] + MORE_MULTIPLIERS
     blocks = (size + per_block - 1) // per_block
@@ -423,7 +423,7 @@ def eliminate(scratch, size, per_block, run, regular, zero):
 
 @numba.njit(**OPTIONS)
 def put_multipliers(scratch, k, row, begin, blocks, per_block, run, regular, zero):
-    """Put by how much equation `k` is taken from those after it to rid them of its unknown; return where it can be."""
+    """Set the multipliers that eliminate unknown `k` from the later equations; return where that is possible."""
     pivot = component(scratch, k, k, run, zero)
     regular = choose(magnitude(pivot) > 0.0, regular, zero)
     inverse = 1.0 / choose(regular > 0.5, pivot, 1.0)

@@ -1,7 +1,7 @@
-"""Displacements of all contacts and the compliance that their forces meet.
+"""Displacements of all contacts and their compliance.
 
-Forces have signs as they move the modes, ``(normal, -tangential)``, so that displacements are those without forces plus
-the compliance times the forces.
+Forces have the signs with which they act on the modes, ``(normal, -tangential)``, so that displacements are those
+without forces plus the compliance times the forces.
 """
 
 import numba
@@ -26,7 +26,7 @@ def own_compliance(faces, i, run, zero):
 
 @numba.njit(**OPTIONS)
 def displace(faces, blocks, i, run, normal, tangential):
-    """Add the displacements that changes of the forces of contact `i` make."""
+    """Add the displacements due to changes of the forces of contact `i`."""
     for k in range(blocks):
         moved = fused(load(faces, COMPLIANCE + 2 * i, k, run), normal, load(faces, DISPLACEMENT, k, run))
         moved = fused(-load(faces, COMPLIANCE + 2 * i + 1, k, run), tangential, moved)
@@ -35,7 +35,7 @@ def displace(faces, blocks, i, run, normal, tangential):
 
 @numba.njit(**OPTIONS)
 def displace_in_space(faces, blocks, i, run, normal, first, second):
-    """Add the displacements that changes of the forces of contact `i` in space make, which has no second normal."""
+    """Add the displacements due to changes of the forces of contact `i` in space, which has no second normal."""
     for k in range(blocks):
         moved = fused(load(faces, COMPLIANCE + 2 * i, k, run), normal, load(faces, DISPLACEMENT, k, run))
         moved = fused(-load(faces, COMPLIANCE + 2 * i + 1, k, run), first, moved)
@@ -45,7 +45,7 @@ def displace_in_space(faces, blocks, i, run, normal, first, second):
 
 @numba.njit(**OPTIONS)
 def displace_freely(faces, now, count, run, zero):
-    """Put the displacements without any force."""
+    """Set the displacements without any force."""
     for i in range(count):
         set_component(faces, 2 * i, DISPLACEMENT, run, held(now, i * at.IN_STEP + at.FREE_GAP, run, zero))
         set_component(faces, 2 * i + 1, DISPLACEMENT, run, held(now, i * at.IN_STEP + at.FREE_SLIP, run, zero))

@@ -1,7 +1,7 @@
 """Laws of friction: the ratio of tangential to normal force at a slip velocity, and the motion of internal states.
 
-Every function takes the code of the law, the parameters of all contacts and the number of one. Arrays come whole: a
-view of a row costs more than what is done with it.
+Every function takes the code of the law, the parameters of all contacts and the number of one. Arrays are passed whole:
+a view of a row would cost more than the computation.
 """
 
 import math
@@ -11,8 +11,8 @@ import numba
 
 from . import layout as at
 
-# Said out loud: else a function compiled for the general march inherits its leave to add in another order, and rounds
-# the distance from an anchor, slip + (material - anchor), as if it were one of abscissas.
+# Explicit, because a function inlined in the general march would inherit its permission to reorder sums, and would
+# round the distance from an anchor, slip + (material - anchor), like an abscissa.
 STRICT: dict[str, Any] = {"cache": True, "fastmath": False, "error_model": "numpy"}
 
 
@@ -48,7 +48,7 @@ def sliding_ratio(law, laws, i, speed):
 
 @numba.njit(inline="always", **STRICT)
 def ratio_and_slope(law, laws, i, speed):
-    """Return the ratio of a law that depends on the slip speed, above zero, and its first two derivatives."""
+    """Return the ratio of a speed-dependent law at a speed above zero, and its first two derivatives."""
     if law == at.LINEAR_WEAKENING:
         ratio = laws[i, 0] - laws[i, 1] * speed
         falls = ratio > laws[i, 2]
@@ -64,7 +64,7 @@ def ratio_and_slope(law, laws, i, speed):
 
 @numba.njit(inline="always", **STRICT)
 def corner_between(law, laws, i, one, other):
-    """Return whether the ratio of a law has a corner between two speeds, beyond which its slope says nothing."""
+    """Return whether the ratio of a law has a corner between two speeds, which invalidates its slope."""
     if law != at.LINEAR_WEAKENING:
         return False
     return (laws[i, 0] - laws[i, 1] * one > laws[i, 2]) != (laws[i, 0] - laws[i, 1] * other > laws[i, 2])
@@ -72,7 +72,7 @@ def corner_between(law, laws, i, one, other):
 
 @numba.njit(**STRICT)
 def least_ratio(law, laws, i):
-    """Return the ratio that a weakening law falls to, but for its viscous part."""
+    """Return the ratio that a weakening law falls to, without its viscous part."""
     return laws[i, 1] if law == at.STRIBECK else laws[i, 2]
 
 
@@ -90,7 +90,7 @@ def speed_scale(law, laws, i, state):
 
 @numba.njit(inline="always", **STRICT)
 def bristles_over(laws, i, speed, step):
-    """Return what becomes of LuGre's bristles over a step at constant slip speed.
+    """Return the motion of LuGre's bristles over a step at constant slip speed.
 
     Returns
     -------
@@ -99,7 +99,7 @@ def bristles_over(laws, i, speed, step):
     share : float
         Share of the slip that they take up.
     passed, passed_slope, share_slope : float
-        Slip over the deflection at which they give way, its derivative by the speed, that of the share by it.
+        Slip relative to the limit deflection, its derivative by the speed, and the derivative of `share` by it.
     """
     weakened = (laws[i, 0] - laws[i, 1]) * math.exp(-((speed / laws[i, 2]) ** 2))
     limit = (laws[i, 1] + weakened) / laws[i, 3]
@@ -131,7 +131,7 @@ def next_state(law, laws, i, state, velocity, step):
 
 @numba.njit(**STRICT)
 def state_ratio(law, laws, i, state, velocity, step):
-    """Return the ratio of a law with internal state over a step: with mean and rate of the state over it."""
+    """Return the ratio of a law with internal state over a step, from mean and rate of the state."""
     new = next_state(law, laws, i, state, velocity, step)
     middle = 0.5 * (state + new)
     if law == at.LUGRE:

@@ -1,8 +1,8 @@
-"""What the march is written with: modes and runs, many at a time where the machine can.
+"""Elementary operations of the march, on vectors of modes or runs where the processor has them.
 
-A vector holds `LANES` modes of one run, or one mode of `LANES` runs. What belongs to a run is a number in the first
-case and a vector in the second: functions take the kind from an argument `like`, whose value does not matter. As plain
-Python and on a graphics card, everything is a number: one mode of one run.
+A vector holds `LANES` modes of one run, or one mode of `LANES` runs. A quantity of a run is a number in the first case
+and a vector in the second; functions take the type from an argument `like`, whose value does not matter. In plain
+Python and on a graphics card all values are numbers: one mode of one run.
 """
 
 import inspect
@@ -23,42 +23,42 @@ def store(rows, k, row, run, value):
 
 
 def entry(rows, k, row, run, like):
-    """Return number `k` of a row that goes over all blocks, for each run."""
+    """Return number `k` of a row that spans all blocks, for each run."""
     return rows[k, row, run]
 
 
 def set_entry(rows, k, row, run, value):
-    """Put number `k` into a row that goes over all blocks, for each run."""
+    """Set number `k` of a row that spans all blocks, for each run."""
     rows[k, row, run] = value
 
 
 def component(rows, k, row, run, like):
-    """Return number `k` of a row that lies in one piece over all blocks, for each run."""
+    """Return number `k` of a row that is contiguous over all blocks, for each run."""
     return rows[row, k, run]
 
 
 def set_component(rows, k, row, run, value):
-    """Put number `k` into a row that lies in one piece over all blocks, for each run."""
+    """Set number `k` of a row that is contiguous over all blocks, for each run."""
     rows[row, k, run] = value
 
 
 def read(array, row, column, like):
-    """Return what belongs to a run, or to each of several, from a row of `array`."""
+    """Return the number of a run, or of each of several, from a row of `array`."""
     return array[row, column]
 
 
 def write(array, row, column, value):
-    """Put what belongs to a run, or to each of several, into a row of `array`."""
+    """Set the number of a run, or of each of several, in a row of `array`."""
     array[row, column] = value
 
 
 def held(array, row, run, like):
-    """Return what belongs to a run, or to each of several, from a row of an array that has nothing but one for each."""
+    """Return the number of a run, or of each of several, from a row of an array with one number for each run."""
     return array[row, run]
 
 
 def hold(array, row, run, value):
-    """Put what belongs to a run, or to each of several, into a row of an array that has nothing but one for each."""
+    """Set the number of a run, or of each of several, in a row of an array with one number for each run."""
     array[row, run] = value
 
 
@@ -78,7 +78,7 @@ def choose(condition, yes, no):
 
 
 def fused(a, b, c):
-    """Return ``a b + c``, rounded once where the machine can: the same in every place of the code."""
+    """Return ``a b + c``, rounded once where the processor can, the same everywhere in the code."""
     return a * b + c
 
 
@@ -112,7 +112,7 @@ def with_lane(value, i, number):
     return number
 
 
-# Compiled for numbers of one run; what they come to for vectors is in `vectors`.
+# Compiled versions for numbers of one run; those for vectors are in `vectors`.
 
 
 def _for_numbers(function, accepts):
@@ -171,7 +171,7 @@ def _set_component(rows, k, row, run, value):
 
 @overload(held)
 def _held(array, row, run, like):
-    # Alone, a run has what belongs to it in a row of its own.
+    # The numbers of a single run lie in a row of its own.
     return (lambda array, row, run, like: array[row]) if _is_number(like) else None
 
 

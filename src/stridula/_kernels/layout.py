@@ -1,10 +1,10 @@
-"""Where each number lives in the flat arrays of the march."""
+"""Places of the numbers in the flat arrays of the march."""
 
 # Rows of the coefficient block, one column a mode; those of coupled modes are matrices instead.
 B, R, LOAD, HALF_OVER_LOAD, HALF_LOSS = range(5)
 COEFFICIENT_ROWS = 5
 
-# Matrices of the coupled modes, which come first among the modes.
+# Matrices of the coupled modes, which are the first modes.
 KEPT, STIFFNESS, MOBILITY, IMPULSE, LOSS, TURN, KINETIC, ELASTIC = range(8)
 MATRICES = 8
 
@@ -14,8 +14,8 @@ Q, D = range(2)
 # Rows of a contact: relative displacement of the tip against the fixed part of the track, along normal and tangent.
 NORMAL, TANGENTIAL = range(2)
 
-# Spans of blocks of modes that a contact sees: first block, the one after the last, kind, whether their modes are made
-# of two waves, whether of cosines.
+# Spans of blocks of modes that a contact depends on: first block, end, kind, whether their modes consist of two waves,
+# whether of cosines.
 BEGIN, END, KIND, TWO_WAVES, COSINES = range(5)
 SPAN = 5
 # Kinds of span: rows are constant; waves of a path along the normal and along the tangent; all modes of a body that the
@@ -26,10 +26,10 @@ CONSTANT, PATH_NORMAL, PATH_TANGENTIAL, ROUND = range(4)
 TIP_MOTION, TRACK_MOTION, GAP_MOTION = range(3)
 MOTIONS = 3
 
-# Constants of a contact: where it starts, its gap, the ends of its path, rate along the path and value at abscissa zero
-# of the two angles whose sines the modes of the path are, on a circle of the angle from where it starts, ratio at rest
-# of the law of friction; stiffness of the contact itself, 0 of a rigid one, its exponent, damping, and damping rate
-# over the force.
+# Constants of a contact: initial place, gap, ends of its path; rate along the path and value at abscissa zero of the
+# two angles whose sines are the modes of the path, on a circle of the angle from the initial place; ratio at rest of
+# the law of friction; stiffness of the contact itself, 0 if rigid, its exponent, damping, and damping rate over the
+# force.
 (
     START,
     GAP,
@@ -49,7 +49,7 @@ CONTACT_CONSTANTS = 13
 
 # Laws of friction, and the parameters of each, the state of a new contact last.
 COULOMB, STATIC_KINETIC, STRIBECK, LINEAR_WEAKENING, LUGRE, AGING, SLIP = range(7)
-# In the place of the law: the pair of rows is the second of the contact before it.
+# In place of the law: the pair of rows is the second of the contact before it.
 SECOND_TANGENT = -1
 LAW_PARAMETERS = 8
 
@@ -73,11 +73,11 @@ LAW_PARAMETERS = 8
 ) = range(13)
 CARRIED = 13
 
-# What a contact is in a step: gap, slip and abscissa, without its forces, then with them; forces, status, whether it is
-# jammed; while the contacts are solved together whether it may touch, has broken away, has been let go. How much more
-# it yields for a unit of force than the bodies, and beyond that. In the system of all contacts: numbers of the
-# equations of its normal and its tangential force, below 0 without one, the ratio of these where it slides; forces and
-# status to come back to, and the status that it wants.
+# State of a contact in a step: gap, slip and abscissa, without its forces, then with them; forces, status, whether it
+# jams; while the contacts are solved together whether it may touch, has broken away, has been let go. Additional give
+# for a unit of force, and additional indentation without force. In the system of all contacts: numbers of the equations
+# of its normal and its tangential force, below 0 without one, the ratio of these forces if it slides; forces and status
+# to restore, and the status that it wants.
 (
     FREE_GAP,
     FREE_SLIP,
@@ -103,7 +103,7 @@ CARRIED = 13
 ) = range(21)
 IN_STEP = 21
 
-# Sums over the steps of a sample, of each contact, and where it was at its beginning.
+# Sums of each contact over the steps of a sample, and its place at the beginning of the sample.
 (
     NORMALS,
     TANGENTIALS,
@@ -142,5 +142,5 @@ COLUMNS = 13
 # Kinds of probe rows: on positions, on centred velocities, on second differences.
 DISPLACEMENT, VELOCITY, ACCELERATION = range(3)
 
-# What ended a march.
+# Reasons for the end of a march.
 FINISHED, OFF_TRACK, NOT_FINITE, CONTACT_UNSOLVED, ENERGY_CREATED = range(5)

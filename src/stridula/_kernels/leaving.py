@@ -8,13 +8,13 @@ from .coupled import energy_of
 from .lanes import anywhere, choose, held, hold, magnitude, write
 from .modes import OPTIONS, PASTED
 
-# What became of a run: samples completed, what ended it.
+# Result of a run: samples completed, reason of its end.
 COMPLETED, ENDED = range(2)
 
 
 @numba.njit(**OPTIONS)
 def leave(ended, completed, leaves, why, sample, state, run, zero):
-    """Return what ended runs and how many samples they have, where some leave now; keep what their contacts are."""
+    """Return reasons of the end and numbers of samples of runs, where some leave now; save their contacts."""
     newly = choose(ended > 0.0, zero, leaves) > 0.5
     for row in range(state.carried.shape[0]):
         kept = choose(newly, held(state.carried, row, run, zero), held(state.at_end, row, run, zero))
@@ -24,13 +24,13 @@ def leave(ended, completed, leaves, why, sample, state, run, zero):
 
 @numba.njit(**OPTIONS)
 def beyond_ends(i, place, contacts, state, run, zero):
-    """Return where contact `i` is beyond the ends of its path, and why: by its motion, or by one that diverges."""
+    """Return where contact `i` is beyond the ends of its path, and why: by its motion, or because it diverges."""
     base = i * at.CONTACT_CONSTANTS
     low, high = held(contacts.constants, base + at.LOW, run, zero), held(contacts.constants, base + at.HIGH, run, zero)
     leaves = choose(choose(place > low, high - place, zero) > 0.0, zero, 1.0)
     if not anywhere(leaves > 0.5):
         return leaves, leaves
-    # A tip does not cross the whole track in one step: that is a march that diverges.
+    # A tip that crosses the whole track in one step diverges.
     within = magnitude(place - held(state.carried, i * at.CARRIED + at.ABSCISSA, run, zero)) < high - low
     return leaves, choose(within, zero + at.OFF_TRACK, zero + at.NOT_FINITE)
 
@@ -49,7 +49,7 @@ def any_beyond_ends(sizes, paths, contacts, state, run, zero):
 
 @numba.njit(**PASTED)
 def end(parts, ended, completed, run, zero):
-    """Say what became of the runs; let those that have ended carry what they had when they did."""
+    """Record the results of the runs; restore the contacts of ended runs to those at their end."""
     carried, stops = parts.state.carried, parts.records.stops
     write(stops, COMPLETED, run, choose(ended > 0.0, completed, zero + parts.records.energies.shape[0]))
     write(stops, ENDED, run, ended)

@@ -1,4 +1,4 @@
-"""The ledger of energy of a chunk of a march: how much of it may be believed."""
+"""Check of the energy ledger over a chunk of a march."""
 
 import numba
 import numpy as np
@@ -16,16 +16,17 @@ from .layout import (
     STORED,
 )
 
-# Share of the largest energy that round-off may make of the ledger, of the stored energy below zero and of losses
-# running back.
+# Largest share of the largest energy that is accepted as round-off: residual of the ledger, stored energy below zero,
+# losses that fall.
 LEDGER_TOLERANCE = 1e-8
-# Share of the largest energy that the contacts may seem to give: their work is centred over a step, their loss is not.
+# Largest share of the largest energy that contacts may appear to supply: their work is centred over a step, their loss
+# is not.
 CONTACT_TOLERANCE = 1e-2
 
 
 @numba.njit(nogil=True, **STRICT)
 def keep_beside(chunk, samples, rows, first):
-    """Put the energies of one of several runs side by side, (samples, energies), into rows from a sample on."""
+    """Copy the energies of one of several runs side by side, (samples, energies), to rows from a sample on."""
     for sample in range(samples):
         for k in range(ENERGIES):
             rows[k, first + sample] = chunk[sample, k]
@@ -33,10 +34,10 @@ def keep_beside(chunk, samples, rows, first):
 
 @numba.njit(nogil=True, **STRICT)
 def believed(rows, first, samples, before, initial, largest, of_loads, dissipative, damped_alone):
-    """Return how many samples from one on can be believed, what ends them or -1, and the largest energy met.
+    """Return the number of reliable samples from one on, the reason of their end or -1, and the largest energy.
 
-    The ledger must close, the stored energy stay above zero, the contacts take energy on the whole; friction and
-    damping take it at every step where they are said to. `before` are the energies at the sample before.
+    The ledger must close, the stored energy stay above zero, and the contacts take energy on the whole; where they
+    must, friction and damping take energy in every step. `before` are the energies at the sample before.
     """
     for sample in range(first, first + samples):
         for k in range(ENERGIES):
@@ -51,7 +52,7 @@ def believed(rows, first, samples, before, initial, largest, of_loads, dissipati
 
 @numba.njit(**STRICT)
 def _created(rows, first, samples, before, initial, largest, of_loads, dissipative, damped_alone):
-    """Return the first sample at which energy came from nowhere, -1 if there is none, and the largest energy met."""
+    """Return the first sample at which energy was created, -1 if there is none, and the largest energy."""
     met, friction, damping = largest, before[FRICTION_LOSS], before[DAMPING_LOSS]
     for sample in range(first, first + samples):
         for k in range(DAMPING_LOSS + 1):

@@ -1,4 +1,4 @@
-"""The loads on the modes, and the work of those that stay for a while."""
+"""Loads on the modes, and their work."""
 
 import numba
 
@@ -11,7 +11,7 @@ from .modes import OPTIONS, PASTED, set_load, work_of_unit_load
 
 @numba.njit(**OPTIONS)
 def differ(signals, n, loads, run, runs, zero):
-    """Return whether a load at step `n` is another than at the step before."""
+    """Return whether a load at step `n` differs from that at the step before."""
     if n == 0 or n >= signals.shape[0]:
         return n == 0
     for j in range(loads):
@@ -23,7 +23,7 @@ def differ(signals, n, loads, run, runs, zero):
 
 @numba.njit(**OPTIONS)
 def credit_loads(parts, n, run, runs, zero):
-    """Add what the loads have given up to step `n` since their amplitudes changed, and begin anew."""
+    """Add the work of the loads up to step `n` since their amplitudes last changed, and begin anew."""
     sizes, modes, signals = parts.sizes, parts.modes, parts.imposed.signals
     first = CONTACTS + 2 * sizes.contacts + sizes.loads
     for j in range(sizes.loads):
@@ -37,7 +37,7 @@ def credit_loads(parts, n, run, runs, zero):
 
 @numba.njit(**PASTED)
 def change_loads(parts, n, run, runs, zero):
-    """Let the loads of step `n` push, where they are others than before."""
+    """Apply the loads of step `n`, if they differ from those before."""
     sizes = parts.sizes
     if differ(parts.imposed.signals, n, sizes.loads, run, runs, zero):
         credit_loads(parts, n, run, runs, zero)

@@ -1,6 +1,6 @@
-"""The march in time: of one run, or of several side by side, with any number of contacts.
+"""Time integration of one run, or of several side by side, with any number of contacts.
 
-Numbers of parts, here and in what it calls, are those of the steps under *Contact in one step* in `docs/model.rst`.
+Steps 1 to 6 in docstrings and comments of this package are those of *Contact in one step* in `docs/model.rst`.
 """
 
 import math
@@ -25,7 +25,7 @@ from .vectors import LANES
 
 @numba.njit(**PASTED)
 def begin(parts, run, zero):
-    """Remember the probes as they are at the beginning."""
+    """Save the initial values of the probes."""
     first = CONTACTS + 2 * parts.sizes.contacts + 2 * parts.sizes.loads
     probes = parts.probes
     remember_probes(parts.modes.rows, first, probes.kinds, probes.spans, probes.last, run, zero)
@@ -54,11 +54,11 @@ def record_row(parts, sample, n, run, runs, zero):
 
 @numba.njit(fastmath=False, **ENTRY)
 def march(zero, run, runs, parts):
-    """March through the samples of the records, or until no run goes on.
+    """March through the samples of the records, or until all runs have ended.
 
-    What belongs to a run has a column for each run; where there are several numbers of a kind, they come in groups of
-    columns. `zero` is of the kind that numbers of a run have: a number, or a vector of several runs; `run` is the first
-    of these runs, `runs` how many columns there are.
+    Quantities of a run have a column for each run; several numbers of a kind have groups of columns. `zero` has the
+    type of the numbers of a run: a number, or a vector of several runs; `run` is the first of these runs, `runs` the
+    number of columns.
     """
     sizes, timing, signals = parts.sizes, parts.timing, parts.imposed.signals
     single = sizes.contacts == 1 and sizes.coupled == 0 and parts.turning.spans.shape[0] == 0
@@ -123,6 +123,6 @@ def march_runs(parts):
 
 
 def march_one_by_one(runs, parts):
-    """March runs one after the other in plain Python, where nothing is compiled."""
+    """March runs one after the other, in plain Python without compilation."""
     for run in range(runs):
         march(0.0, run, runs, parts)

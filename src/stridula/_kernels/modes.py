@@ -1,13 +1,13 @@
-"""What the march does to the modes, block by block.
+"""March of the modes, block by block.
 
-A block is as wide as a vector: eight modes of one run, filled up with zeros, or one mode of eight runs. All that is
-known of a block lies together. States are scaled by the root of the mobility, ``q / sqrt(l)``, and so are loads and
+A block is as wide as a vector: eight modes of one run, filled up with zeros, or one mode of eight runs. All rows of a
+block are adjacent in memory. States are scaled by the root of the mobility, ``q / sqrt(l)``, and so are loads and
 rows: a unit force adds its row to the increment, and the energy half a step ago is
 ``[(1 + b) / 2 d² + r q[n] q[n-1]] / 2``.
 
-One contact between bodies of uncoupled modes: a step is completed, under its forces, when the next one is tried, so
-that the modes are read once a step (`pass_fixed`, `pass_waves`). Any number of contacts: a step is tried, each contact
-gathers its displacement, and the step is completed under the push of all.
+One contact between bodies of uncoupled modes: a step is completed under its forces (step 6) together with the trial of
+the next one (step 1), so that the modes are read once a step (`pass_fixed`, `pass_waves`). Any number of contacts: a
+step is tried, the displacements of all contacts are summed, and the step is completed under the push of all.
 """
 
 from typing import Any
@@ -33,12 +33,12 @@ from .block_rows import (
 )
 from .lanes import fused, load, spread, store, total
 
-# No rule of arithmetic is relaxed: a step is the same to the last bit wherever it is completed. No counting of
-# references: arrays come from Python and stay.
+# Strict arithmetic: a step is the same to the last bit wherever it is completed. No reference counting: arrays come
+# from Python and stay.
 OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "forceinline": True, "fastmath": False, "_nrt": False}
-# What does little but call others is pasted as Python: compiled apart, all that it calls would be optimised once more.
+# For functions that mainly call others, inlined as Python: compiled apart, all that they call would be optimised again.
 PASTED: dict[str, Any] = {"cache": True, "error_model": "numpy", "inline": "always", "fastmath": False, "_nrt": False}
-# What is called from Python lets other threads run.
+# For functions called from Python, which let other threads run.
 ENTRY: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
 
 
@@ -56,7 +56,7 @@ def block_at(rows, k, run):
 
 @numba.njit(**OPTIONS)
 def complete(rows, k, run, q, d, increment):
-    """Complete the step of a block by an increment; return the position and the sum of both increments."""
+    """Complete the step of a block by an increment (step 6); return the position and the sum of both increments."""
     q = q + increment
     store(rows, k, Q, run, q)
     store(rows, k, D, run, increment)
@@ -65,13 +65,13 @@ def complete(rows, k, run, q, d, increment):
 
 @numba.njit(**OPTIONS)
 def pass_fixed(rows, begin, end, run, pending, normal, tangential):
-    """Complete a pending step of modes whose rows are constant and try the next.
+    """Complete a pending step of modes with constant rows (step 6) and try the next (step 1).
 
     Returns
     -------
     along, across, works, losses : vector
         Trial displacements of the contact along tangent and normal; twice the work of the contact in the step
-        completed, four times what damping took.
+        completed, four times the loss to damping.
     """
     along, across, works, losses = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     for k in range(begin, end):
@@ -92,16 +92,16 @@ def pass_fixed(rows, begin, end, run, pending, normal, tangential):
 
 @numba.njit(**OPTIONS)
 def pass_waves(rows, waves, wave_of, begin, end, two, run, pending, pull, last, last_slope, now):
-    """Complete a pending step of modes on a path that a force pulls at, and try the next.
+    """Complete a pending step of modes on a path under a force (step 6), and try the next (steps 1 to 4).
 
     `last`, `last_slope` and `now` are the rows of the waves at the contact in the step completed, of their derivatives,
-    and of the waves in the next. Modes are made of `two` waves, or one.
+    and of the waves in the next. Modes consist of two waves if `two`, else of one.
 
     Returns
     -------
     trace, softness, slopes, works, losses : vector
-        Trial displacement of the path at the contact, that for a unit force, its derivative along the path after the
-        step completed; works and losses of that step as above.
+        Trial displacement of the path at the contact, displacement for a unit force, slope of the path there after the
+        step completed; works and losses of that step as in `pass_fixed`.
     """
     trace, softness, slopes = spread(0.0), spread(0.0), spread(0.0)
     works, losses = spread(0.0), spread(0.0)
@@ -131,7 +131,7 @@ def pass_waves(rows, waves, wave_of, begin, end, two, run, pending, pull, last, 
 
 @numba.njit(**OPTIONS)
 def try_all(rows, begin, end, run):
-    """Put increment and position at the end of the step without contact force into the rows of uncoupled modes."""
+    """Set increment and position at the end of the step without contact force in uncoupled modes (step 1)."""
     for k in range(begin, end):
         q, d, kept, stiffness, force = block_at(rows, k, run)
         increment = fused(kept, d, fused(-stiffness, q, force))
@@ -141,7 +141,7 @@ def try_all(rows, begin, end, run):
 
 @numba.njit(**OPTIONS)
 def set_path_rows(rows, waves, wave_of, first, begin, end, two, run, row, sine):
-    """Put minus the trace of a path at a contact, whose waves begin at `first`, into its row."""
+    """Set the row of a contact to minus the trace of its path, whose waves begin at `first` (step 2)."""
     for k in range(begin, end):
         here = first + wave_of[k]
         trace = load(rows, k, AMPLITUDE, run) * load(waves, here, sine, run)
@@ -165,7 +165,7 @@ def slope_along(rows, waves, wave_of, first, begin, end, two, run, slope_row, ze
 
 @numba.njit(**OPTIONS)
 def clear_push(rows, blocks, run):
-    """Let nothing push."""
+    """Set the push on the modes to zero."""
     for k in range(blocks):
         store(rows, k, PUSH, run, spread(0.0))
 
@@ -180,7 +180,7 @@ def add_push(rows, i, begin, end, run, normal, tangential):
 
 @numba.njit(**OPTIONS)
 def complete_all(rows, begin, end, run, zero):
-    """Complete the step of uncoupled modes under their push; return the work of the push and what damping took."""
+    """Complete the step of uncoupled modes under their push (step 6); return work of the push and loss to damping."""
     works, losses = spread(0.0), spread(0.0)
     for k in range(begin, end):
         q, d, push = load(rows, k, Q, run), load(rows, k, D, run), load(rows, k, PUSH, run)
@@ -192,7 +192,7 @@ def complete_all(rows, begin, end, run, zero):
 
 @numba.njit(**OPTIONS)
 def set_load(rows, j, row, blocks, run, factor):
-    """Add a unit load, times a factor, to the loads of this step; the first one replaces them."""
+    """Add a unit load, times a factor, to the loads of this step; the first replaces them."""
     for k in range(blocks):
         before = load(rows, k, FORCE, run) if j else spread(0.0)
         store(rows, k, FORCE, run, fused(factor, load(rows, k, row, run), before))

@@ -1,4 +1,4 @@
-"""What a march takes, part by part."""
+"""Arguments of a march, grouped in tuples."""
 
 from typing import NamedTuple
 
@@ -6,24 +6,24 @@ import numpy as np
 
 
 class Sizes(NamedTuple):
-    """How much there is of what.
+    """Numbers of blocks, contacts and loads, and kinds of contacts present.
 
     Attributes
     ----------
     blocks, coupled : int
-        Blocks of modes, those of coupled modes, which come first.
+        Number of blocks of modes, and of those of coupled modes, which are the first.
     per_block : int
         Numbers of a run in a block.
     contacts, faces : int
-        Contacts, blocks of their forces.
+        Number of contacts, and of blocks of their forces.
     loads : int
-        Unit loads.
+        Number of unit loads.
     paths, coupled_paths : bool
-        Whether a contact is on a path, and on one whose modes are coupled.
+        Whether any contact is on a path, and on a path with coupled modes.
     space : bool
-        Whether a contact has two tangents.
+        Whether any contact has two tangents.
     circles : bool
-        Whether a contact moves round a body, along a circle.
+        Whether any contact moves round a body, along a circle.
     """
 
     blocks: int
@@ -39,7 +39,7 @@ class Sizes(NamedTuple):
 
 
 class Timing(NamedTuple):
-    """Steps of a sample, their length [s], and how contacts are solved: tolerance and most sweeps."""
+    """Steps in a sample, time step [s], and tolerance and largest number of sweeps of the contact solver."""
 
     steps_per_sample: int
     step: float
@@ -48,8 +48,8 @@ class Timing(NamedTuple):
 
 
 class Modes(NamedTuple):
-    """Rows of all modes, ``(blocks, rows, lanes)``, matrices of coupled ones, their reach, work of each load when last
-    changed."""
+    """Rows of all modes, ``(blocks, rows, lanes)``, matrices of coupled modes, their reach, work of each load at its
+    last change."""
 
     rows: np.ndarray
     matrices: np.ndarray
@@ -58,24 +58,24 @@ class Modes(NamedTuple):
 
 
 class Paths(NamedTuple):
-    """The modes that each contact sees, and the waves of those that it moves along.
+    """Modes that each contact depends on, and waves of the paths that it moves along.
 
     Attributes
     ----------
     waves : ndarray, shape (blocks, rows, lanes)
         Sines and cosines at each contact.
     sets, pairs : ndarray of int
-        Which waves each contact has, and which of them are sums and differences.
+        Waves of each contact, and those of them that are sums and differences.
     wave_of : ndarray of int, shape (blocks of modes,)
-        The wave of a block, from the first of a contact on.
+        Wave of a block, counted from the first of a contact.
     spans, first_span : ndarray of int
         Spans of blocks; those of contact i from ``first_span[i]`` to ``first_span[i + 1]``, constant ones first.
     path_of : ndarray of int, shape (contacts,)
-        The first block of the path of a contact, -1 for none.
+        First block of the path of a contact, -1 for none.
     body_of : ndarray of int, shape (contacts,)
-        The turning body that a contact moves round, -1 for none.
+        Body that a contact moves round, -1 for none.
     at_start : ndarray, shape (blocks, rows, lanes)
-        The two rows of each contact where it starts, where any moves round a body.
+        The two rows of each contact at its initial place, if any moves round a body.
     """
 
     waves: np.ndarray
@@ -90,7 +90,7 @@ class Paths(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """Laws of friction, constants, compliances and what the contacts are in a step.
+    """Laws of friction, constants, compliances and states of the contacts in a step.
 
     Attributes
     ----------
@@ -101,9 +101,9 @@ class Contacts(NamedTuple):
     faces, scratch : ndarray, shape (rows, blocks, lanes)
         Displacements and compliances of all contacts; a linear system.
     places : ndarray, shape (2 contacts, lanes)
-        Row of the displacements that each equation of the system is of; of runs side by side, in the first lane.
+        Row of displacements for each equation of the system; of runs side by side, in the first lane.
     now, sums : ndarray, a column a run
-        What each contact is in a step; sums over a sample.
+        State of each contact in a step; sums over a sample.
     """
 
     codes: np.ndarray
@@ -118,7 +118,7 @@ class Contacts(NamedTuple):
 
 
 class Carried(NamedTuple):
-    """What is carried from step to step, a column a run: of contacts, at the end of runs that have ended, energies."""
+    """Numbers carried from step to step, a column a run: of contacts, of contacts of ended runs, energies."""
 
     carried: np.ndarray
     at_end: np.ndarray
@@ -126,12 +126,12 @@ class Carried(NamedTuple):
 
 
 class Imposed(NamedTuple):
-    """What is imposed, a row a step, or one row.
+    """Imposed loads and motions, a row a step, or one row.
 
     Attributes
     ----------
     signals, motion : ndarray
-        Amplitudes of the loads and what else is imposed; motions of contacts, from a step before to one after.
+        Amplitudes of loads and other signals; motions of contacts, from a step before to one after.
     angles : ndarray
         Angles by which bodies turn in each step [rad], from the step before on.
     """
@@ -142,7 +142,7 @@ class Imposed(NamedTuple):
 
 
 class Turning(NamedTuple):
-    """Bodies that turn: see `turning`.
+    """Turning bodies: see `turning`.
 
     Attributes
     ----------
@@ -151,7 +151,7 @@ class Turning(NamedTuple):
     spans : ndarray of int, shape (bodies, 2)
         Blocks of each body.
     turned, contacts : ndarray, a column a run
-        Angles of each body in the step that the turns are of and in the last; what turning does to each contact.
+        Angles of each body in the step of the turns and in the last; effect of turning on each contact.
     """
 
     rows: np.ndarray
@@ -161,8 +161,8 @@ class Turning(NamedTuple):
 
 
 class Probes(NamedTuple):
-    """Kinds of probes, blocks they see, shares of signals and contact forces; values at the last step, and what turning
-    adds to the last change and to the next."""
+    """Kinds and blocks of probes, shares of signals and contact forces; values at the last step, and additions of
+    turning to the last change and to the next."""
 
     kinds: np.ndarray
     spans: np.ndarray
@@ -173,7 +173,7 @@ class Probes(NamedTuple):
 
 
 class Records(NamedTuple):
-    """A row a sample for energies and contacts, a row a step for the probes; what became of each run."""
+    """Energies and contacts, a row a sample; probes, a row a step; result of each run."""
 
     energies: np.ndarray
     contacts: np.ndarray
@@ -182,7 +182,7 @@ class Records(NamedTuple):
 
 
 class Parts(NamedTuple):
-    """All that a march takes."""
+    """All arguments of a march."""
 
     sizes: Sizes
     timing: Timing

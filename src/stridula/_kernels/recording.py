@@ -1,4 +1,4 @@
-"""What is recorded: energies and contacts a row a sample, probes a row a step."""
+"""Records: energies and contacts, a row a sample; probes, a row a step."""
 
 import numba
 
@@ -11,7 +11,7 @@ from .modes import OPTIONS, PASTED, product
 
 @numba.njit(**OPTIONS)
 def remember_probes(rows, first, kinds, spans, last, run, zero):
-    """Keep the values that probes take the next ones with."""
+    """Save the values of the probes for the differences of the next step."""
     for i in range(kinds.size):
         seen = Q if kinds[i] == at.DISPLACEMENT else D
         hold(last, i, run, product(rows, first + i, seen, spans[i, 0], spans[i, 1], run, zero))
@@ -19,7 +19,7 @@ def remember_probes(rows, first, kinds, spans, last, run, zero):
 
 @numba.njit(**OPTIONS)
 def keep_probes(rows, first, probes, imposed, now, count, n, run, runs, raw, zero):
-    """Put the values of the probes at step `n`, which is complete, into a row of `raw`."""
+    """Write the values of the probes at step `n`, which is complete, to a row of `raw`."""
     kinds, spans, direct, shares, last, passing = probes
     signals = imposed.signals
     for p in range(kinds.size):
@@ -55,14 +55,14 @@ def begin_sample(sums, carried, count, run, zero):
 
 @numba.njit(**OPTIONS)
 def record_energies(energies, record, sample, run, runs, zero):
-    """Put the energies into a row of their record."""
+    """Write the energies to a row of their record."""
     for column in range(at.ENERGIES):
         write(record, sample, column * runs + run, held(energies, column, run, zero))
 
 
 @numba.njit(**OPTIONS)
 def record_contact(i, sums, carried, height, steps, step, record, sample, run, runs, zero):
-    """Put contact `i` into a row of its record: means over the sample, and what it is at its end."""
+    """Write contact `i` to a row of its record: means over the sample, and values at its end."""
     tally, base, share = i * at.SUMS, i * at.CARRIED, 1.0 / steps
     column = i * at.COLUMNS * runs + run
     sticking, sliding = held(sums, tally + at.STUCK, run, zero), held(sums, tally + at.SLID, run, zero)
@@ -79,7 +79,7 @@ def record_contact(i, sums, carried, height, steps, step, record, sample, run, r
     write(record, sample, at.JAMMED * runs + column, held(sums, tally + at.JAMS, run, zero))
     write(record, sample, at.LANDINGS * runs + column, held(sums, tally + at.TOUCHDOWNS, run, zero))
     write(record, sample, at.LAW_STATE * runs + column, held(carried, base + at.FRICTION_STATE, run, zero))
-    # Of equal numbers of steps the later state wins.
+    # With equal numbers of steps, the later state in the list is recorded.
     stuck, slid = held(sums, tally + at.STUCK_STEPS, run, zero), held(sums, tally + at.SLID_STEPS, run, zero)
     apart = steps - stuck - slid
     dominant = choose(stuck < apart, 0.0, zero + STICKING)

@@ -1,4 +1,4 @@
-"""A step of any number of contacts, or of coupled modes."""
+"""Steps of any number of contacts, or of coupled modes."""
 
 import numba
 
@@ -40,13 +40,13 @@ from .space import (
 from .trying import complete_many, place_after, soften, try_many
 from .yielding import comes_close
 
-# Error of the contact forces, relative to the largest, beyond which none can be believed.
+# Error of the contact forces, relative to the largest, above which the run stops.
 UNBELIEVABLE = 1e-3
 
 
 @numba.njit(**PASTED)
 def solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero):
-    """Put forces, status, gap and slip of all contacts, 4 and 5; return the error of the forces."""
+    """Set forces, status, gap and slip of all contacts (steps 4 and 5); return the error of the forces."""
     now, faces, count = contacts.now, contacts.faces, sizes.contacts
     touching, closed = zero, zero
     for i in range(count):
@@ -72,7 +72,7 @@ def solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero)
         )
         hold(now, here + at.NEW_GAP, run, gap)
         hold(now, here + at.NEW_SLIP, run, slip)
-        # From here on without the forces of this contact alone.
+        # From here on, free gap and slip lack the forces of this contact only.
         hold(now, here + at.FREE_GAP, run, gap - w[0] * normal + w[1] * tangential)
         hold(now, here + at.FREE_SLIP, run, slip - w[2] * normal + w[3] * tangential)
     if sizes.space:
@@ -82,7 +82,7 @@ def solve_several(modes, paths, contacts, state, sizes, timing, run, runs, zero)
 
 @numba.njit(**OPTIONS)
 def keep_unsolved(contacts, state, sizes, unsolved, run, zero):
-    """Carry the forces that were not found, for the message that says so."""
+    """Carry the forces that did not converge, for the error message."""
     for i in range(sizes.contacts):
         here, base = i * at.IN_STEP, i * at.CARRIED
         for row, found in (
@@ -166,7 +166,7 @@ def keep_books_of(i, contacts, state, imposed, timing, n, run, runs, zero):
 
 @numba.njit(**PASTED)
 def touch_many(parts, n, ended, run, runs, zero):
-    """Try step `n` and find the forces of all contacts; return where a run leaves, and why."""
+    """Try step `n` and solve for the forces of all contacts (steps 1 to 5); return where a run leaves, and why."""
     sizes, contacts, state = parts.sizes, parts.contacts, parts.state
     after = n + 2 if parts.imposed.motion.shape[0] > 1 else 0
     try_many(
@@ -186,7 +186,7 @@ def touch_many(parts, n, ended, run, runs, zero):
 
 @numba.njit(**PASTED)
 def keep_many(parts, n, run, runs, zero):
-    """Complete step `n` under the forces of all contacts, 6, and do their bookkeeping."""
+    """Complete step `n` under the forces of all contacts (step 6), and do their bookkeeping."""
     contacts, state, imposed = parts.contacts, parts.state, parts.imposed
     after = n + 2 if imposed.motion.shape[0] > 1 else 0
     work, lost = complete_many(parts.modes, parts.paths, contacts, parts.sizes, run, zero)

@@ -1,4 +1,4 @@
-"""A step of the only contact, between bodies of uncoupled modes."""
+"""Steps of a single contact between bodies of uncoupled modes."""
 
 import numba
 
@@ -15,7 +15,7 @@ from .yielding import comes_close, forces_yielding, yields_anywhere, yields_of
 
 @numba.njit(**PASTED)
 def solve_single(free, contacts, carried, w, timing, run, zero):
-    """Return normal and tangential force, status and whether it is jammed of the only contact: 5."""
+    """Return normal and tangential force, status and whether it jams, for a single contact (step 5)."""
     _, gap, slip = free
     hold(contacts.now, at.GIVE, run, zero)
     hold(contacts.now, at.BEYOND, run, zero)
@@ -38,14 +38,14 @@ def solve_single(free, contacts, carried, w, timing, run, zero):
 
 @numba.njit(**PASTED)
 def touch_one(parts, n, loop, ended, run, runs, zero):
-    """Complete a pending step of the only contact, try step `n`, and find the forces.
+    """Complete a pending step of a single contact (step 6), try step `n`, and solve for the forces (steps 1 to 5).
 
-    `loop` are forces and status of the step before, whether it is pending, the rows of its waves, the way since.
+    `loop` are forces and status of the step before, whether it is pending, the rows of its waves, the advance since.
 
     Returns
     -------
     free, w, touch : tuple
-        Abscissa, gap and slip without the forces; compliance; forces, status and whether it is jammed.
+        Abscissa, gap and slip without the forces; compliance; forces, status and whether it jams.
     leaves, why : float or vector
         Where the contact leaves its path, and why.
     """
@@ -58,7 +58,7 @@ def touch_one(parts, n, loop, ended, run, runs, zero):
     if pending:
         credit(state.energies, done[0], done[1], done[2] * advance, run, zero)
         keep_probes_at(parts, n - 1, run, runs, zero)
-    # A run that has ended is not looked at again.
+    # A run that has ended has no contact.
     free = (free[0], choose(ended > 0.0, zero, free[1]), free[2])
     w_nt = held(contacts.fixed, 1, run, zero)
     w = (w_nn, w_nt, w_nt, choose(ended > 0.0, 1.0, w_tt))
@@ -70,7 +70,7 @@ def touch_one(parts, n, loop, ended, run, runs, zero):
 
 @numba.njit(**PASTED)
 def keep_one(parts, n, free, w, touch, run, runs, zero):
-    """Do the bookkeeping of the only contact; return half its way in the last two steps."""
+    """Do the bookkeeping of a single contact; return half its advance in the last two steps."""
     contacts, state = parts.contacts, parts.state
     normal, tangential = touch[0], touch[1]
     gap, slip = free[1] + w[0] * normal - w[1] * tangential, free[2] + w[2] * normal - w[3] * tangential

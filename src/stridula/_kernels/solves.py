@@ -1,4 +1,4 @@
-"""The contact of one run, or of several side by side, under any law of friction."""
+"""Step 5 for a contact of one run, or of several side by side, under any law of friction."""
 
 import numba
 from numba.extending import overload
@@ -12,20 +12,20 @@ from .vectors import LANES, VECTOR
 
 
 def solve(gap, slip, strayed, w, law, laws, run, before, let_go, step):
-    """Return normal force, tangential force, status and whether it is jammed, all as numbers of runs."""
+    """Return normal force, tangential force, status and whether it jams, all as numbers of runs."""
     return solve_one_run(gap, slip, strayed, w, law, laws, run, before, let_go, step)
 
 
 def next_states(law, laws, run, status, state, velocity, step):
-    """Return the internal states after a step, those of new contacts where the bodies are apart."""
+    """Return the internal states after a step; where the bodies are apart, those of new contacts."""
     return next_state_of_run(law, laws, run, status, state, velocity, step)
 
 
 @numba.njit(inline="always", **STRICT)
 def coulomb(gap, slip, w, mu):
-    """Do `solve` under Coulomb's law without branches; `slip` is how far the tip is from where sticking would hold it.
+    """Do `solve` under Coulomb's law without branches (5a to 5c); `slip` is the distance to the anchor of sticking.
 
-    The same as `contact.solve_coulomb`, to which a test holds it.
+    The result equals that of `contact.solve_coulomb`, as a test checks.
     """
     w_nn, w_nt, w_tn, w_tt = w
     share = 1.0 / (w_nn * w_tt - w_nt * w_tn)
@@ -48,9 +48,9 @@ def coulomb(gap, slip, w, mu):
 
 @numba.njit(inline="always", **STRICT)
 def turned_round(gap, slip, last_slip, w, mu, normal, tangential, status):
-    """Return forces and status under Coulomb's law where the slip comes to an end within the step, else as given.
+    """Return forces and status under Coulomb's law where the slip ends within the step (5d), else as given.
 
-    `last_slip` is zero of contacts that did not slide.
+    `last_slip` is zero for contacts that did not slide.
     """
     turns, pressed, turned, slides = turn_round(gap, slip, last_slip, w, mu, mu)
     turns = choose(turns, choose(gap < 0.0, magnitude(last_slip), 0.0), 0.0) > 0.0
@@ -152,7 +152,7 @@ def carried_by(carried, i, run, zero):
 
 @numba.njit(**OPTIONS)
 def strayed(carried, i, run, zero):
-    """Return how far contact `i` is from the anchor of its stick."""
+    """Return the distance of contact `i` from the anchor of its stick."""
     base = i * at.CARRIED
     stuck = magnitude(held(carried, base + at.STATUS, run, zero) - STICKING) < 0.5
     away = held(carried, base + at.MATERIAL, run, zero) - held(carried, base + at.ANCHOR, run, zero)
@@ -161,7 +161,7 @@ def strayed(carried, i, run, zero):
 
 @numba.njit(**PASTED)
 def forces_of_one(gap, slip, away, w, law, laws, number, at_rest, before, let_go, step, zero):
-    """Return normal force, tangential force, status and whether it is jammed of one contact."""
+    """Return normal force, tangential force, status and whether it jams, for one contact."""
     if law == at.COULOMB and everywhere(w[3] > 0.0):
         normal, tangential, status, jammed = coulomb(gap, slip + away, w, at_rest)
         slid = choose(before[0] > SLIDING - 0.5, before[1], zero)

@@ -1,8 +1,8 @@
-"""Contacts in space, which have two tangents.
+"""Step 5 for contacts in space, which have two tangents.
 
-The march has a pair of rows for each: the normal with the first tangent, then nothing with the second tangent. Friction
-acts along one direction u of the tangent plane. Along it the contact is one of the plane, and u is where no velocity is
-left across it. LuGre's bristles are not along the slip: see `bristles`.
+The march has two pairs of rows for each: the normal with the first tangent, then no normal with the second tangent.
+Friction acts along one direction u of the tangent plane. Along u the contact is like one of the plane; u is the
+direction without velocity across it. LuGre's bristles are not along the slip: see `bristles`.
 """
 
 import math
@@ -20,15 +20,16 @@ from .modes import OPTIONS, PASTED
 from .solves import carried_by, solve_one_run, strayed
 from .vectors import LANES, VECTOR
 
-# Trials of a direction of friction, and velocity across it, relative to its terms, that is round-off.
+# Largest number of trials of a direction of friction; velocity across it that counts as round-off, relative to its
+# terms.
 TRIALS, ACROSS = 80, 1e-12
 # Longest step of a search without a bracket [rad], and the step of Newton's method whose square is round-off.
 LONGEST, SETTLED = 1.0, 1e-7
 # Steps of Newton's method for a direction.
 NEWTON = 12
-# Share across the last slip of what a slip loses in a step, up to which it turns round on its line.
+# Largest change of a slip across the last slip, as a share of its total change, with which it reverses on its line.
 STRAIGHT = 1e-6
-# Relative determinant of the compliance of the tangents below which the slip alone tells a direction.
+# Relative determinant of the compliance of the tangents below which the slip alone gives the direction.
 SINGULAR = 1e-12
 
 
@@ -68,7 +69,7 @@ def along(w, c, s):
 
 @numba.njit(**STRICT)
 def sticking_direction(gap, first, second, w):
-    """Return the force that would hold a contact against displacements without force: its direction, and its size.
+    """Return the force that would hold a contact against its free displacements (5b): its direction, and its size.
 
     The size is relative to the normal force, infinite where that would pull.
     """
@@ -86,7 +87,7 @@ def sticking_direction(gap, first, second, w):
 
 @numba.njit(**STRICT)
 def sliding_direction(gap, slips, w, mu, carried_on, guess):
-    """Return the direction of friction under a ratio `mu` by Newton's method from a guess, and whether it is found."""
+    """Return the direction of friction under a ratio `mu`, by Newton's method, and whether it converged."""
     c, s = guess
     for _ in range(NEWTON):
         free = w[0] - mu * (c * w[1] + s * w[2])
@@ -107,7 +108,7 @@ def sliding_direction(gap, slips, w, mu, carried_on, guess):
         change = -across / slope
         if not abs(change) < LONGEST:
             return c, s, False
-        # Of a small angle tangent and arc are the same.
+        # The tangent of a small angle equals the angle.
         c, s = c - s * change, s + c * change
         size = math.sqrt(c * c + s * s)
         c, s = c / size, s / size
@@ -121,7 +122,7 @@ def solve_along(c, s, free, law, laws, number, before, let_go, step):
     """Solve a contact in space as one of the plane along a direction; `free` are gap, slips, strays and compliance."""
     gap, slips, strays, w = free
     was, last, earlier, state, last_normal, last_forces, _ = before
-    # When it is late nothing turns round within the step.
+    # When it is late, no reversal within the step (5d) is considered.
     was = was if let_go == 0.0 else 0.0
     return solve_one_run(
         gap,
@@ -148,8 +149,8 @@ def solve_along(c, s, free, law, laws, number, before, let_go, step):
 def carried_on_by(before, let_go, first, second):
     """Return the share of the last two slips in the velocity that friction is along, in units of a ninth of a slip.
 
-    Where contacts that come to rest together find no forces with it, friction is along the slip after some sweeps. So
-    it is where a contact begins to slide against what it came from: it was at rest, and has no direction before.
+    Contacts that come to rest together may find no forces with it; after some sweeps friction is therefore along the
+    slip alone. So it is where a contact begins to slide against its last slips: it was at rest, without a direction.
     """
     moved, swerved = 6.0 * before[1][0] + before[2][0], 6.0 * before[1][1] + before[2][1]
     begins = before[0] < SLIDING - 0.5 and first * moved + second * swerved <= 0.0
@@ -167,9 +168,9 @@ def slip_under(c, s, normal, tangential, slips, w):
 
 @numba.njit(**STRICT)
 def turns_on_its_line(free, law, laws, number, size, came):
-    """Return whether friction along the last slip turns it round with nothing but rounding across.
+    """Return whether friction along the last slip reverses it with only rounding across.
 
-    The velocity passes zero then, near which every direction has none across it.
+    The velocity then passes zero, near which no direction has velocity across it.
     """
     gap, slips, _, w = free
     if size == 0.0 or not set_valued(law):
@@ -187,7 +188,7 @@ def turns_on_its_line(free, law, laws, number, size, came):
 
 @numba.njit(**STRICT)
 def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go, step):
-    """Return normal force, both tangential forces, status and whether it is jammed.
+    """Return normal force, both tangential forces, status and whether it jams.
 
     Arguments are those of `contact.solve_contact`, with a number for each tangent; `before` are status, slips of the
     last two steps, internal states, forces of the last step and a guess of those along the tangents.
@@ -207,7 +208,7 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
         if found:
             normal = -gap / (w[0] - mu * (c * w[1] + s * w[2]))
             slip, swerve = slip_under(c, s, normal, mu * normal, slips, w)
-            # Against the last slip it turns round within the step, which only the contact along a line knows.
+            # A reversal within the step (5d) is solved as a contact along a line only.
             turns = let_go == 0.0 and c * last[0] + s * last[1] < 0.0
             if was < SLIDING - 0.5 or (c * slip + s * swerve >= 0.0 and not turns):
                 return normal, mu * normal * c, mu * normal * s, 2.0, 0.0
@@ -226,7 +227,7 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
     if slid and abs(status - SLIDING) < 0.5:
         slip, swerve = slip_under(c, s, normal, tangential, slips, w)
         if size > 0.0 and tangential * (c * slip + s * swerve) < 0.0:
-            # It comes to rest within the step, or turns round: along the line that it came.
+            # It comes to rest or reverses within the step (5d): along the line of its last slip.
             c, s = came
             normal, tangential, status, jammed = solve_along(c, s, free, law, laws, number, before, let_go, step)
     return normal, tangential * c, tangential * s, status, jammed
@@ -234,15 +235,15 @@ def solve_one_in_space(gap, slips, strays, w, law, laws, number, before, let_go,
 
 @numba.njit(**STRICT)
 def searched(first, second, may_hold, free, law, laws, number, before, let_go, step):
-    """Return the direction of friction, by the secant method within a bracket from a first one, and the contact there.
+    """Return the direction of friction, by the secant method within a bracket, and the contact along it.
 
-    Where a contact may be held and is along the first direction, it is held.
+    A contact that may be held, and is held along the first direction, sticks.
     """
     carried_on, (_, slips, _, w) = carried_on_by(before, let_go, first, second), free
     turn, low, high = 0.0, -math.inf, math.inf
     turn_before, across_before = math.nan, math.nan
     c, s, normal, tangential, status, jammed = first, second, 0.0, 0.0, 0.0, 0.0
-    # What is not held along the force that would hold it is not held along any other.
+    # A contact not held along the force that would hold it is not held along any direction.
     freed = let_go
     for trial in range(TRIALS):
         cosine, sine = math.cos(turn), math.sin(turn)
@@ -252,14 +253,14 @@ def searched(first, second, may_hold, free, law, laws, number, before, let_go, s
             freed = 1.0
         if trial == 0 and may_hold and abs(status - STICKING) < 0.5:
             break
-        # The direction is that of the velocity that laws of the speed see, see `contact.velocity_at`.
+        # The direction is that of the velocity in laws that depend on speed, see `contact.velocity_at`.
         slip, swerve = slip_under(c, s, normal, tangential, slips, w)
         moved, swerved = 9.0 * slip + carried_on[0], 9.0 * swerve + carried_on[1]
         across = c * swerved - s * moved
         size = abs(slips[0]) + abs(slips[1]) + (abs(w[3]) + abs(w[6])) * normal + (w[4] + w[8]) * abs(tangential)
         if abs(across) <= ACROSS * (9.0 * size + abs(carried_on[0]) + abs(carried_on[1])):
             break
-        # A force of the other sign has the slip on the other side.
+        # A force of opposite sign has the slip on the other side.
         side = across if tangential >= 0.0 else -across
         if side > 0.0:
             low = max(low, turn)
@@ -355,7 +356,7 @@ def carried_in_space(carried, i, run, zero):
 
 @numba.njit(**PASTED)
 def free_of_own(contacts, carried, i, run, runs, zero):
-    """Return what `solve_in_space` takes of a contact: as it is without its own forces; and the laws."""
+    """Return the arguments of `solve_in_space` for a contact, without its own forces, and the laws."""
     faces, now = contacts.faces, contacts.now
     w = whole_compliance(faces, i, run, zero)
     here = i * at.IN_STEP
@@ -373,19 +374,19 @@ def free_of_own(contacts, carried, i, run, runs, zero):
 
 @numba.njit(**OPTIONS)
 def put_second(contacts, i, run, goes_on, normal, second, status, zero):
-    """Keep the force along the second tangent of contact `i`; return by how much it changed."""
+    """Set the force along the second tangent of contact `i`; return its change."""
     now, here = contacts.now, (i + 1) * at.IN_STEP
     was = held(now, here + at.TANGENTIAL_NOW, run, zero)
     second = choose(goes_on, second, was)
     hold(now, here + at.TANGENTIAL_NOW, run, second)
-    # The pair without a normal has the force and the status of its contact, so that it is carried and shared as that.
+    # The pair without a normal repeats force and status of its contact, so that it is carried and shared likewise.
     hold(now, here + at.NORMAL_NOW, run, normal)
     hold(now, here + at.STATUS_NOW, run, status)
     return second - was
 
 
 def direction(force, last):
-    """Return the direction of a force along both tangents, of the last one where there is none."""
+    """Return the direction of a force along both tangents, that of the last force where there is none."""
     return direction_of_one(force, last)
 
 
@@ -419,19 +420,19 @@ def _overload_direction(force, last):
 
 @numba.njit(**OPTIONS)
 def pair_of(array, row, further, run, zero):
-    """Return what a contact in space has along both tangents."""
+    """Return the numbers of a contact in space along both tangents."""
     return held(array, row, run, zero), held(array, row + further, run, zero)
 
 
 @numba.njit(**OPTIONS)
 def on(pair, c, s):
-    """Return what a contact in space has along the direction (c, s)."""
+    """Return the component of a pair along the direction (c, s)."""
     return c * pair[0] + s * pair[1]
 
 
 @numba.njit(**OPTIONS)
 def free_in_space(contacts, sizes, run, zero):
-    """Put the displacements without the own forces of each contact in space, where those of one tangent have been."""
+    """Set the displacements without the own forces of each contact in space, in place of those for one tangent."""
     now, faces = contacts.now, contacts.faces
     for i in range(sizes.contacts):
         if is_second(contacts.codes, i + 1):
@@ -449,7 +450,7 @@ def free_in_space(contacts, sizes, run, zero):
 
 @numba.njit(**OPTIONS)
 def keep_second_anchor(i, status, was, carried, run, zero):
-    """Carry where a stick of contact `i` is anchored along its second tangent."""
+    """Carry the anchor of a stick of contact `i` along its second tangent."""
     base = (i + 1) * at.CARRIED
     stuck, sticks = magnitude(was - STICKING) < 0.5, magnitude(status - STICKING) < 0.5
     anchor = held(carried, base + at.ANCHOR, run, zero)
@@ -459,7 +460,7 @@ def keep_second_anchor(i, status, was, carried, run, zero):
 
 @numba.njit(**OPTIONS)
 def keep_bristles(i, slips, before, status, carried, contacts, step, run, runs):
-    """Carry the bristles of contact `i` to the next step; `before` are its status, the last two slips and these."""
+    """Carry the bristles of contact `i` to the next step; `before` are its status, last two slips and bristles."""
     was, last, earlier, states = before
     velocity = (
         velocity_at(slips[0], (was, last[0], earlier[0]), step),

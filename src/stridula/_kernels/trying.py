@@ -1,4 +1,4 @@
-"""Steps of the modes without and with the forces of their contacts: of one contact in one pass, of several in three."""
+"""Trial and completion of steps of the modes (1 to 4, 6): with one contact in one pass, with several in three."""
 
 import numba
 
@@ -27,7 +27,7 @@ from .waves import FIRST, set_waves
 
 @numba.njit(**OPTIONS)
 def place_of(i, constants, motion, n, tip, run, runs, zero):
-    """Return the abscissa of contact `i`, of a tip displaced along the tangent, and what its track moves along it."""
+    """Return the abscissa of contact `i` for a tip displaced along the tangent, and the motion of its track."""
     column = i * at.MOTIONS * runs + run
     place = held(constants, i * at.CONTACT_CONSTANTS + at.START, run, zero)
     place += read(motion, n, column + at.TIP_MOTION * runs, zero) + tip
@@ -36,14 +36,14 @@ def place_of(i, constants, motion, n, tip, run, runs, zero):
 
 @numba.njit(**OPTIONS)
 def gap_of(i, constants, motion, n, run, runs, zero):
-    """Return the gap of contact `i` where nothing is displaced."""
+    """Return the gap of contact `i` without displacements of the bodies."""
     lift = read(motion, n, (i * at.MOTIONS + at.GAP_MOTION) * runs + run, zero)
     return held(constants, i * at.CONTACT_CONSTANTS + at.GAP, run, zero) + lift
 
 
 @numba.njit(**OPTIONS)
 def set_waves_at(i, paths, constants, place, sine, run, zero):
-    """Put the waves of the path of contact `i` at an abscissa."""
+    """Set the waves of the path of contact `i` at an abscissa (step 2)."""
     base = i * at.CONTACT_CONSTANTS
     along = fused(held(constants, base + at.ALONG, run, zero), place, held(constants, base + at.ALONG_PHASE, run, zero))
     across = fused(
@@ -54,7 +54,7 @@ def set_waves_at(i, paths, constants, place, sine, run, zero):
 
 @numba.njit(**OPTIONS)
 def put_free(i, now, place, gap, slip, run):
-    """Keep what contact `i` is without its forces."""
+    """Save place, gap and slip of contact `i` without its forces (step 3)."""
     here = i * at.IN_STEP
     hold(now, here + at.PLACE, run, place)
     hold(now, here + at.FREE_GAP, run, gap)
@@ -63,20 +63,20 @@ def put_free(i, now, place, gap, slip, run):
 
 @numba.njit(**OPTIONS)
 def try_one(modes, paths, contacts, state, imposed, n, touch, pending, sine, run, runs, zero):
-    """Complete a pending step of the only contact and try the next, in one pass over the modes.
+    """Complete a pending step of a single contact (step 6) and try the next (steps 1 to 4), in one pass over the modes.
 
     Returns
     -------
     free : tuple of float or vector
         Abscissa, gap and slip of the contact without its forces.
     w_nn, w_tt : float or vector
-        Compliances of the contact where it will be.
+        Compliances of the contact at its new place.
     done : tuple of float or vector
-        Of the step completed: work of the contact, what damping took, force along the path by its slope.
+        Work of the contact, loss to damping and force along the path by its slope, in the step completed.
     """
     rows, spans = modes.rows, paths.spans
     normal, tangential = touch[0], touch[1]
-    # 6 of the last step, 1 of this one.
+    # Step 6 of the last step, step 1 of this one.
     along, across, works, losses = pass_fixed(
         rows, spans[0, at.BEGIN], spans[0, at.END], run, pending, normal, tangential
     )
@@ -86,7 +86,7 @@ def try_one(modes, paths, contacts, state, imposed, n, touch, pending, sine, run
     w_nn, w_tt = held(contacts.fixed, 0, run, zero), held(contacts.fixed, 2, run, zero)
     slope = zero
     if paths.first_span[1] > 1:
-        # 2, then 3 and 4.
+        # Step 2, then 3 and 4.
         last, sine = sine, 2 - sine
         set_waves_at(0, paths, contacts.constants, place, sine, run, zero)
         for s in range(1, paths.first_span[1]):
@@ -119,7 +119,7 @@ def try_one(modes, paths, contacts, state, imposed, n, touch, pending, sine, run
 
 @numba.njit(**OPTIONS)
 def complete_one(modes, paths, touch, sine, run, zero):
-    """Complete the step of the only contact where no next one follows at once; return work, loss and slope as above."""
+    """Complete a step of a single contact without trying the next (step 6); return `done` as in `try_one`."""
     rows, spans = modes.rows, paths.spans
     normal, tangential = touch[0], touch[1]
     _, _, works, losses = pass_fixed(rows, spans[0, at.BEGIN], spans[0, at.END], run, True, normal, tangential)
@@ -147,9 +147,9 @@ def complete_one(modes, paths, touch, sine, run, zero):
 
 @numba.njit(**OPTIONS)
 def try_many(modes, paths, contacts, turning, state, imposed, sizes, n, ended, run, runs, zero):
-    """Try a step of all modes, and put what each contact is at its end without contact forces."""
+    """Try a step of all modes, and set place, gap and slip of each contact without contact forces (steps 1 to 3)."""
     rows, spans, now = modes.rows, paths.spans, contacts.now
-    # 1.
+    # Step 1.
     places = sizes.coupled * sizes.per_block
     try_coupled(rows, modes.matrices, modes.reach, sizes.coupled, places, run, zero)
     try_all(rows, sizes.coupled, sizes.blocks, run)
@@ -163,7 +163,7 @@ def try_many(modes, paths, contacts, turning, state, imposed, sizes, n, ended, r
         gap = gap_of(i, contacts.constants, imposed.motion, n, run, runs, zero) + across
         slip = place - track - held(state.carried, i * at.CARRIED + at.MATERIAL, run, zero)
         if paths.path_of[i] >= 0:
-            # 2 and 3.
+            # Steps 2 and 3.
             set_waves_at(i, paths, contacts.constants, place, SINE, run, zero)
             for s in range(paths.first_span[i], paths.first_span[i + 1]):
                 kind, begin, end = spans[s, at.KIND], spans[s, at.BEGIN], spans[s, at.END]
@@ -186,7 +186,7 @@ def try_many(modes, paths, contacts, turning, state, imposed, sizes, n, ended, r
 
 @numba.njit(**PASTED)
 def soften(modes, paths, contacts, sizes, run, zero):
-    """Put the compliance of contacts on paths where they will be: 4."""
+    """Set the compliance of contacts on paths at their new places (step 4)."""
     if sizes.coupled_paths:
         places = sizes.coupled * sizes.per_block
         set_compliance_of_coupled(modes, contacts.faces, sizes.blocks, sizes.coupled, places, sizes.contacts, run, zero)
@@ -196,7 +196,7 @@ def soften(modes, paths, contacts, sizes, run, zero):
 
 @numba.njit(**OPTIONS)
 def complete_many(modes, paths, contacts, sizes, run, zero):
-    """Complete the step of all modes under the forces of the contacts; return work of these and what damping took."""
+    """Complete the step of all modes under the contact forces (step 6); return their work and the loss to damping."""
     rows, spans, now = modes.rows, paths.spans, contacts.now
     clear_push(rows, sizes.blocks, run)
     for i in range(sizes.contacts):
@@ -216,11 +216,11 @@ def complete_many(modes, paths, contacts, sizes, run, zero):
 
 @numba.njit(**OPTIONS)
 def place_after(i, modes, paths, contacts, state, imposed, n, run, runs, zero):
-    """Return the abscissa of contact `i` after the step, and the force along the path that its slopes make."""
+    """Return the abscissa of contact `i` after the step, and the force along the path due to its slope."""
     rows, spans, here = modes.rows, paths.spans, i * at.IN_STEP
     along, slope = zero, zero
     if paths.path_of[i] < 0 and paths.body_of[i] < 0:
-        # What it slides on does not move but as imposed.
+        # The track of such a contact moves only as imposed.
         track = read(imposed.motion, n, (i * at.MOTIONS + at.TRACK_MOTION) * runs + run, zero)
         return held(state.carried, i * at.CARRIED + at.MATERIAL, run, zero) + track, slope
     for s in range(paths.first_span[i], paths.first_span[i + 1]):

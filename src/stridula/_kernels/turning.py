@@ -1,8 +1,8 @@
-"""Bodies that turn: before each step pairs of modes are carried round, and what passes contacts, loads and probes.
+"""Turning bodies: before each step, pairs of modes are turned, with the material at contacts, loads and probes.
 
-The cosine modes of as many pairs as a block has room for lie in one block, their sines in the next. A pair turns by its
-drag times the angle of the body in a step, the material by its order times that angle. Angles are small: a turn ``A``
-comes as ``A - 1``, so that nothing is lost in the difference.
+The cosine modes of as many pairs as fit lie in one block, their sine modes in the next. A pair turns by its drag times
+the angle of the body in a step, the material by its order times that angle. Angles are small: a turn ``A`` is stored as
+``A - 1``, which avoids cancellation.
 """
 
 import numba
@@ -13,25 +13,25 @@ from .bookkeeping import add
 from .lanes import anywhere, fused, held, hold, load, magnitude, read, store
 from .modes import OPTIONS, PASTED, product
 
-# Of a block: drag and order; one less the cosine, and the sine, of the turn of the pairs in this step and in the last,
-# and of that of the material in both.
+# Rows of a block: drag and order; one minus the cosine, and the sine, of the turn of the pairs in this step and in the
+# last, and of the turn of the material in both.
 DRAG, ORDER, VERSINE, SINE, LAST_VERSINE, LAST_SINE, PASSED_VERSINE, PASSED_SINE, MET_VERSINE, MET_SINE = range(10)
-# For contacts that move round the body: half the rise and half the advance for units of the modes, where the material
-# has been carried to, as its modes, and the modes two steps before the end of this one.
+# For contacts that move round the body: half the rise and half the advance for units of the modes, the modes turned
+# with the material, and the modes two steps before the end of this one.
 RISEN, ADVANCED, PASSED, EARLIER = range(10, 14)
 # An odd number of vectors, as for the modes.
 TURN_ROWS = 15
-# Of a body that turns: its first block and the one after the last.
+# Blocks of a turning body: the first and the end.
 BEGIN, END = range(2)
-# Of a contact in a step: half the rise of the gap in the last two steps, and half the advance of the slip, that turning
-# gives beyond what the modes move by.
+# Effect of turning on a contact in a step, beyond the motion of the modes: half the rise of the gap in the last two
+# steps, and half the advance of the slip.
 RISE, ADVANCE = range(2)
 OF_CONTACT = 2
 
 
 @numba.njit(**OPTIONS)
 def small_turn(angle):
-    """Return one less the cosine, and the sine, of an angle up to half a radian, by their series."""
+    """Return one minus the cosine, and the sine, of an angle up to half a radian, by their series."""
     z = angle * angle
     s = 1.0 - z / 156.0 * (1.0 - z / 210.0)
     s = 1.0 - z / 20.0 * (1.0 - z / 42.0 * (1.0 - z / 72.0 * (1.0 - z / 110.0 * s)))
@@ -42,7 +42,7 @@ def small_turn(angle):
 
 @numba.njit(**OPTIONS)
 def set_turns(turns, begin, end, angle, last, run):
-    """Put the turns of a body's pairs and of its material by an angle in this step and another one in the last."""
+    """Set the turns of a body's pairs and of its material, for the angles of this step and of the last."""
     for k in range(begin, end, 2):
         drag, order = load(turns, k, DRAG, run), load(turns, k, ORDER, run)
         for factor, by, row in (
@@ -58,7 +58,7 @@ def set_turns(turns, begin, end, angle, last, run):
 
 @numba.njit(**OPTIONS)
 def carry_round(rows, turns, begin, end, run):
-    """Carry pairs round; put half the rise, half the advance, and the passing of the material for units of the modes.
+    """Turn the pairs; set half the rise, half the advance, and the passing of the material for units of the modes.
 
     With turns ``A`` of this step, ``L`` of the last, those of the material ``R`` and ``S``, and ``x = q - d``:
     ``[(A - 1) + (1 - L^-1)] x / 2``, ``[(A - R) q + (1 - S L^-1) x - (A - 1) d] / 2`` and ``(R - 1) q``.
@@ -89,14 +89,14 @@ def carry_round(rows, turns, begin, end, run):
 
 @numba.njit(**OPTIONS)
 def keep_position(rows, turns, begin, end, run):
-    """Keep where pairs are before they are carried round."""
+    """Save the positions of pairs before they are turned."""
     for k in range(begin, end):
         store(turns, k, PASSED, run, load(rows, k, Q, run))
 
 
 @numba.njit(**OPTIONS)
 def keep_carried(rows, turns, begin, end, run):
-    """Keep what `carry_round` puts for units of the modes, where the rows of contacts are not yet known."""
+    """Save the results of `carry_round` for units of the modes, since the rows of contacts are not yet known."""
     for k in range(begin, end):
         risen = load(rows, k, POSITION, run)
         store(turns, k, RISEN, run, risen)
@@ -107,7 +107,7 @@ def keep_carried(rows, turns, begin, end, run):
 
 @numba.njit(**OPTIONS)
 def look_ahead(rows, turns, begin, end, run):
-    """Put how turning alone has moved pairs in the last step and does in this, and what that adds to work of loads.
+    """Set the motions of pairs by turning alone in the last step and in this, and their addition to work of loads.
 
     ``(1 - L^-1) x``, ``(A - 1) q`` and ``(A - 1) (q - d / 2)``.
     """
@@ -127,7 +127,7 @@ def look_ahead(rows, turns, begin, end, run):
 
 @numba.njit(**PASTED)
 def turn_loads_and_probes(parts, begin, end, run, zero):
-    """Take off the work of loads what turning alone would add, and keep for the probes what it adds."""
+    """Exclude the motion by turning alone from the work of loads, and save its addition to the probes."""
     sizes, rows, probes = parts.sizes, parts.modes.rows, parts.probes
     first = CONTACTS + 2 * sizes.contacts + sizes.loads
     for j in range(sizes.loads):
@@ -141,7 +141,7 @@ def turn_loads_and_probes(parts, begin, end, run, zero):
 
 @numba.njit(**PASTED)
 def turn_contacts(parts, begin, end, first_body, run, zero):
-    """Keep what turning does to the contacts that stay; their anchors are carried along with the material."""
+    """Save the effect of turning on contacts fixed in space; their anchors move with the material."""
     rows, carried, of_contacts = parts.modes.rows, parts.state.carried, parts.turning.contacts
     for i in range(parts.sizes.contacts):
         if parts.sizes.circles and parts.paths.body_of[i] >= 0:
@@ -162,7 +162,7 @@ def turn_contacts(parts, begin, end, first_body, run, zero):
 
 @numba.njit(**PASTED)
 def turn_bodies(parts, n, run, runs, zero):
-    """Carry the pairs of all bodies that turn round by their angles in step `n`."""
+    """Turn the pairs of all turning bodies by their angles in step `n`."""
     turning, angles = parts.turning, parts.imposed.angles
     if turning.spans.shape[0] == 0:
         return
@@ -189,7 +189,7 @@ def turn_bodies(parts, n, run, runs, zero):
 
 @numba.njit(**PASTED)
 def credit_turning(parts, run, zero):
-    """Credit what turning gives through the forces of the contacts in this step."""
+    """Credit the work of turning through the contact forces of this step."""
     now, of_contacts, energies = parts.contacts.now, parts.turning.contacts, parts.state.energies
     if parts.turning.spans.shape[0] == 0:
         return

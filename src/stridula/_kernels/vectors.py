@@ -1,6 +1,6 @@
-"""Vectors of eight doubles as a type of compiled code: what the functions of `lanes` come to on a processor.
+"""Vectors of eight doubles as a type of compiled code, with the functions of `lanes` on a processor.
 
-Each becomes instructions of the function that calls it, under the rules of arithmetic of that one.
+Each function becomes instructions of its caller, under the arithmetic options of the caller.
 """
 
 import operator
@@ -43,12 +43,12 @@ class _MaskModel(PrimitiveModel):
 
 
 def _type(function, typer):
-    """Tell numba what a function returns for types of arguments, None where it is not for these."""
+    """Declare the return type of a function for types of arguments, None where it does not accept them."""
     type_callable(function)(lambda context: typer)
 
 
 def _lower(function, *kinds):
-    """Tell numba what code a function comes to for kinds of arguments."""
+    """Declare the code of a function for types of arguments."""
     return lower_builtin(function, *kinds)
 
 
@@ -70,12 +70,12 @@ def _vectors(context, builder, signature, args):
 
 
 def _address(context, builder, signature, args, rows_are_vectors=False):
-    """Return where a vector starts in an array whose last axis lies side by side, from the indices of all axes."""
+    """Return the address of a vector in an array with a contiguous last axis, from the indices of all axes."""
     kind = signature.args[0]
     array = context.make_array(kind)(context, builder, args[0])
     strides = [*cgutils.unpack_tuple(builder, array.strides)[:-1], ir.IntType(64)(8)]
     if kind.ndim == 3:
-        # Rows of a block are vectors: known to the compiler, their distance saves a register for each.
+        # Rows of a block are vectors: a constant stride saves a register for each.
         strides[1], args = ir.IntType(64)(8 * LANES), [*args[:3], ir.IntType(64)(0)]
     if rows_are_vectors:
         strides[0], args = ir.IntType(64)(8 * LANES), [*args[:2], ir.IntType(64)(0)]
@@ -137,7 +137,7 @@ def _choose(context, builder, signature, args):
 
 
 def _call(name, count):
-    """Return what calls an instruction of the machine on vectors."""
+    """Return code that calls a processor instruction on vectors."""
 
     def code(context, builder, signature, args):
         kind = ir.FunctionType(_DOUBLES, [_DOUBLES] * count)
@@ -171,7 +171,7 @@ def _fused_numbers(context, builder, signature, args):
 
 
 def _over_lanes(predicate, bits):
-    """Return what compares the truth values in all lanes with a pattern."""
+    """Return code that compares the truth values in all lanes with a pattern."""
 
     def code(context, builder, signature, args):
         found = builder.bitcast(args[0], ir.IntType(LANES))
@@ -219,7 +219,7 @@ def _with_lane(context, builder, signature, args):
 
 
 def _pair(kind):
-    """Return what tells the type of an operation on two vectors, or a vector and a number."""
+    """Return the typing function of an operation on two vectors, or a vector and a number."""
     return lambda a, b: (
         kind if VECTOR in (a, b) and all(isinstance(k, (Vector, types.Number)) for k in (a, b)) else None
     )

@@ -1,8 +1,8 @@
 """Sines and cosines of the waves of a path at a moving point.
 
-The waves of a path are sines of ``m a + n b``: of the multiples of an angle that runs along it, and on a plate of sums
-and differences with those of a second one. They come in this order: multiples of the first angle, those of the second,
-then for each pair that is asked for its sum and its difference.
+The waves of a path are sines of ``m a + n b``: of the multiples of an angle along it, and on a plate of sums and
+differences with multiples of a second angle. Their order: multiples of the first angle, multiples of the second, then
+the sum and the difference for each requested pair.
 """
 
 import math
@@ -15,8 +15,8 @@ from .lanes import entry, fused, lane, load, spread, store, whole
 from .modes import OPTIONS
 from .vectors import LANES, VECTOR
 
-# Of the path of a contact: its first block of waves, how many go along and across, whether those along start from the
-# multiple 0, and its pairs.
+# Waves of the path of a contact: first block, numbers along and across, whether those along start from the multiple 0,
+# and pairs.
 FIRST, ALONG, ACROSS, FROM_ZERO, PAIRS, PAIRS_END = range(6)
 WAVE_SET = 6
 
@@ -48,7 +48,7 @@ def sine_and_cosine_of_half_turns(half_turns):
 
 
 def set_multiples(theta, from_zero, count, waves, first, sine, run):
-    """Put sin(k theta) and cos(k theta), k from 1, or from 0 on, into `count` blocks of rows of `waves`."""
+    """Set sin(k theta) and cos(k theta), for k from 1 or from 0 on, in `count` blocks of rows of `waves`."""
     s, c = sine_and_cosine(theta)
     if from_zero:
         store(waves, first, sine, run, spread(0.0))
@@ -71,7 +71,7 @@ def set_multiples(theta, from_zero, count, waves, first, sine, run):
 
 @numba.njit(**OPTIONS)
 def set_eight_at_a_time(theta, from_zero, count, waves, first, sine, run):
-    """Do so for one run, whose blocks have eight multiples: the first eight at once, the others by turning on."""
+    """Do `set_multiples` for one run, with eight multiples in a block: the first directly, the others by rotation."""
     s, c = sine_and_cosine_of_half_turns(load(waves, first, NUMBER, run) * (theta / math.pi))
     store(waves, first, sine, run, s)
     store(waves, first, sine + 1, run, c)
@@ -96,7 +96,7 @@ def _set_multiples(theta, from_zero, count, waves, first, sine, run):
 
 @numba.njit(**OPTIONS)
 def set_sums_and_differences(waves, pairs, begin, end, first, sine, run, like):
-    """Put the waves of the sums and the differences of pairs of angles into blocks from `first` on."""
+    """Set the waves of the sums and the differences of pairs of angles in blocks from `first` on."""
     for p in range(begin, end):
         along, across, here = pairs[p, 0], pairs[p, 1], first + 2 * (p - begin)
         s, c = load(waves, along, sine, run), load(waves, along, sine + 1, run)
@@ -109,7 +109,7 @@ def set_sums_and_differences(waves, pairs, begin, end, first, sine, run, like):
 
 @numba.njit(**OPTIONS)
 def set_waves(waves, sets, pairs, i, along, across, sine, run):
-    """Put the waves of the path of contact `i` into rows from `sine` on, from the two angles at the contact."""
+    """Set the waves of the path of contact `i` in rows from `sine` on, from the two angles at the contact."""
     first, count, cross = sets[i, FIRST], sets[i, ALONG], sets[i, ACROSS]
     set_multiples(along, sets[i, FROM_ZERO], count, waves, first, sine, run)
     if cross:

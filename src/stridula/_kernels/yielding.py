@@ -1,7 +1,7 @@
-"""Contacts that yield: a force that grows with the indentation, in place of bodies that cannot overlap.
+"""Step 5 for contacts with a stiffness: a force that grows with the indentation, in place of a unilateral constraint.
 
-The force of a step is the energy stored in the indentation, as it changes from the step before to the step after, over
-that change: what is stored is given back to the last digit (Chatziioannou & van Walstijn 2015).
+The force of a step is the change of the energy stored in the indentation from the step before to the step after, over
+the change of the indentation: the stored energy is returned exactly (Chatziioannou & van Walstijn 2015).
 """
 
 import math
@@ -17,17 +17,17 @@ from .solves import forces_of_one
 from .space import solve_in_space
 from .vectors import LANES, VECTOR
 
-# Changes of the indentation, relative to its mean, from which the quotient is found by its series.
+# Change of the indentation, relative to its mean, below which the quotient is computed by its series.
 SMALL = 0.01
-# Least slope of the force, times the compliance of the bodies.
+# Smallest slope of the force, times the compliance of the bodies.
 FLATTEST = 1e-12
-# Steps of Newton's method, and the change of the indentation that is round-off.
+# Largest number of steps of Newton's method, and the relative change of the indentation that counts as round-off.
 STEPS, SETTLED = 40, 1e-14
 
 
 @numba.njit(**STRICT)
 def power(x, exponent):
-    """Return a power of what is not below zero."""
+    """Return a power of a number that is not negative."""
     if exponent == 1.5:
         return x * math.sqrt(x)
     return x if exponent == 1.0 else x**exponent
@@ -128,7 +128,7 @@ def yields_of(i, constants, run, zero):
 
 @numba.njit(**OPTIONS)
 def comes_close(i, gap, constants, carried, run, zero):
-    """Return where a contact has to be solved: it would overlap, or has been indented two steps earlier."""
+    """Return where a contact has to be solved: it would overlap, or was indented two steps earlier."""
     soft = held(constants, i * at.CONTACT_CONSTANTS + at.YIELD_STIFFNESS, run, zero) > 0.0
     was = choose(soft, held(carried, i * at.CARRIED + at.EARLIER_GAP, run, zero), zero)
     return choose(gap < 0.0, 1.0, choose(was < 0.0, 1.0, zero))
@@ -136,7 +136,7 @@ def comes_close(i, gap, constants, carried, run, zero):
 
 @numba.njit(**OPTIONS)
 def give_of(x, before, yields, w_nn, step, zero):
-    """Return how a contact yields about an indentation: more for a unit of force, and beyond that."""
+    """Return the linearised yielding about an indentation: give for a unit of force, and indentation without force."""
     force, slope = press(x, before, yields, step)
     least = FLATTEST / w_nn
     give = 1.0 / choose(slope > least, slope, least)
@@ -146,7 +146,7 @@ def give_of(x, before, yields, w_nn, step, zero):
 
 @numba.njit(**OPTIONS)
 def is_settled(reached, normal, give, beyond, gap, yields):
-    """Return whether an indentation has the force that made it; it yields there by `give` for a force and `beyond`."""
+    """Return whether an indentation agrees with its force, for the linearised yielding `give` and `beyond` there."""
     left = reached - beyond - give * normal
     near = magnitude(left) <= SETTLED * (magnitude(reached) + magnitude(gap))
     return choose(yields[0] > 0.0, choose(near, 1.0, 0.0), 1.0)
@@ -154,11 +154,11 @@ def is_settled(reached, normal, give, beyond, gap, yields):
 
 @numba.njit(**OPTIONS)
 def forces_yielding(free, friction, before, let_go, step, yields, earlier, zero):
-    """Return what `forces_of_one` does of a contact that yields, and how it does: more for a force, and beyond that.
+    """Return the result of `forces_of_one` for a yielding contact, with its give and the indentation beyond that.
 
-    Newton's method for the indentation from where it would be without force: the force bends upwards, so that it falls
-    on what is sought from above. `free` are gap, slip, how far a stick is from its anchor, compliance; `friction` the
-    law, all laws, the number among these and the ratio at rest.
+    Newton's method for the indentation, from that without force: the force is convex, so that it converges from above.
+    `free` are gap, slip, distance of a stick from its anchor, compliance; `friction` the law, all laws, the number
+    among these and the ratio at rest.
     """
     gap, slip, away, w = free
     law, laws, number, at_rest = friction
