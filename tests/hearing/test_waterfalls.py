@@ -136,8 +136,8 @@ def test_root_loci_and_records_go_together():
         ({1.0: tone(), 2.0: tone(units="N")}, {}, "signals must have one unit"),
         (noise(duration=0.001), {}, "pieces must leave at least 16 samples"),
         ({1.0: tone(), 2.0: tone()}, {"highest": 12.0}, "highest must be at least 20 Hz"),
-        ({1.0: tone(), 2.0: tone()}, {"theory": {1.0: 2.0}}, "theory must be what root_loci or sliding_stability"),
-        ({1.0: tone(), 2.0: tone()}, {"theory": 1.0}, "theory must be what root_loci or sliding_stability"),
+        ({1.0: tone(), 2.0: tone()}, {"theory": {1.0: 2.0}}, "theory must be the result of root_loci"),
+        ({1.0: tone(), 2.0: tone()}, {"theory": 1.0}, "theory must be the result of root_loci"),
         (xr.DataArray(np.zeros((3, 99)), dims=("case", "time")), {}, "signals must have numbers along case"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Mobilities over frequency: magnitude and phase."""
+"""Figures of mobilities over frequency: magnitude and phase."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ QUARTERS = (-180, -90, 0, 90, 180)
 def mobility(found: xr.DataArray | Mapping[str, xr.DataArray], *, title: str = "") -> Figure:
     """Draw mobilities over frequency: magnitude above, phase below.
 
-    Both are drawn over a logarithmic scale of frequency. A spring rises, a mass falls, and resonances have the phase
-    of the force.
+    The scale of frequency is logarithmic. The mobility of a spring rises with frequency, that of a mass falls, and
+    resonances are in phase with the force.
 
     Parameters
     ----------
     found : xarray.DataArray or mapping
-        What `mobility` returned, or several of them by what the legend calls them.
+        Result of `mobility`, or several of them by label in the legend.
     title : str, optional
         Title of the figure.
 
@@ -36,7 +36,7 @@ def mobility(found: xr.DataArray | Mapping[str, xr.DataArray], *, title: str = "
     Raises
     ------
     ValueError
-        If it is no mobility, or of fewer than 2 frequencies.
+        If it is not a mobility, or has fewer than 2 frequencies.
 
     Examples
     --------
@@ -74,6 +74,6 @@ def mobility(found: xr.DataArray | Mapping[str, xr.DataArray], *, title: str = "
 
 def _check(name: str, one: object) -> None:
     if not isinstance(one, xr.DataArray) or one.dims != ("frequency",) or not np.iscomplexobj(one.values):
-        raise ArgumentError(name, "be what mobility returned, complex over frequency", one)
+        raise ArgumentError(name, "be the result of mobility, complex over frequency", one)
     if one.size < 2:
         raise ArgumentError(name, "have at least 2 frequencies", one, got=one.size)

@@ -1,4 +1,4 @@
-"""A system in the plane before its run: bodies to scale, supports, contacts, drives and what joins bodies."""
+"""Drawing of a system in the plane before its run: bodies to scale, supports, contacts, drives and connections."""
 
 from __future__ import annotations
 
@@ -25,30 +25,30 @@ FORCE, VELOCITY, SLIDING, CONTACT, JOINT = LINES[1], LINES[2], LINES[3], LINES[4
 TRACK = "0.45"
 # Sizes as shares of the extent of the bodies: arrows, symbols of supports, springs and how wide these are.
 ARROW, SYMBOL, LENGTH, WIDTH = 0.16, 0.03, 0.13, 0.03
-# Nearer than this, things of the same words are drawn once.
+# Distance below which things with the same label are drawn once.
 NEAR = 0.06
-# Extent of what has none [m], reach of a rigid track to both sides, and least height over width.
+# Extent assumed for a point [m], reach of a rigid track to both sides, and smallest ratio of height to width.
 ALONE, REACH, LOWEST = 0.1, 0.45, 0.35
-# Gaps that rounding leaves [m].
+# Gaps that count as rounding [m].
 CLOSED = 1e-12
-# Cosine to the horizontal from which words stand above an arrow.
+# Cosine to the horizontal from which labels stand above an arrow.
 FLAT = 0.9
-# How supports are marked in the legend.
+# Marks of supports in the legend.
 MARKS = {"pinned": "^", "clamped": "|", "guided": "o"}
 
 
 @dataclass(frozen=True)
 class Cluster:
-    """Things of the same words near to each other.
+    """Nearby things with the same label.
 
     Attributes
     ----------
     words : str
-        What is said of each.
+        Label of each.
     things : list
         The things.
     place : ndarray
-        Where the first one is [m].
+        Place of the first one [m].
     """
 
     words: str
@@ -57,17 +57,17 @@ class Cluster:
 
     @property
     def label(self) -> str:
-        """Its words, and how many they are of."""
+        """Label, with the number of things."""
         count = len(self.things)
         return self.words if count == 1 else f"{self.words}, each of {count}"
 
 
-# A thing, what it must share with others to be drawn with them, its words and its place [m].
+# A thing, its key, shared by things that may be drawn as one, its label and its place [m].
 Placed = tuple[Any, Hashable, str, Array]
 
 
 def clustered(things: Iterable[Placed], near: float) -> list[Cluster]:
-    """Return things, each with what it must share, its words and its place, gathered where they are near and alike."""
+    """Return things, each with key, label and place, grouped where they are near and alike."""
     found: list[tuple[Hashable, Cluster]] = []
     for thing, kind, words, place in things:
         for known, one in found:
@@ -86,28 +86,28 @@ def run_of(names: Iterable[str]) -> str:
 
 
 def in_time(history: History) -> str:
-    """Return how a drive goes in time, in words; nothing of one that stays."""
+    """Return a description of a drive over time, empty for a constant one."""
     return "" if history.settled == 0.0 else f", {history.kind}"
 
 
 class PlaneDrawing:
-    """A system in the plane as it is before its run.
+    """Drawing of a system in the plane before its run.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-        Where to draw.
+        Axes to draw in.
     system : System
         The system.
 
     Attributes
     ----------
     caption : list of str
-        What has no place in the drawing.
+        Parts of the system without a place in the drawing.
     handles : list of Line2D
-        Those of the legend.
+        Handles of the legend.
     shape : float
-        Height over width of what is shown.
+        Ratio of height to width of the drawing.
     """
 
     def __init__(self, axes: Axes, system: System) -> None:
@@ -128,7 +128,7 @@ class PlaneDrawing:
 
     @property
     def handles(self) -> list[Line2D]:
-        """Those of the legend."""
+        """Handles of the legend."""
         return list(self._handles.values())
 
     def _lines(self, lines: Sequence[Array], **look: Any) -> None:
@@ -137,7 +137,7 @@ class PlaneDrawing:
         self.seen += lines
 
     def _arrow(self, tail: Array, head: Array, colour: str, words: str, label: str, at_tail: bool = True) -> None:
-        """Draw an arrow with a label at one end, its words in the legend."""
+        """Draw an arrow with a label at one end, described in the legend."""
         look = {
             "arrowstyle": "-|>",
             "color": colour,
@@ -190,7 +190,7 @@ class PlaneDrawing:
         self.seen.append(corners)
 
     def _beside(self, one: Any) -> tuple[Array, Array]:
-        """Return where the name of a line is written, and in which direction: below tracks, beside sliders."""
+        """Return place and direction for the name of a line: below tracks, beside sliders."""
         is_path = any(contact.path_body == one.body for contact in self.system.contacts)
         share = 0.8 if is_path else 0.6
         place = (1.0 - share) * one.ends[0] + share * one.ends[1]
@@ -199,7 +199,7 @@ class PlaneDrawing:
         return place, way if is_path or way[0] > 0.0 else -way
 
     def _draw_tracks(self) -> None:
-        """Draw rigid tracks, which are endless, and how fast they move."""
+        """Draw rigid tracks, which are infinite, with their velocities."""
         tracks = []
         for contact, tip in zip(self.system.contacts, self.tips, strict=True):
             if contact.rigid_track is not None:
@@ -242,7 +242,7 @@ class PlaneDrawing:
                     self._handles[kind] = handle(f"{kind} end", "0.2", **look)
 
     def _inwards(self, one: Any, end: Array, kind: str) -> Array:
-        """Return the direction from an end into what supports it: beyond the end, below a beam that is pinned."""
+        """Return the direction from an end into its support: beyond the end, or below a pinned beam."""
         outwards = end - one.ends.mean(axis=0)
         outwards /= np.linalg.norm(outwards)
         if kind != "pinned":
@@ -352,7 +352,7 @@ class PlaneDrawing:
                 self.caption.append(f"{name}{drive}")
 
     def _draw_motions(self) -> None:
-        """Draw the velocity that is imposed, and those of the start."""
+        """Draw the imposed velocity and the initial velocities."""
         imposed = self.system.imposed_velocity
         if imposed is not None and imposed.velocity:
             place = self.place(imposed.point)
@@ -404,12 +404,12 @@ def _pair(place: Array) -> tuple[float, float]:
 
 
 def handle(words: str, colour: Any, **look: Any) -> Line2D:
-    """Return the handle of a legend for what has no line of its own."""
+    """Return the handle of a legend for a thing without a line of its own."""
     return Line2D([], [], color=colour, label=words, **look)
 
 
 def thickness_of(body: Any) -> float:
-    """Return the thickness of a body in the plane [m], of a section without a shape that of an equal rectangle."""
+    """Return the thickness of a body in the plane [m], for a section without a shape that of an equal rectangle."""
     section = getattr(body, "section", None)
     if section is None:
         return float(getattr(body, "thickness", 0.0))
@@ -420,14 +420,14 @@ def thickness_of(body: Any) -> float:
 
 
 def supports_of(body: Any) -> tuple[str, ...]:
-    """Return how both ends of a line are supported."""
+    """Return the supports of both ends of a line."""
     if hasattr(body, "root_support"):
         return body.tip_support, body.root_support
     return ("pinned", "pinned") if hasattr(body, "harmonics") else ()
 
 
 def connection_value(connection: Any) -> str:
-    """Return stiffness or coefficient of a connection in words, and how it is moved."""
+    """Return a description of the stiffness or coefficient of a connection, and of its motion."""
     stiffness, damping = connection.rates
     words = spoken(stiffness, "N/m") if stiffness else spoken(damping, "N s/m")
     return f"{words}, moved{in_time(connection.history)}" if connection.moved_by else words

@@ -45,12 +45,12 @@ def rigid_surfaces(system: System, others: Iterable[DrawnSurface]) -> dict[Any, 
 
 
 def centres_of(system: System) -> dict[Any, Array]:
-    """Return where the centres of these rigid bodies are [m], by the body."""
+    """Return the centres of these rigid bodies by body [m]."""
     return {body: centre for body, (centre, _) in _placed(system).items()}
 
 
 def _placed(system: System) -> dict[Any, tuple[Array, Array]]:
-    """Return centres of rigid bodies, and the direction from what each touches first."""
+    """Return centres of rigid bodies, and the direction away from their first contact."""
     found: dict[Any, tuple[Array, Array]] = {}
 
     def known(point: BodyPoint) -> Array | None:

@@ -26,22 +26,22 @@ VELOCITIES = "RdBu_r"
 PREFIXES = (("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9))
 # Brightness of a side that faces away from the light.
 DARK = 0.72
-# Share of the room that bodies at rest fill, and rounds in which the zoom for it is found.
+# Share of the available area that bodies at rest fill, and rounds in the search for the zoom.
 FILLED, ROUNDS = 0.92, 3
 MARKER = 3.5
 
 
 class Stage:
-    """Axes in space on which polygons at rest are seen in perspective as large as a room in a figure lets them be.
+    """Axes in space for polygons in perspective, as large at rest as their area in a figure allows.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
         The figure.
     room : tuple of float
-        Where in it: left and lower edge, width and height, shares of the figure.
+        Area in the figure: left and lower edge, width and height, as shares of the figure.
     bodies : list of ShownBody
-        What is seen.
+        Bodies to draw.
     view : tuple of float
         Elevation and azimuth of the eye [rad].
 
@@ -50,7 +50,7 @@ class Stage:
     axes : mpl_toolkits.mplot3d.axes3d.Axes3D
         The axes.
     shade : ndarray, shape (polygons,)
-        How light the polygons are that are seen, body by body.
+        Brightness of the visible polygons, body by body.
     """
 
     def __init__(
@@ -78,26 +78,26 @@ class Stage:
     def drawn(self, polygons: Array, **look: Any) -> Any:
         """Draw polygons, and return them."""
         sides: Any = Poly3DCollection(polygons, zorder=1, **look)
-        # The axes are a square in the middle of their room, which may be wider.
+        # The axes are a square in the middle of their area, which may be wider.
         sides.set_clip_on(False)
         self.axes.add_collection3d(sides)
         return sides
 
     def polygons(self, places: list[Array]) -> Array:
-        """Return the polygons that are seen of all bodies at places."""
+        """Return the visible polygons of all bodies at places."""
         found = [place[one.surface.polygons[one.seen]] for one, place in zip(self.bodies, places, strict=True)]
         most = max(corners.shape[1] for corners in found)
-        # All with as many corners: drawn at once they hide each other as they should.
+        # All get the same number of corners: polygons hide each other correctly only if drawn at once.
         return np.concatenate([np.pad(one, ((0, 0), (0, most - one.shape[1]), (0, 0)), mode="edge") for one in found])
 
     def seen_at(self, places: Array) -> Array:
-        """Return where places are seen in the figure, shares of it, shape (places, 2)."""
+        """Return the positions of places in the figure, as shares of it, shape (places, 2)."""
         x, y, _ = proj3d.proj_transform(*places.T, self.axes.get_proj())
         drawn = self.axes.transData.transform(np.stack([x, y], axis=1))
         return np.asarray(self._figure.transFigure.inverted().transform(drawn))
 
     def fill(self) -> None:
-        """Draw the bodies as large as the room lets them be."""
+        """Draw the bodies as large as their area allows."""
         self._figure.draw_without_rendering()
         at = self.seen_at(np.concatenate([one.surface.place for one in self.bodies]))
         left, low, width, height = self._room
@@ -106,10 +106,10 @@ class Stage:
         self.axes.set_box_aspect(self._sides, zoom=zoom)
 
     def fill_with(self, places: Array) -> None:
-        """Draw places as large as the room lets them be, in its middle."""
+        """Draw places as large as the area allows, in its middle."""
         left, low, width, height = self._room
         corner, room, zoom = np.array([left, low]), np.array([width, height]), 1.0
-        # In perspective nothing becomes larger by exactly the zoom.
+        # In perspective, sizes are not exactly proportional to the zoom.
         for _ in range(ROUNDS):
             self._figure.draw_without_rendering()
             at = self.seen_at(places)
@@ -122,7 +122,7 @@ class Stage:
 
 
 class Scene(Stage):
-    """The bodies of a system that have a surface, in perspective, to be drawn frame by frame.
+    """Bodies of a system that have a surface, in perspective, to be drawn frame by frame.
 
     Parameters
     ----------

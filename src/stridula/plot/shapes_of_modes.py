@@ -1,4 +1,4 @@
-"""Mode shapes of bodies, and of systems that slide: several panels with frequencies and damping ratios."""
+"""Figures of mode shapes of bodies and of sliding systems: panels with frequencies and damping ratios."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from .moved_bodies import AWAY, ShownBody, extent_of, has_surfaces, surfaces_of
 from .plane_motion import extent_of as flat_extent_of
 from .scenes import Stage, checked_view
 
-# Panels where nobody says which modes, most of them, and how many stand side by side.
+# Default number of panels, largest number, and panels side by side.
 PANELS, MOST_PANELS, COLUMNS = 6, 24, 3
 # Largest displacement, as a share of the bodies' extent.
 SHARE = 0.08
 SIZES, SIGNS = "viridis", "RdBu_r"
-# Width of the bar of colours with its words [inches].
+# Width of the colour bar with its label [inches].
 BAR = 0.9
 # Points along the longer side of a plate, and arrows along it.
 POINTS, ARROWS = 80, 16
@@ -45,22 +45,23 @@ def mode_shapes(
     view: tuple[float, float] = VIEW,
     title: str = "",
 ) -> Figure:
-    """Draw mode shapes of a body, or of a system that slides, a panel for each with frequency and damping ratio.
+    """Draw mode shapes of a body or of a sliding system, each in a panel with frequency and damping ratio.
 
-    Of a beam there are the displacements across its axis and along it over the place on the axis; of a plate the
-    displacement along its normal by colour, in its plane as arrows; of a body in space the deformed surface, coloured
-    by the size of the displacement. All are relative to the largest. A system in the plane is drawn as deformed lines,
-    one in space as deformed surfaces, at the instant when the largest displacement peaks: modes of sliding are complex.
+    A beam is drawn as its displacements across and along its axis, over the place on the axis; a plate as its
+    displacement along the normal by colour, in its plane as arrows; a body in space as its deformed surface, coloured
+    by the magnitude of the displacement. All are relative to the largest. A system is drawn as deformed lines in the
+    plane, and as deformed surfaces in space. As modes of sliding are complex, they are shown at the instant when the
+    largest displacement peaks.
 
     Parameters
     ----------
     what : FiniteElementBeam, ModalBeam, ModalPlate, SolidBody, AxisymmetricBody, ModalBody or System
-        A body, free of contact, or a system, whose modes are those of `sliding_stability`.
+        A body, without contact, or a system, with the modes of `sliding_stability`.
     numbers : sequence of int, optional
-        Numbers of the modes from 0, at most 24; the lowest six that vibrate if left out, of a system those that grow if
-        any does.
+        Numbers of the modes from 0, at most 24; if left out, the lowest six that vibrate, or, for a system with modes
+        that grow, these.
     theory : xarray.Dataset, optional
-        What `sliding_stability` returned for the system; it is called if left out.
+        Result of `sliding_stability` for the system; computed if left out.
     view : tuple of float, optional
         In space, elevation of the eye above the plane across y and its azimuth from z towards x [rad].
     title : str, optional
@@ -74,7 +75,7 @@ def mode_shapes(
     Raises
     ------
     ValueError
-        If an argument is out of its range, the shape of the body between its points is not known, or a mode of the
+        If an argument is out of its range, the shape of the body between its points is unknown, or a mode of the
         system does not oscillate.
 
     Examples
@@ -97,7 +98,7 @@ def mode_shapes(
         shown.draw(figure, spaces[place], number, seen)
     if shown.bar is not None:
         largest = Normalize(-1.0 if shown.bar == SIGNS else 0.0, 1.0)
-        # Room for its words is the same [inches], however many panels there are.
+        # The room for the label is the same [inches] for any number of panels.
         axes = None if shown.is_flat else figure.add_axes((1.0 - BAR / figure.get_figwidth(), 0.25, 0.012, 0.5))
         drawn = ScalarMappable(largest, shown.bar)
         options: dict[str, Any] = {"cax": axes} if axes else {"ax": figure.axes, "shrink": 0.7}
@@ -107,20 +108,20 @@ def mode_shapes(
 
 @dataclass(frozen=True)
 class _Shown:
-    """What the panels of a figure show.
+    """Contents of the panels of a figure.
 
     Attributes
     ----------
     numbers : list of int
         Numbers of the modes.
     draw : callable
-        Draws a mode: takes the figure, where in it, the number and the view.
+        Function that draws a mode, of the figure, the place in it, the number and the view.
     shape : float
-        Height over width of a panel.
+        Ratio of height to width of a panel.
     is_flat : bool
         Whether panels have axes of the plane, laid out by matplotlib.
     bar : str or None
-        Colours of the bar, None without.
+        Colours of the bar, None without a bar.
     """
 
     numbers: list[int]
@@ -131,7 +132,7 @@ class _Shown:
 
 
 def _of_body(body: Any, numbers: Any) -> _Shown:
-    """Return what is shown of a body."""
+    """Return the panels of a body."""
     if not hasattr(body, "modes") or not hasattr(body, "trace") or isinstance(body, type):
         raise ArgumentError("what", "be a body or a System", body)
     if hasattr(body, "track_line"):
@@ -142,7 +143,7 @@ def _of_body(body: Any, numbers: Any) -> _Shown:
         draw = _solid
     else:
         words = "be a beam, a plate, or a body whose surface is drawn"
-        raise ArgumentError("what", words, body, got=f"a {type(body).__name__}, known at its points only")
+        raise ArgumentError("what", words, body, got=f"a {type(body).__name__}, which has points only")
     modes = body.modes()
     vibrates = np.flatnonzero(~modes.massless & (modes.angular_frequency > 0.0))
     chosen = vibrates[:PANELS].tolist() if numbers is None else _checked(numbers, int((~modes.massless).sum()))
@@ -236,7 +237,7 @@ def _solid(body: Any, numbers: list[int], words: list[str]) -> _Shown:
 def _draw_deformed(
     figure: Figure, room: Any, shown: list[ShownBody], moved: list[Array], view: tuple[float, float], words: str
 ) -> None:
-    """Draw bodies in space deformed, coloured by the size of the displacement, shape (points, 3) of each."""
+    """Draw bodies in space deformed, coloured by the magnitude of the displacement, shape (points, 3) for each."""
     largest = max(float(np.linalg.norm(one, axis=1).max()) for one in moved) or 1.0
     factor = SHARE * extent_of(shown) / largest
     stage = Stage(figure, room, shown, view)
@@ -251,7 +252,7 @@ def _draw_deformed(
 
 
 def _of_system(system: Any, numbers: Any, theory: xr.Dataset | None) -> _Shown:
-    """Return what is shown of a system that slides."""
+    """Return the panels of a sliding system."""
     found = sliding_stability(system) if theory is None else theory
     chosen = _growing_or_lowest(found) if numbers is None else _checked(numbers, found.sizes.get("mode", 0))
     if not chosen:
@@ -318,7 +319,7 @@ def _of_line(line: Line, shapes: dict[str, Array]) -> Array:
 
 
 def _panels(panels: int, shape: float, is_flat: bool) -> tuple[Figure, list[Any]]:
-    """Return a figure with room for panels, and where each is."""
+    """Return a figure with room for panels, and the place of each."""
     columns = min(panels, COLUMNS)
     rows = -(-panels // columns)
     width = 3.3 * columns + 1.2

@@ -1,4 +1,4 @@
-"""Where contacts slide before a run, as far as a description says it: no modes are looked for."""
+"""Directions of sliding before a run, from the descriptions alone: no modes are computed."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from ..cards import spoken
 from ..contact import PointContact
 from ..system import System
 
-# Velocities that rounding leaves, over the largest.
+# Velocities that count as rounding, relative to the largest.
 ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True)
 class Sliding:
-    """How the tip of a contact slides on what it touches.
+    """Sliding of the tip of a contact on its track.
 
     Attributes
     ----------
     way : ndarray, shape (2,) or (3,)
         World components of its direction, a unit vector.
     words : str
-        How fast, empty where nothing prescribes it and only forces push it that way.
+        Speed, empty if only forces push the tip in that direction.
     """
 
     way: Array
@@ -33,9 +33,9 @@ class Sliding:
 
 
 def sliding_of(contact: PointContact, system: System) -> Sliding | None:
-    """Return how a contact slides: as velocities prescribe, as the start has it, else as forces push the tip.
+    """Return the sliding of a contact from prescribed velocities, else initial ones, else forces on the tip.
 
-    None where nothing of it is known, or where it does not slide.
+    None if it does not slide, or if that is unknown.
     """
     for found, after in ((_prescribed(contact, system), ""), (_at_start(contact, system), " at the start")):
         speed = float(np.linalg.norm(found))
@@ -47,14 +47,14 @@ def sliding_of(contact: PointContact, system: System) -> Sliding | None:
 
 
 def _along(contact: PointContact, vector: Array) -> Array:
-    """Return the part of a vector along the tangents of a contact, without what rounding leaves."""
+    """Return the part of a vector along the tangents of a contact, without rounding."""
     tangents = contact.frame[1:]
     along = np.asarray(tangents.T @ (tangents @ vector[: len(contact.frame)]))
     return along if np.linalg.norm(along) > ROUND_OFF * np.linalg.norm(vector) else np.zeros_like(along)
 
 
 def _prescribed(contact: PointContact, system: System) -> Array:
-    """Return the velocity of the tip against the track that is prescribed [m/s]."""
+    """Return the prescribed velocity of the tip relative to the track [m/s]."""
     size, tangents = len(contact.frame), contact.frame[1:]
     against = np.zeros(size)
     imposed = system.imposed_velocity
@@ -75,7 +75,7 @@ def _prescribed(contact: PointContact, system: System) -> Array:
 
 
 def _at_start(contact: PointContact, system: System) -> Array:
-    """Return the velocity of the tip against the track at the start [m/s]."""
+    """Return the initial velocity of the tip relative to the track [m/s]."""
     against = np.zeros(3)
     for drive in system.drives:
         if drive.uniform_velocity is not None:
@@ -85,7 +85,7 @@ def _at_start(contact: PointContact, system: System) -> Array:
 
 
 def _pushes(body: Any, system: System) -> Array:
-    """Return the sum of the forces on a body [N], shape (3,), its weight where its mass is at hand."""
+    """Return the sum of the forces on a body [N], shape (3,), including its weight if its mass is available."""
     found = np.zeros(3)
     for drive in system.drives:
         if drive.push is not None and drive.push[1].body == body:

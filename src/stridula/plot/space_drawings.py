@@ -1,4 +1,4 @@
-"""A system in space before its run: bodies in perspective, contacts, drives and what joins bodies."""
+"""Drawing of a system in space before its run: bodies in perspective, contacts, drives and connections."""
 
 from __future__ import annotations
 
@@ -42,15 +42,15 @@ from .slidings import sliding_of
 ROOM = (0.02, 0.15, 0.96, 0.72)
 # Lengths as shares of the extent: arrows, springs, the scale.
 ARROW, LENGTH, SCALE = 0.18, 0.1, 0.25
-# How much of their colour bodies have, and most contacts whose normals are drawn, and whose speeds are written.
+# Tint of bodies, and largest numbers of contacts with drawn normals and with written speeds.
 TINT, MOST_NORMALS, MOST_WORDS = 0.35, 8, 3
-# Angle through which an arrow goes round a body that turns [rad].
+# Angle of the arrow round a turning body [rad].
 ARC = 0.35 * np.pi
 MOST_LINES = 6
 
 
 class SpaceDrawing:
-    """A system in space as it is before its run.
+    """Drawing of a system in space before its run.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ class SpaceDrawing:
         self.figure.suptitle(title, fontsize=11)
 
     def _place(self, point: BodyPoint) -> Array | None:
-        """Return where a point is, as far as it is known [m]."""
+        """Return the place of a point, if it is known [m]."""
         body: Any = point.body
         return self._centres[body] + body.offset(point.position) if body in self._centres else point.place
 

@@ -21,14 +21,13 @@ MOST_LINES = 7
 
 
 def system(system: System, *, view: tuple[float, float] = VIEW, title: str = "") -> Figure:
-    """Draw a system as it is before its run: what it is made of, where, and what drives it.
+    """Draw a system before its run: bodies, supports, contacts, connections and drives.
 
     In the plane bodies are to scale, also their thickness, with their supports; contacts are at the axes of beams and
     in the middle planes of plates. Each contact has its normal and its direction of sliding; there are forces and
     velocities with their values, springs and dashpots, gravity and rigid tracks. In space bodies are in perspective,
-    with the same arrows. Arrows all have the same length, and what is alike and near to each other is drawn once. A
-    direction of sliding without a speed is that in which forces push the tip. No modes are looked for, however large
-    the bodies.
+    with the same arrows. All arrows have the same length, and nearby things that are alike are drawn once. A direction
+    of sliding without a speed is that in which forces push the tip. No modes are computed, however large the bodies.
 
     Parameters
     ----------
@@ -47,7 +46,7 @@ def system(system: System, *, view: tuple[float, float] = VIEW, title: str = "")
     Raises
     ------
     ValueError
-        If it is no system, or one in space of which no body has a surface.
+        If it is not a system, or a system in space without a body that has a surface.
 
     Examples
     --------
@@ -68,6 +67,6 @@ def system(system: System, *, view: tuple[float, float] = VIEW, title: str = "")
 
 
 def caption(lines: Sequence[str]) -> str:
-    """Return the first lines of a caption, and how many others there are."""
+    """Return the first lines of a caption, and the number of others."""
     more = [f"and {len(lines) - MOST_LINES} more"] if len(lines) > MOST_LINES else []
     return "\n".join([*lines[:MOST_LINES], *more])

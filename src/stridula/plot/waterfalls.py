@@ -1,4 +1,4 @@
-"""Spectra over a parameter or over time, one behind the other."""
+"""Figures of spectra over a parameter or over time, one behind the other."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from .colours import LINE, LINES
 from .sounds import one_signal, reference
 
 HIGHEST, RESOLUTION, RANGE = 16e3, 10.0, 60.0
-# Most lines that have their value written on them.
+# Largest number of lines labelled with their value.
 MOST_WORDS = 30
-# Stretches into which one signal is cut, and most spectra of a figure.
+# Default number of pieces of one signal, and largest number of spectra in a figure.
 PIECES, MOST = 24, 100
-# How high the range of the levels is drawn, in distances of the spectra.
+# Height of the range of levels, in distances of the spectra.
 OVERLAP = 2.0
 # Share of that distance within which values are the same.
 SAME = 1e-6
 GROWS = LINES[1]
-# Samples below which a spectrum says nothing.
+# Smallest number of samples for a spectrum.
 FEWEST = 16
 
 
@@ -44,28 +44,28 @@ def waterfall(
 ) -> Figure:
     """Draw spectra over a parameter, or over the time of one signal: a line for each, one behind the other.
 
-    A tone has its own level: of a sound pressure in dB re 20 µPa, of any other signal in dB re its own unit. Each line
-    stands on its value on the axis of the parameter, where the level is `dynamic_range` below the loudest of all; a bar
-    says how high 20 dB are. Modes that grow by linear theory are marked on the line of their value.
+    A pure tone shows its own level, in dB re 20 µPa for a sound pressure and in dB re its unit for other signals. The
+    base of each line is at its value on the axis of the parameter, at a level `dynamic_range` below the loudest of all;
+    a bar shows the height of 20 dB. Modes that grow by linear theory are marked on the line of their value.
 
     Parameters
     ----------
     signals : xarray.DataArray or mapping
         Signals over ``time`` by the value of the parameter; a DataArray of them over ``time`` and a dimension of
-        numbers; or one signal over ``time``, which is cut into stretches.
+        numbers; or one signal over ``time``, which is cut into pieces.
     theory : xarray.Dataset or mapping, optional
-        Modes that grow: what `root_loci` returned over the parameter, what `sliding_stability` returned by the value of
-        the parameter, or one such for all spectra.
+        Modes that grow: result of `root_loci` over the parameter, results of `sliding_stability` by the value of the
+        parameter, or one such result for all spectra.
     parameter : str, optional
         Label of the parameter with its unit, such as ``friction [1]``; name and unit of the dimension if left out.
     highest : float, optional
-        Upper end of the frequency axis [Hz], half of the sample rate at most.
+        Upper end of the frequency axis [Hz], at most half the sample rate.
     resolution : float, optional
-        Distance of the frequencies [Hz]; a short signal has no finer one than its length gives.
+        Frequency spacing [Hz], at least the inverse of the duration of the signal.
     dynamic_range : float, optional
         Range of the levels [dB], below the loudest.
     pieces : int, optional
-        Stretches into which one signal is cut.
+        Number of pieces into which one signal is cut.
     title : str, optional
         Title of the figure.
 
@@ -77,7 +77,7 @@ def waterfall(
     Raises
     ------
     ValueError
-        If an argument is out of its range, values are no numbers or fewer than 2, or signals differ in unit or rate.
+        If an argument is out of its range, values are not numbers or fewer than 2, or signals differ in unit or rate.
 
     Examples
     --------
@@ -96,7 +96,7 @@ def waterfall(
     _draw(axes, spectra, dynamic_range)
     if theory is not None:
         _draw_growing(axes, theory, spectra, dynamic_range)
-    # The last frequency lies less than one of their distances below the end.
+    # The last frequency lies less than one spacing below the end.
     axes.set_xlim(0.0, min(highest, spectra.frequency[-1] + spectra.frequency[0]) / 1e3)
     axes.set_xlabel("frequency [kHz]")
     axes.set_ylabel(parameter or label)
@@ -118,7 +118,7 @@ class _Spectra:
     levels : ndarray, shape (spectra, frequencies)
         Levels [dB].
     words : str
-        What levels refer to.
+        Unit of the levels.
     """
 
     values: Array
@@ -132,12 +132,12 @@ class _Spectra:
         return float(np.ptp(self.values)) / (self.values.size - 1)
 
     def heights(self, dynamic_range: float) -> Array:
-        """Return how high each level is drawn above its value, a range [dB] below the loudest, (spectra, levels)."""
+        """Return the height of each level above its value, a range [dB] below the loudest, (spectra, levels)."""
         above = self.levels - self.levels.max() + dynamic_range
         return np.asarray(OVERLAP * self.step / dynamic_range * np.maximum(above, 0.0))
 
     def at(self, value: float, frequency: float, dynamic_range: float) -> float:
-        """Return where a frequency [Hz] of the spectrum of a value is drawn; on the value where there is none."""
+        """Return the place of a frequency [Hz] on the spectrum of a value; on its base if there is no spectrum."""
         (row,) = np.nonzero(np.isclose(self.values, value, rtol=0.0, atol=SAME * self.step))
         if not row.size:
             return value
@@ -195,7 +195,7 @@ def _spectra(signals: Mapping[float, xr.DataArray], highest: float, resolution: 
     for values, _ in sampled.values():
         frequency, power = welch(values, 1.0 / interval, nperseg=size, detrend="constant", scaling="spectrum")
         rows.append(level.decibels(power))
-    # The first frequency holds what the mean leaves.
+    # Only the residue of the mean is left at frequency 0.
     kept = (frequency > 0.0) & (frequency <= highest)
     if np.count_nonzero(kept) < 2:
         raise ArgumentError("highest", f"be at least {2.0 * float(frequency[1]):.4g} Hz at this resolution", highest)
@@ -209,7 +209,7 @@ def _draw(axes: Axes, spectra: _Spectra, dynamic_range: float) -> None:
     kilohertz = spectra.frequency / 1e3
     every = -(-spectra.values.size // MOST_WORDS)
     for number, (value, height) in enumerate(zip(spectra.values, heights, strict=True)):
-        # In front are the low values.
+        # Low values are in front.
         order = 2.0 + spectra.values.size - number
         axes.fill_between(kilohertz, value, value + height, facecolor="white", linewidth=0.0, zorder=order)
         axes.axhline(value, color="0.85", linewidth=0.6, zorder=order)
@@ -256,17 +256,17 @@ def _by_value(theory: Any) -> list[tuple[float, xr.Dataset]]:
     """Return the theory of each value."""
     if hasattr(theory, "data_vars"):
         if not {"frequency", "unstable", "equilibrium"} <= set(theory.data_vars) or theory["equilibrium"].ndim != 1:
-            raise ArgumentError("theory", "be what root_loci or sliding_stability returned", theory)
+            raise ArgumentError("theory", "be the result of root_loci or sliding_stability", theory)
         key = theory["equilibrium"].dims[0]
         return [(float(value), theory.sel({key: value})) for value in theory[key].values]
     if not hasattr(theory, "items") or not all(map(_is_one, theory.values())):
-        raise ArgumentError("theory", "be what root_loci or sliding_stability returned", theory)
+        raise ArgumentError("theory", "be the result of root_loci or sliding_stability", theory)
     return [(finite("theory", value), one) for value, one in theory.items()]
 
 
 def _growing(theory: xr.Dataset) -> list[float]:
     """Return the frequencies of the modes that grow [Hz]."""
     if "unstable" not in theory:
-        raise ArgumentError("theory", "be what root_loci or sliding_stability returned", theory)
+        raise ArgumentError("theory", "be the result of root_loci or sliding_stability", theory)
     found = theory["frequency"].values[theory["unstable"].values.astype(bool)]
     return [float(one) for one in found[found > 0.0]]
