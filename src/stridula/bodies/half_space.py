@@ -30,7 +30,7 @@ def surface_frame(normal: object, along: object) -> Array:
         check_finite(name, vector)
     out, first = (vector / np.linalg.norm(vector) for vector in given.values())
     if abs(out @ first) > ALONG:
-        raise ArgumentError("along", "lie square to the normal", along)
+        raise ArgumentError("along", "be at right angles to the normal", along)
     return np.stack([first, out, np.cross(first, out)])
 
 

@@ -113,7 +113,7 @@ class PointContact:
         for word in ("name", "surface"):
             instance(word, getattr(self, word), str)
         if self.area and not self.surface:
-            raise ArgumentError("area", "be left out but at a point of a surface", self.area)
+            raise ArgumentError("area", "be left out except at a point of a surface", self.area)
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
         self._check_directions()
 
@@ -152,7 +152,7 @@ class PointContact:
                 raise ArgumentError("surface_velocity", "be 0 against a body that turns", self.surface_velocity)
             speed = float(np.linalg.norm(point.turning_velocity))
             if abs(float(self.frame[0] @ point.turning_velocity)) > ALONG_SURFACE * speed:
-                words = f"be square to the velocity at which the body of the {name} turns"
+                words = f"be at right angles to the velocity at which the body of the {name} turns"
                 raise ArgumentError("normal", words, self.normal)
 
     def _check_circle(self) -> None:
@@ -163,14 +163,14 @@ class PointContact:
                 "tangent", "be left out on a circle, whose direction is the first tangent", self.tangent
             )
         if abs(float(self._normal_in_space @ self.circle.direction(self.at))) > ALONG_SURFACE:
-            raise ArgumentError("normal", "be square to the circle where the tip is at the start", self.normal)
+            raise ArgumentError("normal", "be at right angles to the circle at the start", self.normal)
         if self.tip.turning_velocity.any():
             raise ArgumentError("tip", "be on a body that does not turn, on a circle", self.tip)
 
     def _check_surface(self) -> None:
         given = np.atleast_1d(self.surface_velocity)
         if (self.touched_point is None or self.circle is not None) and given.any():
-            words = "be 0 but against a point of a body: tracks have velocities of their own"
+            words = "be 0 except against a point of a body: tracks have velocities of their own"
             raise ArgumentError("surface_velocity", words, self.surface_velocity)
         if given.size > (2 if self.is_spatial else 1):
             words = "be one number, or two in space, one for each tangent"

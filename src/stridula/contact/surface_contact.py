@@ -89,7 +89,7 @@ class SurfaceContact:
         else:
             for name, given in (("track_face", self.track_face), ("overlay", self.overlay)):
                 if given:
-                    raise ArgumentError(name, "be left out but on a SolidBody", given)
+                    raise ArgumentError(name, "be left out except on a SolidBody", given)
         instance("name", self.name, str)
         check_declared(self)
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))

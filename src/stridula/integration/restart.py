@@ -55,7 +55,9 @@ def state_of(
     if missing:
         raise ArgumentError("start", "have the attributes of a record", start, got=f"one without {listed(missing)}")
     if attributes["ended"] not in ("finished", "interrupted"):
-        raise ArgumentError("start", "be a run that can go on", start, got=f"one that ended {attributes['ended']!r}")
+        raise ArgumentError(
+            "start", "be a run that can be continued", start, got=f"one that ended {attributes['ended']!r}"
+        )
     if attributes.get("state_layout") != LAYOUT:
         got = attributes.get("state_layout", "none")
         raise ArgumentError(

@@ -25,7 +25,7 @@ ENDED = {
 WHAT = {
     "not finite": "the state is no longer finite",
     "contact unsolved": "the contact forces were not found",
-    "energy created": "energy came from nowhere",
+    "energy created": "energy was created",
 }
 CAUSE = {
     "not finite": "an instability that grows without bound, or drives far too large",
@@ -88,7 +88,7 @@ def rank_words(arrays: Assembly, blocks: Blocks, state: State) -> str:
     condition = f"{sizes[0] / sizes[-1]:.1e}" if rank == len(sizes) else "infinite"
     found = f"their compliance has rank {rank} of {len(sizes)} and condition {condition}"
     rigid = any(one.contact.surface and one.contact.yields is None for one in (arrays.contacts[i] for i in closed))
-    return f"{found}; a rigid surface of so many points wants a stiffness of its own" if rigid else found
+    return f"{found}; a rigid surface of so many points needs a contact stiffness" if rigid else found
 
 
 def energy_created(

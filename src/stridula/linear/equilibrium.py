@@ -365,8 +365,7 @@ def _check_unbraked(structure: Structure, free: Array) -> None:
     if braked.size and np.abs(braked).max() > ROUND_OFF * max(float(np.abs(structure.damping).max()), 1e-300):
         raise ArgumentError(
             "connections",
-            "not brake a rigid motion that nothing else holds, which has no steady state to vibrate about: "
-            "impose a velocity instead",
+            "not brake a rigid motion that is otherwise free, which has no steady state: impose a velocity instead",
         )
 
 

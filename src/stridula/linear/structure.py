@@ -206,7 +206,7 @@ class Structure:
             contact = int(np.flatnonzero(closed)[int(missed.argmax()) % int(closed.sum())])
             name = self.system.contact_names[contact]
             if int(missed.argmax()) < int(closed.sum()):
-                raise ArgumentError("drives", f"let bodies follow what is moved along the normal of {name}")
+                raise ArgumentError("drives", f"let bodies follow the motion along the normal of {name}")
             if status[contact] == STICKING:
                 raise ArgumentError("status", f"let {name} slide, whose track nothing can follow", STICKING)
             raise ArgumentError(
@@ -214,7 +214,7 @@ class Structure:
                 "be one at which bodies move as a whole",
                 float(slip_velocity[contact]),
                 got=(
-                    f"{float(slip_velocity[contact])!r} m/s for {name}, which nothing lets slide on: move its "
+                    f"{float(slip_velocity[contact])!r} m/s for {name}, which cannot keep sliding: move its "
                     "track or its root"
                 ),
             )
@@ -268,7 +268,7 @@ class Structure:
         left = np.abs(openings - normals @ (np.linalg.pinv(normals, rcond=UNMOVED) @ openings))
         if left.max() > UNMOVED * np.abs(openings).max():
             name = self.system.contact_names[int(left.argmax())]
-            raise ArgumentError("time", f"be given: nothing follows what is moved along the normal of {name}", None)
+            raise ArgumentError("time", f"be given: no body can follow the motion along the normal of {name}", None)
 
     def free_motions(self, rows: Array) -> Array:
         """Return the rigid motions in the null space of some rows, orthonormal, shape (modes, motions)."""
@@ -317,7 +317,7 @@ def _varying(track: RigidTrack, name: str) -> list[History]:
     )
     for _, acceleration, history in moved:
         if acceleration and history.settled is not None and history.factor(np.array([history.settled + 1.0]))[0]:
-            raise ArgumentError("time", f"be given for the track of {name}, which goes on gathering speed")
+            raise ArgumentError("time", f"be given for the track of {name}, which keeps accelerating")
     return [history for velocity, acceleration, history in moved if velocity or acceleration]
 
 
