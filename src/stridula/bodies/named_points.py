@@ -15,11 +15,11 @@ class NamedPoints(HasCard):
     has_positions: ClassVar[bool] = False
 
     def at(self: Body, position: str) -> BodyPoint:
-        """Return the point called `position`."""
+        """Return the point of the name `position`."""
         return BodyPoint(self, position)
 
     def check_position(self: Body, position: str) -> None:
-        """Raise ValueError if no point is called `position`."""
+        """Raise ValueError if no point has the name `position`."""
         choice("position", position, self.point_names)
 
     @property

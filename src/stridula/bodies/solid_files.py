@@ -232,7 +232,7 @@ def _by_value(values: Any) -> Iterator[tuple[int, Array]]:
 
 
 def _of_gmsh(held: Any) -> dict[str, dict[int, Array]]:
-    """Return the physical groups; those without a name are called by their number."""
+    """Return the physical groups; groups without a name get their number."""
     names = {(int(dimension), int(tag)): name for name, (tag, dimension) in held.field_data.items()}
     found: dict[str, dict[int, Array]] = {}
     for at, tags in enumerate(held.cell_data.get("gmsh:physical", [])):

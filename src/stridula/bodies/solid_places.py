@@ -16,7 +16,7 @@ from .solid_kinds import ElementKind
 if TYPE_CHECKING:
     from .solid_mesh import SolidMesh
 
-# Shares of the size of an element: how far curved sides may bulge beyond its nodes, and a place lie outside of it.
+# Shares of the size of an element: bulge of curved sides beyond its nodes, and tolerance for places outside of it.
 BULGE, OUTSIDE = 0.2, 1e-6
 STEPS = 30
 # Points of integration and weights, exact for a uniform pressure on faces of second degree.
