@@ -1,4 +1,4 @@
-"""Who hears what the package does for long, such as finding the modes of large bodies: records of its logger."""
+"""Notification of long tasks, such as the search for the modes of large bodies, through the package's logger."""
 
 from __future__ import annotations
 
@@ -6,26 +6,26 @@ import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-# Told what is being done, and None when it is done.
+# Called with the name of a task when it begins, and with None when it is done.
 Tell = Callable[[str | None], None]
 
 
 class Doings(logging.Handler):
-    """Hears of what takes long."""
+    """Handler that passes on the names of long tasks."""
 
     def __init__(self, tell: Tell) -> None:
         super().__init__(logging.INFO)
         self.tell = tell
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Tell of it."""
+        """Pass on the task of a record."""
         if hasattr(record, "doing"):
             self.tell(record.doing)
 
 
 @contextmanager
 def told_of_doings(tell: Tell) -> Iterator[None]:
-    """Tell of what takes long; whoever was told before is not meanwhile."""
+    """Pass the names of long tasks to a function; earlier handlers are suspended meanwhile."""
     logger = logging.getLogger("stridula")
     level, handlers = logger.level, logger.handlers[:]
     logger.handlers[:] = [Doings(tell)]

@@ -358,7 +358,7 @@ class InitialEquilibrium(Drive):
     Raises
     ------
     ValueError
-        If an argument is out of its range. A run raises it if there is no such equilibrium.
+        If an argument is out of its range. Runs raise it if there is no such equilibrium.
     """
 
     kind: ClassVar[str] = "initial equilibrium"

@@ -121,9 +121,9 @@ def outlines_of(system: Any) -> tuple[list[Outline], Array]:
 
 
 def places_in(system: Any) -> Callable[[BodyPoint], Array | None]:
-    """Return what says where a point of a system in the plane is at rest [m], shape (2,), as `lines_of` has it.
+    """Return a function that gives the place of a point of a system in the plane at rest [m], as in `lines_of`.
 
-    None of a point that touches nothing, is joined to nothing and lies on no line.
+    Its result has the shape (2,), and is None for a point that touches nothing, is joined to nothing and is on no line.
     """
     origins = _origins(list(_joints(system)))
 

@@ -55,7 +55,7 @@ def check(stop, ended, until, name="shoe"):
 
 def check_refused(stop, system, **words):
     with pytest.raises(
-        ValueError, match=rf"^start must be a run that can go on, got one that ended '{ended_of(stop)}'"
+        ValueError, match=rf"^start must be a run that can be continued, got one that ended '{ended_of(stop)}'"
     ):
         st.simulate(system, 0.1, **{"step": STEP, "sample_rate": 1e4, "probes": [], "start": stop.record} | words)
 

@@ -10,7 +10,7 @@ from stridula._kernels.ledger import CONTACT_TOLERANCE, LEDGER_TOLERANCE, believ
 
 
 def created(energies, before, initial, largest, of_loads, dissipative, damped_alone):
-    """Return the first sample at which energy came from nowhere, or None; written from the rules."""
+    """Return the first sample at which energy was created, or None; written from the rules."""
     terms = np.abs(energies[: at.DAMPING_LOSS + 1])
     largest_yet = np.maximum(np.maximum.accumulate(terms.max(axis=0)), max(largest, of_loads))
     scale = LEDGER_TOLERANCE * largest_yet

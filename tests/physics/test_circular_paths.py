@@ -436,8 +436,14 @@ def contact(track, **words):
 
 BAD = {
     "tangent": (lambda: contact(disc().circle(HERE), tangent=(1.0, 0.0, 0.0)), "tangent must be left out on a circle"),
-    "normal": (lambda: contact(disc().circle(HERE), normal=(1.0, 0.0, 0.0)), "normal must be square to the circle"),
-    "surface": (lambda: contact(disc().circle(HERE), surface_velocity=1.0), "surface_velocity must be 0 but against"),
+    "normal": (
+        lambda: contact(disc().circle(HERE), normal=(1.0, 0.0, 0.0)),
+        "normal must be at right angles to the circle",
+    ),
+    "surface": (
+        lambda: contact(disc().circle(HERE), surface_velocity=1.0),
+        "surface_velocity must be 0 except against",
+    ),
     "axis": (
         lambda: st.AxisymmetricBody(
             st.RectangleProfile({"disc": ((0.0, 0.1), (0.0, 0.01))}), STEEL, 4000.0, "outer"

@@ -356,7 +356,7 @@ def jammed() -> st.System:
             "velocity must be one at which bodies move",
         ),
         (lambda: dragged(st.RigidTrack(), velocity=0.0), {}, "contact 1 is held by friction"),
-        (rising, {}, "drives must let bodies follow what is moved along the normal of contact 1"),
+        (rising, {}, "drives must let bodies follow the motion along the normal of contact 1"),
         (mass_on_a_belt, {"status": "sticking"}, "status must let contact 1 slide, whose track nothing can follow"),
         (
             pushed,

@@ -113,7 +113,7 @@ BAD = {
     "none": ({"places": np.zeros((0, 3))}, "places must be a list of places"),
     "side": ({"side": 0.0}, "side must be"),
     "normal": ({"normal": (0, 0, 0)}, "normal must be three numbers, not all zero"),
-    "askew": ({"along": (1, 1, 0)}, "along must lie square to the normal"),
+    "askew": ({"along": (1, 1, 0)}, "along must be at right angles to the normal"),
     "material": ({"material": 1.0}, "material must be"),
     "coupled": ({"coupled": 1}, "coupled must be"),
 }

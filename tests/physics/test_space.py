@@ -647,7 +647,7 @@ BAD = {
     ),
     "surface of a track": (
         lambda: st.PointContact(BODY.centre, st.RigidTrack(), surface_velocity=1.0),
-        "surface_velocity must be 0 but against a point of a body",
+        "surface_velocity must be 0 except against a point of a body",
     ),
     "two velocities in the plane": (
         lambda: st.PointContact(FLAT.centre, st.PointMass(2.0, name="b").centre, surface_velocity=(1.0, 2.0)),

@@ -265,5 +265,5 @@ def test_what_is_refused():
     ):
         with pytest.raises(st.ArgumentError, match=words):
             st.simulate(given, 1e-3, surface_rate=rate, **WORDS)
-    with pytest.raises(st.ArgumentError, match="area must be left out but at a point of a surface"):
+    with pytest.raises(st.ArgumentError, match="area must be left out except at a point of a surface"):
         st.PointContact(mass.centre, st.RigidTrack(), area=1e-4)

@@ -159,7 +159,7 @@ def test_a_rigid_face_that_bounces_finds_its_forces(friction):
 
 def test_a_rigid_face_whose_forces_are_not_found_says_what_helps():
     system, _ = brake(0.4, stiffness=None)
-    with pytest.raises(st.Diverged, match="a rigid surface of so many points wants a stiffness of its own"):
+    with pytest.raises(st.Diverged, match="a rigid surface of so many points needs a contact stiffness"):
         st.simulate(system, 1e-3, probes=[], contact_solve=st.GaussSeidel(sweeps=2))
 
 
@@ -198,7 +198,7 @@ BAD = {
     ),
     "overlay": (
         lambda: st.SurfaceContact(flipped()[0], "top", st.RigidTrack(), overlay=True),
-        "overlay must be left out but on a SolidBody",
+        "overlay must be left out except on a SolidBody",
     ),
     "outside": (lambda: flipped()[0].at((1.0, 0.0, 0.0)), "within the mesh"),
 }

@@ -314,7 +314,7 @@ BAD = {
     "tilts": (lambda: st.AxisymmetricBody(PLATE, STEEL, 4000.0, turning=1.0).modes(), "keeps the body from tilting"),
     "normal": (
         lambda: st.PointContact(st.RigidBody(1.0).centre, disc(1.0).at(HERE), normal=(0.0, 0.1, 1.0)),
-        "square to the velocity",
+        "at right angles to the velocity",
     ),
     "twice": (
         lambda: st.PointContact(

@@ -222,7 +222,7 @@ def test_a_tip_that_leaves_its_track_ends_the_run_there(ratio, scheme):
     for name in run.data_vars:
         if "time" in run[name].dims:
             assert np.all(np.isfinite(run[name])), name
-    with pytest.raises(ValueError, match="start must be a run that can go on"):
+    with pytest.raises(ValueError, match="start must be a run that can be continued"):
         st.simulate(system, 0.01, scheme=scheme, step=STEP, sample_rate=1 / (ratio * STEP), probes=probes, start=run)
 
 

@@ -444,7 +444,7 @@ def unmoved():
         (
             pair(dragged(), track=st.RigidTrack(), inclination=-pi / 2),
             {},
-            "time must be given: nothing follows what is moved along the normal of contact 1",
+            "time must be given: no body can follow the motion along the normal of contact 1",
         ),
         (no_steady_state, {}, "connections must not brake a rigid motion"),
         (twice, {}, "contacts must not hold the same motion twice"),

@@ -1,4 +1,4 @@
-"""What vibrates: bodies that end as mass-normalised modes and their traces."""
+"""Bodies: everything that vibrates, reduced to mass-normalised modes and their traces."""
 
 from .axisymmetric_body import AxisymmetricBody, Held
 from .circular_path import CircularPath

@@ -36,19 +36,19 @@ if TYPE_CHECKING:
 DIRECTIONS = ("r", "theta", "z")
 Z = (0.0, 0.0, 1.0)
 POSITION = "three numbers, (r, theta, z)"
-# Largest side of a cell as a share of 1 / k, of the shortest waves: in parts thicker than that, and in parts so thin
-# that cells of their thickness would be more than bending needs; between them it is a share of the thickness.
-# Frequencies come out within 1e-3, and within 5e-3 where corners point inwards.
+# Largest side of a cell as a share of 1 / k of the shortest waves: in thick parts, and in parts so thin that cells of
+# their thickness would be finer than bending needs; in between it is a share of the thickness.
+# Frequencies are within 1e-3, and within 5e-3 where corners point inwards.
 CELL_OF_WAVE, CELL_OF_BENDING, CELL_OF_THICKNESS = 0.4, 0.1, 0.5
-# Square of the speed of surface waves, the slowest where nothing bends, over that of shear waves, at least.
+# Lower bound of the squared speed of surface waves, the slowest without bending, over that of shear waves.
 SURFACE_WAVES = 0.75
-# Poisson's ratios beyond which displacements alone cannot tell pressure, or shear, from rounding.
+# Poisson's ratios beyond which displacement elements lose the pressure, or the shear, to rounding.
 LEAST_POISSON, MOST_POISSON = -0.99, 0.499
-# Squares of masses and stiffnesses [kg, N/m] can be held.
+# Largest mass and stiffness [kg, N/m], so that their squares are finite.
 LARGEST = 1e100
-# Share of a turn that rounding leaves to a body that moves straight on.
+# Share of a turn that is due to rounding where a body moves straight.
 STRAIGHT = 1e-6
-# A free ring of order n bends like a beam of a length of n - 1 waves and more.
+# A free ring of order n bends like a beam of n - 1 waves or more in length.
 ORDERS_MORE = 2
 
 
@@ -60,12 +60,12 @@ class Held:
     Parameters
     ----------
     place : str or tuple
-        The name of a place of the profile, or a box: its range of r and its range of z [m]. Every profile has
-        ``inner``, ``outer``, ``bottom`` and ``top``, its edges of least and largest r, least and largest z; one with
-        several regions has each of them as a whole by its name and its edges as ``hat.inner``; lines have ``start`` and
-        ``end``; meshes have their named edges. Sides of cells that lie in a box as a whole are held.
+        Name of a place of the profile, or a box: its range of r and its range of z [m]. Every profile has ``inner``,
+        ``outer``, ``bottom`` and ``top``, its edges of least and largest r, least and largest z; with several regions
+        each region is also a place, and so are its edges, such as ``hat.inner``; lines have ``start`` and ``end``;
+        meshes have their named edges. In a box, sides of cells that lie entirely inside are held.
     directions : str or sequence of str, optional
-        Those in which it is held, of ``r``, ``theta`` and ``z``; all if left out.
+        Held directions out of ``r``, ``theta`` and ``z``; all if left out.
 
     Raises
     ------
@@ -91,7 +91,7 @@ class Held:
         return tuple(DIRECTIONS.index(one) for one in self.directions)
 
     def sides(self, mesh: ProfileMesh) -> Array:
-        """Return the sides of cells that are held, shape (sides, 2)."""
+        """Return the held sides of cells, shape (sides, 2)."""
         if not isinstance(self.place, str):
             return mesh.sides_within(*self.place)
         return mesh.sides_of(self.place)
@@ -102,52 +102,51 @@ class Held:
 class AxisymmetricBody(HasCard):
     """A body of revolution, at rest or turning about its axis, by Fourier finite elements on its profile.
 
-    Round the axis its displacement goes as ``u_r = U cos n theta``, ``u_theta = V sin n theta``,
-    ``u_z = W cos n theta``, or as that turned by a quarter of a wave, with U, V and W on the profile in quadratic
-    elements of three-dimensional elasticity. Every order n above 0 has its modes in pairs of the same frequency. Modes
-    come by rising frequency, the two of a pair one after the other; rigid motions, of frequency zero, come first.
+    Round the axis its displacement varies as ``u_r = U cos n theta``, ``u_theta = V sin n theta``,
+    ``u_z = W cos n theta``, or as these turned by a quarter of a wave, with U, V and W on the profile in quadratic
+    elements of three-dimensional elasticity. Modes of order n above 0 come in pairs of the same frequency. Modes are
+    sorted by rising frequency, the two of a pair one after the other; rigid motions, of frequency zero, come first.
 
     Parameters
     ----------
     profile : RectangleProfile, LineProfile or MeshProfile
         Its section through the axis, the half with r >= 0.
     material : Material or mapping
-        What it is made of, or the material of each region of the profile by its name; Poisson's ratios from -0.99 to
-        0.499.
+        Material, or the material of each region of the profile by its name; Poisson's ratios from -0.99 to 0.499.
     cutoff : float
         Keep all the modes up to this frequency [Hz].
     held : str, Held or sequence of these, optional
         Parts of the profile that do not move, such as ``"inner"`` or ``Held("bottom", "z")``; if left out it is free.
     orders : int, optional
-        Highest number of waves round the axis that is kept; if left out all that have modes below the cutoff.
+        Highest number of waves round the axis that is kept; if left out, all orders with modes below the cutoff.
     damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
         Damping ratio of every mode [1], from 0 to 1 (1 excluded), one for each mode in their order, or a law of their
         frequency.
     residual_at : sequence of tuple of float, optional
-        Places (r, z) of the profile [m] where forces act, at any angle: to those, and to gravity, modes of the same
-        orders beyond the cutoff still yield statically, by residual shapes without mass, which come last.
+        Places (r, z) of the profile [m] where forces act, at any angle: modes of the same orders beyond the cutoff
+        still respond statically to these forces and to gravity, by residual shapes without mass, which come last.
     axis : tuple of float, optional
         Direction of its axis of revolution in the world, of any length.
     origin : tuple of float, optional
-        The point of the world on its axis where z is 0 [m].
+        World place of the point of its axis where z is 0 [m].
     turning : float, optional
-        Angular velocity about the axis, counter-clockwise seen from where the axis points to [rad/s]. Points stay where
-        they are in space, the material passes them.
+        Angular velocity about the axis, counter-clockwise with the axis pointing at the viewer [rad/s]. Points stay
+        fixed in space, the material moves past them.
     turning_history : Constant, Ramp, Harmonic or Sampled, optional
-        How the angular velocity goes in time, a factor on it.
+        Factor on the angular velocity over time.
     name : str, optional
-        What it is called in records; tells equal bodies apart.
+        Name in records; distinguishes equal bodies.
 
     Raises
     ------
     ValueError
-        If an argument is out of its range, if a region has no material, or if nothing is where it is held; from
-        `modes` on, if no mode lies below the cutoff, or if it turns and nothing keeps its axis where it is.
+        If an argument is out of its range, if a region has no material, or if a held place is empty; from `modes` on,
+        if no mode lies below the cutoff, or if it turns and nothing holds its axis.
 
     Notes
     -----
-    A body turns slowly: waves are carried round and Coriolis forces act, both of first order in the angular velocity;
-    stiffening and softening by rotation, of second order, are left out.
+    Rotation is assumed slow: waves are carried round and Coriolis forces act, both of first order in the angular
+    velocity; stiffening and softening by rotation, of second order, are neglected.
     """
 
     kind: ClassVar[str] = "axisymmetric"
@@ -188,7 +187,7 @@ class AxisymmetricBody(HasCard):
         instance("turning_history", self.turning_history, HISTORIES)
         instance("name", self.name, str)
         object.__setattr__(self, "residual_at", _places(self.residual_at))
-        # From here on it has a hash: all fields are as they stay.
+        # All fields are final, so from here on it can be hashed.
         self._check_held()
         for number, place in enumerate(self.residual_at):
             if self.mesh.cell_at(*place) is None:
@@ -206,19 +205,19 @@ class AxisymmetricBody(HasCard):
 
     @property
     def dimensions(self) -> str:
-        """Its size in words."""
+        """Size in words."""
         r, z = self.mesh.nodes.T
         return f"{2.0 * r.max():.4g} m across, {np.ptp(z):.4g} m high"
 
     @property
     def posture(self) -> str:
-        """How it stands, in words."""
+        """Orientation in words."""
         turns = f", turns at {self.turning:.4g} rad/s" if self.turning else ""
         return f"axis along ({', '.join(f'{one:.4g}' for one in self.axis)}){turns}"
 
     @property
     def axes(self) -> Array:
-        """World components of the axes of its displacements, which are x, y and z, shape (3, 3)."""
+        """World components of its axes, which are x, y and z, shape (3, 3)."""
         return np.eye(3)
 
     @property
@@ -249,8 +248,8 @@ class AxisymmetricBody(HasCard):
     def numbers(self) -> Array:
         """Numbers of each mode, shape (modes, 3).
 
-        Its order n; which one it is of its order and kind, from 0, residual shapes last; 0 for the cosine of a pair, 1
-        for the sine. Of order 0, those with 0 do not twist and those with 1 are torsion.
+        Order n; number within its order and kind, from 0, residual shapes last; 0 for the cosine of a pair, 1 for the
+        sine. In order 0, modes with 0 do not twist and modes with 1 are torsion.
         """
         return _solution(self).numbers
 
@@ -280,18 +279,18 @@ class AxisymmetricBody(HasCard):
         return np.asarray(self._directions(theta).T @ _solution(self).cylindrical(r, theta, z))
 
     def place(self, position: Any) -> Array:
-        """Return where in the world a point (r, theta, z) is at rest [m], shape (3,)."""
+        """Return the world place of a point (r, theta, z) at rest [m], shape (3,)."""
         r, theta, z = self._position(position)
         radial, _, axial = self._directions(theta)
         return np.asarray(self.origin + r * radial + z * axial)
 
     def surface(self, frequency: float = HIGHEST) -> RingSurface:
-        """Return the outer surface as rings, fine enough for sound up to a frequency [Hz], and how modes move it."""
+        """Return the outer surface as rings with its mode shapes, fine enough for sound up to a frequency [Hz]."""
         return _surface(self, largest_part(frequency))
 
     @property
     def drawn(self) -> DrawnRings:
-        """Its surface as it is drawn: the outline of its profile and how modes move it."""
+        """Surface for drawing: the outline of its profile with the mode shapes there."""
         solution, mesh = _solution(self), self.mesh
         used, sides = _outline(mesh)
         shapes = []
@@ -311,7 +310,7 @@ class AxisymmetricBody(HasCard):
 
     @property
     def drawn_at_rest(self) -> DrawnSurface:
-        """Its surface as it is drawn, without modes, which need not be known."""
+        """Surface for drawing, without modes, which need not be known."""
         used, sides = _outline(self.mesh)
         still, no_modes = np.zeros((used.size, 3, 0)), np.zeros(0, dtype=int)
         return DrawnRings(
@@ -320,11 +319,11 @@ class AxisymmetricBody(HasCard):
 
     @property
     def has_modes_at_hand(self) -> bool:
-        """Whether its modes are known already."""
+        """Whether its modes are already computed."""
         return self in _SOLVED
 
     def turning_velocity(self, position: Any) -> Array:
-        """Return the velocity of the material at a point (r, theta, z) by turning alone [m/s], shape (3,)."""
+        """Return the velocity of the material at a point (r, theta, z) due to turning alone [m/s], shape (3,)."""
         r, theta, _ = self._position(position)
         return np.asarray(self.turning * r * self._directions(theta)[1])
 
@@ -336,7 +335,7 @@ class AxisymmetricBody(HasCard):
 
     @property
     def waves_round(self) -> Turning:
-        """Its pairs of modes and how they are carried round: as it turns, or at rest."""
+        """Pairs of modes and the way they are carried round: by its turning, or with velocity 0 at rest."""
         modes = self.modes()
         if modes.turning is not None:
             return modes.turning
@@ -345,16 +344,16 @@ class AxisymmetricBody(HasCard):
         return Turning(0.0, np.stack([first, first + 1], axis=1).tolist(), order, order)
 
     def circle(self, position: Any, velocity: float = 0.0, history: History | None = None) -> CircularPath:
-        """Return the circle round the axis through a point (r, theta, z) [m, rad, m], for others to slide along.
+        """Return the circle round the axis through a point (r, theta, z) [m, rad, m], as a track for other bodies.
 
         Parameters
         ----------
         position : tuple of float
             The point where the abscissa is zero.
         velocity : float, optional
-            Velocity at which what slides on it is carried along as a whole [m/s].
+            Velocity at which a slider on it is carried along as a whole [m/s].
         history : Constant, Ramp, Harmonic or Sampled, optional
-            How that velocity goes in time, a factor on it.
+            Factor on that velocity over time.
         """
         point = _triple("position", position, POSITION)
         return CircularPath(self, point, velocity, Constant() if history is None else history)
@@ -396,17 +395,17 @@ class AxisymmetricBody(HasCard):
 
     @property
     def _highest_order(self) -> int:
-        """Highest order that has waves below the cutoff, not below it."""
+        """Upper bound of the orders that have waves below the cutoff."""
         waves = _shortest_waves(tuple(self.materials.values()), self.mesh.thinnest, self.cutoff)
         highest = math.ceil(float(self.mesh.nodes[:, 0].max()) * waves) + ORDERS_MORE
         return highest if self.orders is None else min(highest, self.orders)
 
 
 def _shortest_waves(materials: Sequence[Material], thickness: float, cutoff: float) -> float:
-    """Return the wavenumber of the shortest waves below a cutoff [Hz] in layers [rad/m], not below it.
+    """Return an upper bound of the wavenumber of the shortest waves below a cutoff [Hz] in layers [rad/m].
 
-    In a plate ``k² <= k_b² + k_s²`` with the waves of Kirchhoff's plate and those of shear (Mindlin 1951). Layers are
-    no slower than a plate as heavy as the heaviest and as soft as the softest.
+    In a plate ``k² <= k_b² + k_s²`` with the waves of Kirchhoff's plate and of shear (Mindlin 1951). Waves in layers
+    are no slower than in a plate as heavy as the heaviest layer and as soft as the softest.
     """
     angular, density = 2.0 * math.pi * cutoff, max(one.density for one in materials)
     bending = angular * math.sqrt(12.0 * density / min(one.young for one in materials)) / thickness
@@ -419,7 +418,7 @@ class _Solution:
     elements: FourierElements
     modes: Modes
     numbers: Array
-    # Of each mode, its U, V and W among `shapes`.
+    # Number of the shape (U, V, W) of each mode in `shapes`.
     columns: Array
     shapes: Array
 
@@ -442,7 +441,7 @@ def _mesh(body: AxisymmetricBody) -> ProfileMesh:
     except ArgumentError as error:
         if error.argument != "size" or body.profile.size is not None:
             raise
-        # The size follows from the waves.
+        # The size depends on the waves, and they on the cutoff.
         raise error.renamed("cutoff") from None
 
 
@@ -468,19 +467,19 @@ def _families(body: AxisymmetricBody) -> list[Family]:
     return found
 
 
-# Bodies whose modes are known.
+# Bodies whose modes are computed.
 _SOLVED: WeakSet[AxisymmetricBody] = WeakSet()
 
 
 def _outline(mesh: ProfileMesh) -> tuple[Array, Array]:
-    """Return the nodes of an outline, and the sides between them by their numbers among these, shape (sides, 2)."""
+    """Return the nodes of an outline, and its sides as pairs of indices of these nodes, shape (sides, 2)."""
     used, sides = np.unique(mesh.outline, return_inverse=True)
     return used, sides.reshape(-1, 2)
 
 
 @lru_cache(maxsize=16)
 def _solution(body: AxisymmetricBody) -> _Solution:
-    # How it is damped and stands has no share in its shapes.
+    # Damping and orientation have no influence on the shapes.
     plain = replace(body, damping=0.0, axis=Z, origin=(0.0, 0.0, 0.0), turning=0.0, turning_history=Constant(), name="")
     elements = _elements(plain)
     with search_told(body, 3 * elements.count * (body._highest_order + 1)):
@@ -529,9 +528,9 @@ def _surface(body: AxisymmetricBody, largest: float) -> RingSurface:
 
 
 def _translation(body: AxisymmetricBody, elements: FourierElements, family: Family, index: int, side: int) -> Array:
-    """Return what a uniform acceleration along x, y and z gives a mode [kg^(1/2)], shape (3,).
+    """Return the drive of a mode by a uniform acceleration along x, y and z [kg^(1/2)], shape (3,).
 
-    Of ``integral rho u dV`` only order 0 has a share along the axis, and order 1 one across it.
+    ``integral rho u dV`` is zero except along the axis for order 0 and across it for order 1.
     """
     u, v, w = family.shapes[:, :, index]
     if family.kind.order == 0 and side == 0:
@@ -542,7 +541,7 @@ def _translation(body: AxisymmetricBody, elements: FourierElements, family: Fami
 
 
 def _lag(elements: FourierElements, family: Family, index: int) -> float:
-    """Return by how many radians the waves of a mode lag behind the material for each radian that this turns [1].
+    """Return the angle by which the waves of a mode lag behind the material per angle that it turns [1].
 
     Coriolis forces ``-2 W z x u'`` couple the two modes of a pair by ``2 W g``, ``g = -2 pi integral rho U V r dr dz``.
     """
@@ -551,7 +550,7 @@ def _lag(elements: FourierElements, family: Family, index: int) -> float:
 
 
 def _turning(body: AxisymmetricBody, numbers: Array, angular: Array, lags: Array) -> Turning:
-    """Return how the pairs of modes are carried round; the sine of each comes right after its cosine."""
+    """Return the turning of the pairs of modes; the sine of each comes right after its cosine."""
     first = np.flatnonzero((numbers[:, 0] > 0) & (numbers[:, 2] == 0))
     order = numbers[first, 0].astype(float)
     lag = np.where(np.isinf(angular[first]), 0.0, lags[first])

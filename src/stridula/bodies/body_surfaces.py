@@ -1,4 +1,4 @@
-"""The outer surface of a body in space, as far as sound needs it: points, normals, areas and how modes move them."""
+"""The outer surface of a body in space for sound: points, normals, areas and mode shapes."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, listed, positive
 
-# Highest frequency of sound that surfaces are cut for where none is given [Hz], parts of one in the wavelength, and the
-# speed of sound [m/s].
+# Default highest frequency of sound that surfaces are cut for [Hz], parts of a surface per wavelength, and the speed
+# of sound [m/s].
 HIGHEST, PARTS_IN_WAVE, SOUND = 24e3, 4.0, 340.0
 # Sine of the angle below which points lie in one plane.
 FLAT = 1e-6
@@ -31,9 +31,9 @@ SIZES: dict[str, tuple[Any, ...]] = {
     "frame": (3, 3),
     "origin": (3,),
 }
-# What surfaces need not tell.
+# Fields that may be left out.
 OPTIONAL = {"corners", "owners"}
-# Points round a body of revolution for one wave of its highest order, and at least.
+# Points round a body of revolution for one wave of its highest order, and the least number.
 POINTS_A_WAVE, LEAST_ROUND = 8, 24
 
 
@@ -44,18 +44,18 @@ class PointSurface:
     Attributes
     ----------
     points : ndarray, shape (points, 3)
-        Where they are in the world [m].
+        World places [m].
     normals : ndarray, shape (points, 3)
         World components of the outward unit normals.
     areas : ndarray, shape (points,)
-        Areas that they stand for [m²].
+        Areas that the points represent [m²].
     shapes : ndarray, shape (points, modes)
-        By how much each mode moves them outwards [kg^(-1/2)]; without residual shapes.
+        Outward displacement of each point in each mode [kg^(-1/2)]; without residual shapes.
     corners : ndarray, shape (pieces, 12), optional
-        World places of the four corners of each flat piece of a patch, one after the other, round its outward normal
-        [m]; of a triangle the last one twice. Squares round the points if left out.
+        World places of the four corners of each flat piece of a patch, one after the other, counter-clockwise about its
+        outward normal [m]; the last one twice for a triangle. Squares round the points if left out.
     owners : ndarray of int, shape (pieces,), optional
-        Number of the point in whose patch a piece lies; one piece is the patch if left out.
+        Number of the point whose patch each piece belongs to; one piece for each patch if left out.
     """
 
     form: ClassVar[str] = "points"
@@ -79,7 +79,7 @@ class PointSurface:
 
     @property
     def content(self) -> tuple[bytes, ...]:
-        """All its numbers."""
+        """Content of all arrays, for comparison."""
         return _content(self)
 
 
@@ -90,19 +90,19 @@ class RingSurface:
     Attributes
     ----------
     places : ndarray, shape (rings, 2)
-        Radius r and place z along the axis of each ring [m]; rings 2 k and 2 k + 1 halve a part.
+        Radius r and place z along the axis of each ring [m]; rings 2 k and 2 k + 1 are the halves of a part.
     normals : ndarray, shape (rings, 2)
         Outward unit normals along r and z.
     widths : ndarray, shape (rings,)
-        Width of the surface that each stands for [m].
+        Width of the surface that each ring represents [m].
     shapes : ndarray, shape (rings, modes)
         Amplitude of the outward motion of each mode [kg^(-1/2)]; without residual shapes.
     orders, sides : ndarray of int, shape (modes,)
-        Number of waves round the axis, and whether a mode goes as their cosine, 0, or their sine, 1.
+        Number of waves round the axis, and whether a mode varies as their cosine, 0, or their sine, 1.
     frame : ndarray, shape (3, 3)
         World components of the directions theta = 0 and theta = 90 degrees and of the axis.
     origin : ndarray, shape (3,)
-        The point of the world on the axis where z is 0 [m].
+        World place of the point of the axis where z is 0 [m].
     """
 
     form: ClassVar[str] = "rings"
@@ -117,11 +117,11 @@ class RingSurface:
 
     @property
     def content(self) -> tuple[bytes, ...]:
-        """All its numbers."""
+        """Content of all arrays, for comparison."""
         return _content(self)
 
     def round(self, theta: Array) -> Array:
-        """Return the cosine or the sine that each mode goes as at angles [rad], shape (..., modes)."""
+        """Return the cosine or the sine of each mode at angles [rad], shape (..., modes)."""
         turned = np.multiply.outer(theta, self.orders)
         return np.where(self.sides == 0, np.cos(turned), np.sin(turned))
 
@@ -143,12 +143,12 @@ BodySurface = PointSurface | RingSurface
 
 
 def surface_of(values: Mapping[str, Any]) -> BodySurface:
-    """Return the surface whose fields are given by name, as lists or arrays.
+    """Return a surface from its fields by name, as lists or arrays.
 
     Raises
     ------
     ValueError
-        If fields are missing, or numbers do not fit each other.
+        If fields are missing, or shapes do not match.
     """
     given = {name: np.asarray(value, dtype=float) for name, value in values.items() if value is not None}
     kind = RingSurface if "places" in given else PointSurface
@@ -164,7 +164,7 @@ def surface_of(values: Mapping[str, Any]) -> BodySurface:
 
 
 def check_surface(name: str, surface: BodySurface, modes: int) -> None:
-    """Raise ValueError unless the numbers of a surface are finite, and fit each other and a number of modes."""
+    """Raise ValueError unless all numbers of a surface are finite and all shapes match, with that number of modes."""
     for one in fields(surface):
         values = getattr(surface, one.name)
         sizes = {"rows": len(surface.normals), "modes": modes, "pieces": len(getattr(surface, "owners", ()))}
@@ -183,7 +183,7 @@ def _content(surface: BodySurface) -> tuple[bytes, ...]:
 
 
 def _squares(points: Array, normals: Array, areas: Array) -> Array:
-    """Return the corners of squares round points, which may lie in any direction across their normals."""
+    """Return the corners of squares round points, in any orientation about their normals."""
     askew = np.eye(3)[np.abs(normals).argmin(axis=1)]
     first = np.cross(normals, askew)
     first /= np.linalg.norm(first, axis=1)[:, None]
@@ -193,7 +193,7 @@ def _squares(points: Array, normals: Array, areas: Array) -> Array:
 
 
 def largest_part(frequency: float) -> float:
-    """Return the largest length of parts of a surface for sound up to a frequency [Hz]."""
+    """Return the largest length of parts of a surface for sound up to a frequency [Hz], in m."""
     return SOUND / (PARTS_IN_WAVE * positive("frequency", frequency))
 
 
@@ -205,7 +205,7 @@ def inscribed_radius(points: Array, normals: Array, others: Array) -> Array:
     Parameters
     ----------
     points, normals : ndarray, shape (points, d)
-        Where they touch, and the outward unit normals there.
+        Points of contact, and the outward unit normals there.
     others : ndarray, shape (others, d)
         Points all over the surface.
     """

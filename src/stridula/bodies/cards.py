@@ -1,4 +1,4 @@
-"""What notebooks show of a body: its outline, and what one wants to know of it first."""
+"""Cards of bodies in notebooks: the outline and the main properties."""
 
 from __future__ import annotations
 
@@ -10,32 +10,32 @@ import numpy as np
 
 from ..cards import Stroke, band, card, drawing, edges_seen, flattened, spoken
 
-# Degrees of freedom up to which modes are found at once, in less than a tenth of a second.
+# Degrees of freedom up to which modes are computed in less than a tenth of a second.
 FEW = 300
 
 
 class HasCard:
-    """A body that notebooks show as a card."""
+    """Mixin for bodies that notebooks show as a card."""
 
     @property
     def has_modes_at_hand(self) -> bool:
-        """Whether its modes are known already, or are found at once."""
+        """Whether its modes are already computed, or quick to compute."""
         return True
 
     @property
     def has_mass_at_hand(self) -> bool:
-        """Whether its mass is found at once."""
+        """Whether its mass is quick to compute."""
         return True
 
     def _repr_html_(self) -> str:
-        """Return a card with its outline and what is known of it, without a long search for modes."""
+        """Return a card with its outline and its properties, without a long search for modes."""
         name = getattr(self, "name", "")
         title = type(self).__name__ + (f" {name!r}" if name else "")
         return card(title, facts_of(self), drawing(outline_of(self), f"outline of the {title}"))
 
 
 def facts_of(body: Any) -> dict[str, str | Sequence[str]]:
-    """Return what is known of a body, by name."""
+    """Return the properties of a body by name, in words."""
     found: dict[str, str | Sequence[str]] = {
         "material": _materials(body),
         "section": section_words(body.section) if hasattr(body, "section") else "",
@@ -89,7 +89,7 @@ def mass_words(body: Any) -> str:
 
 
 def modes_words(body: Any) -> str:
-    """Return how many modes a body has and from where to where they go, in words, if that is known."""
+    """Return the number of modes of a body and their range of frequencies in words, if they are known."""
     if not getattr(body, "has_modes_at_hand", True):
         cutoff = getattr(body, "cutoff", None)
         return "found on first use" + ("" if cutoff is None else f", up to {spoken(cutoff, 'Hz')}")
@@ -124,7 +124,7 @@ def _listed(names: Sequence[str], most: int = 6) -> str:
 
 
 def outline_of(body: Any) -> list[Stroke]:
-    """Return how a body is drawn by itself: as a line, a rectangle, a surface or its points; empty if as nothing."""
+    """Return the drawing of a body alone: a line, a rectangle, a surface or its points; empty if there is none."""
     if hasattr(body, "drawn_at_rest"):
         surface = body.drawn_at_rest
         return [] if surface is None else [surface_stroke(surface)]
@@ -148,7 +148,7 @@ def _flat(axis: Any) -> Any:
 
 
 def _plate(plate: Any) -> list[Stroke]:
-    """Return a plate seen from above, with the line along which bodies slide."""
+    """Return a plate seen from above, with the line along which bodies slide on it."""
     x, y = plate.length, plate.width
     corners = np.array([[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]])
     line = np.column_stack(plate.track_line.point(np.array(plate.ends)))

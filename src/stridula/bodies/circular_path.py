@@ -1,4 +1,4 @@
-"""Closed paths: circles round the axis of a body of revolution, along which others slide."""
+"""Closed paths: circles round the axis of a body of revolution along which other bodies slide."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ class CircularPath(BodyPoint):
     body : AxisymmetricBody or ModalBody
         The body.
     position : tuple of float or str
-        The point: (r, theta, z) where the abscissa is zero [m, rad, m], or the name of a point with a circle.
+        Point where the abscissa is zero: (r, theta, z) [m, rad, m], or the name of a point with a circle.
     velocity : float, optional
-        Velocity at which what slides on it is carried along as a whole [m/s], as by an arm that turns about the axis:
-        its displacements are those against that arm.
+        Velocity at which a slider on it is carried along as a whole [m/s], as by an arm that turns about the axis: the
+        displacements of the slider are relative to that arm.
     history : Constant, Ramp, Harmonic or Sampled, optional
-        How that velocity goes in time, a factor on it.
+        Factor on that velocity over time.
 
     Raises
     ------
@@ -80,5 +80,5 @@ class CircularPath(BodyPoint):
         return found
 
     def travel(self, time: Array) -> Array:
-        """Return how far what slides on it has been carried along [m]."""
+        """Return the distance by which a slider on it has been carried along [m]."""
         return np.asarray(self.velocity * self.history.integral(time))

@@ -1,4 +1,4 @@
-"""Wedges, pyramids and mixtures of kinds cut into tetrahedra, so that neighbours fit whatever they were."""
+"""Wedges, pyramids and mixtures of kinds cut into tetrahedra that fit those of their neighbours."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ _PYRAMID_FACES = ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4))
 
 @dataclass(frozen=True)
 class CutKind:
-    """A kind of elements that can be cut: edges and faces by their corners, these round the outward normal.
+    """A kind of elements that can be cut: edges and faces by their corners, faces counter-clockwise from outside.
 
     Attributes
     ----------
     words : str
-        What people call it.
+        Name in messages.
     corners : int
         Number of corners.
     edges, faces : tuple
         Numbers of the corners of each.
     through : tuple
-        Pairs of corners that a line through the middle of the element joins.
+        Pairs of opposite corners of the element.
     has_middles : bool
-        Whether nodes are in the middle of edges, too.
+        Whether there are also nodes in the middle of edges.
     """
 
     words: str
@@ -66,18 +66,18 @@ CUT_KINDS = {
 
 @dataclass(frozen=True, eq=False)
 class CutMesh:
-    """Tetrahedra that elements were cut into.
+    """Elements cut into tetrahedra.
 
     Attributes
     ----------
     nodes : ndarray, shape (nodes, 3)
-        Coordinates, those in the middle of cuts last.
+        Coordinates, those of nodes in the middle of cuts last.
     elements : ndarray, shape (tetrahedra, 4 or 10)
         Their nodes, in the order of VTK.
     owner : ndarray, shape (tetrahedra,)
-        Number of the element that each was part of.
+        Number of the element that each is part of.
     ends : ndarray, shape (further nodes, 2)
-        Nodes at the ends of the cuts that the further nodes are in the middle of.
+        Nodes at both ends of the cut of each further node.
     """
 
     nodes: Array
@@ -87,27 +87,27 @@ class CutMesh:
 
 
 def can_be_cut(kinds: list[str]) -> bool:
-    """Return whether elements of these kinds, as meshio calls them, can be cut together: all of one order."""
+    """Return whether elements of these kinds (names of meshio) can be cut together: all of one order."""
     return all(kind in CUT_KINDS for kind in kinds) and len({CUT_KINDS[kind].has_middles for kind in kinds}) == 1
 
 
 def cut_into_tetrahedra(nodes: Array, blocks: list[tuple[str, Array]]) -> CutMesh:
     """Cut elements from their corner of the lowest number, and each face from its own (Dompierre et al. 1999).
 
-    A face is then cut alike from both of its sides. Nodes in the middle of edges stay; further ones come where the
-    shape functions of the face, or the element, have the middle of the cut.
+    A face is then cut alike from both of its sides. Nodes in the middle of edges stay; further nodes are placed where
+    the shape functions of the face, or of the element, have the middle of the cut.
 
     Parameters
     ----------
     nodes : ndarray, shape (nodes, 3)
         Coordinates.
     blocks : list
-        Elements by their kind, nodes in the order of meshio.
+        Pairs of a kind and its elements, nodes in the order of meshio.
 
     Raises
     ------
     ValueError
-        If a triangle of one element lies on a quadrilateral of another, which is cut the other way.
+        If a triangle of one element lies on a quadrilateral of another that is cut the other way.
     """
     corners, owner, first = [], [], 0
     for name, elements in blocks:
@@ -196,7 +196,7 @@ def _with_middles(nodes: Array, blocks: list[tuple[str, Array]], corners: Array,
 
 
 def _middles_of_cuts(kind: CutKind, nodes: Array, elements: Array) -> Iterator[tuple[Array, Array]]:
-    """Yield pairs of corners that a cut may join, and where the shape functions have its middle."""
+    """Yield pairs of corners that a cut may join, and the middle of the cut by the shape functions."""
     pairs = [frozenset(edge) for edge in kind.edges]
     for face in kind.faces:
         if len(face) == 4:

@@ -1,4 +1,4 @@
-"""Damping of a body by its modes: one ratio, one for each mode, or a law of their frequency."""
+"""Modal damping of a body: one ratio, one for each mode, or a law of the frequency."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..declared import DAMPING_RATIO, DampingRatio, Each, Number, check_declared
 
 
 class DampingLaw(Protocol):
-    """How the damping of a mode follows from its frequency; ratios may reach 1 and more, modes are overdamped then."""
+    """Damping of a mode as a function of its frequency; with ratios of 1 and more, modes are overdamped."""
 
     form: ClassVar[str]
 
@@ -32,8 +32,8 @@ def is_damping_law(given: Any) -> TypeGuard[DampingLaw]:
 class Rayleigh:
     """Damping ``C = alpha M + beta K``: the ratio of a mode is ``alpha / (2 w) + beta w / 2``.
 
-    Finite-element programs have it. ``Rayleigh(0, beta)`` is the Kelvin-Voigt material, whose stress is
-    ``E (strain + beta strain rate)``. A share of mass brakes rigid modes, too.
+    It is common in finite-element programs. ``Rayleigh(0, beta)`` is the Kelvin-Voigt material, whose stress is
+    ``E (strain + beta strain rate)``. The share of mass also brakes rigid modes.
 
     Parameters
     ----------
@@ -64,8 +64,8 @@ class Rayleigh:
 class RisingDamping:
     """Damping whose ratio rises with the frequency f of a mode: ``ratio + rise f``.
 
-    A material with a loss factor that does not depend on frequency, ``2 ratio``, and a viscous part, a rise
-    ``pi beta`` of a Kelvin-Voigt material.
+    A material with a loss factor independent of frequency, ``2 ratio``, and a viscous part; a Kelvin-Voigt material
+    has a rise of ``pi beta``.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class RisingDamping:
 
 @dataclass(frozen=True)
 class SampledDamping:
-    """Damping ratios that are known at some frequencies, such as measured ones.
+    """Damping ratios given at some frequencies, such as measured ones.
 
     Linear between them, constant beyond the first and the last.
 
@@ -109,7 +109,7 @@ class SampledDamping:
     Raises
     ------
     ValueError
-        If frequencies do not rise, an argument is out of its range, or there are not as many of both.
+        If frequencies do not rise, an argument is out of its range, or the numbers of entries differ.
     """
 
     frequency: Annotated[Sequence[float], Each(Number("Hz", least=0.0))]
@@ -158,7 +158,7 @@ def checked_damping(given: Any) -> float | tuple[float, ...] | DampingLaw:
 
 
 def check_damping_count(damping: Any, modes: int) -> None:
-    """Raise ValueError if damping is a list with not as many ratios as there are modes."""
+    """Raise ValueError if damping is a list whose length is not the number of modes."""
     if isinstance(damping, (tuple, np.ndarray)) and len(damping) != modes:
         raise ArgumentError("damping", f"have one ratio or {modes}, one for each mode kept", damping, got=len(damping))
 

@@ -1,4 +1,4 @@
-"""Lines as which bodies of the plane are drawn: places along them."""
+"""Places along the lines that represent bodies of the plane in drawings."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import numpy as np
 
 from ..arrays import Array
 
-# Pieces of a line, so that it is smooth and not drawn finer than a picture is.
+# Pieces of a line: enough for a smooth line, not finer than a picture.
 FEWEST_PIECES, MOST_PIECES = 20, 400
 
 
 def places_between(ends: tuple[float, float], pieces: int) -> Array:
-    """Return places from one end to the other [m], with a number of pieces between them where that can be drawn."""
+    """Return places from one end to the other [m], for a number of pieces within the limits of a drawing."""
     return np.linspace(*ends, min(max(pieces, FEWEST_PIECES), MOST_PIECES) + 1)

@@ -1,4 +1,4 @@
-"""Outer surfaces of bodies in space as they are drawn: polygons, and how modes move their corners."""
+"""Outer surfaces of bodies in space for drawing: polygons, and the mode shapes at their corners."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..checks import ArgumentError, listed
 from .solid_kinds import outer_faces
 from .solid_mesh import SolidMesh
 
-# Places round an axis at which a surface is drawn.
+# Least number of angles at which a surface of revolution is drawn, and angles per wave.
 FEWEST_ANGLES, ANGLES_OF_WAVE = 60, 5
 
 
@@ -26,7 +26,7 @@ class DrawnSurface:
     place : ndarray, shape (points, 3)
         World places of the corners at rest [m].
     polygons : ndarray of int, shape (polygons, corners)
-        Corners of each, round its outward normal.
+        Corners of each, counter-clockwise about its outward normal.
     shapes : ndarray, shape (points, 3, modes)
         World displacement of each corner for unit modes [kg^(-1/2)].
     """
@@ -37,19 +37,19 @@ class DrawnSurface:
 
     @property
     def swept(self) -> DrawnSurface:
-        """Itself: it is all polygons."""
+        """Itself, as it is made of polygons."""
         return self
 
     @property
     def at_rest(self) -> DrawnSurface:
-        """Itself without modes."""
+        """The surface without modes."""
         return replace(self, shapes=self.shapes[..., :0])
 
     @property
     def normals(self) -> Array:
-        """Outward unit normals of the polygons at rest, shape (polygons, 3); zero of one without an area."""
+        """Outward unit normals of the polygons at rest, shape (polygons, 3); zero for one without an area."""
         corners = self.place[self.polygons]
-        # Seen from a corner the products do not cancel.
+        # Relative to a corner the products do not cancel.
         apart = corners - corners[:, :1]
         vectors = np.cross(apart, np.roll(apart, -1, axis=1)).sum(axis=1)
         size = np.linalg.norm(vectors, axis=1, keepdims=True)
@@ -57,7 +57,7 @@ class DrawnSurface:
 
 
 def surface_of_mesh(mesh: SolidMesh, shapes: Array) -> DrawnSurface:
-    """Return the faces of elements that no other element shares, with the middles of their edges.
+    """Return the faces that belong to one element only, with the middles of their edges.
 
     Parameters
     ----------
@@ -80,22 +80,22 @@ def surface_of_mesh(mesh: SolidMesh, shapes: Array) -> DrawnSurface:
 
 @dataclass(frozen=True, eq=False)
 class DrawnRings:
-    """The surface of a body of revolution as its outline, which is swept round the axis.
+    """The surface of a body of revolution, given by its outline, to be swept round the axis.
 
     Attributes
     ----------
     place : ndarray, shape (points, 2)
         r and z of the corners of the outline [m].
     sides : ndarray of int, shape (sides, 2)
-        Corners of its sides, the profile to their left.
+        Corners of its sides, with the profile to their left.
     shapes : ndarray, shape (points, 3, modes)
         Amplitudes along r, theta and z of each corner for unit modes [kg^(-1/2)].
     orders, phases : ndarray of int, shape (modes,)
-        Number of waves round the axis, and whether a mode goes as their cosine, 0, or their sine, 1.
+        Number of waves round the axis, and whether a mode varies as their cosine, 0, or their sine, 1.
     frame : ndarray, shape (3, 3)
         World components of the directions theta = 0 and theta = 90 degrees and of the axis.
     origin : ndarray, shape (3,)
-        The point of the world on the axis where z is 0 [m].
+        World place of the point of the axis where z is 0 [m].
     """
 
     place: Array
@@ -108,13 +108,13 @@ class DrawnRings:
 
     @property
     def at_rest(self) -> DrawnSurface:
-        """Its polygons without modes."""
+        """Polygons of the surface without modes."""
         still = np.zeros(1, dtype=int)
         return replace(self, shapes=np.zeros((len(self.place), 3, 1)), orders=still, phases=still).swept.at_rest
 
     @property
     def swept(self) -> DrawnSurface:
-        """Its polygons, four places or more round the axis for each wave."""
+        """Polygons of the surface, with five or more angles for each wave round the axis."""
         count = max(FEWEST_ANGLES, ANGLES_OF_WAVE * int(self.orders.max()))
         angles = 2.0 * np.pi * np.arange(count) / count
         first, second, axial = self.frame
@@ -141,7 +141,7 @@ Drawn = DrawnSurface | DrawnRings
 
 
 def is_drawn(body: Any) -> bool:
-    """Return whether the surface of a body is known, without making it."""
+    """Return whether the surface of a body is known, without computing it."""
     return hasattr(type(body), "drawn") and getattr(body, "is_drawn", True)
 
 
@@ -152,12 +152,12 @@ def drawn_table(drawn: Drawn) -> dict[str, Array]:
 
 
 def drawn_of(values: Mapping[str, Any], modes: int) -> Drawn:
-    """Return the surface that `drawn_table` made arrays of, or lists.
+    """Return a surface from arrays or lists by name, as `drawn_table` gives them.
 
     Raises
     ------
     ValueError
-        If arrays are missing, or do not fit each other and a number of modes.
+        If arrays are missing, or their shapes do not match each other or the number of modes.
     """
     given = {name: np.asarray(value, dtype=float) for name, value in values.items() if value is not None}
     kind: Any = DrawnSurface if "polygons" in given else DrawnRings

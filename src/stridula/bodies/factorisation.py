@@ -1,4 +1,4 @@
-"""Factors of sparse symmetric positive definite matrices: the one place that knows which library makes them."""
+"""Factorisation of sparse symmetric positive definite matrices, with the best installed library."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ Solve = Callable[[Array], Array]
 
 
 def factorised(matrix: Any, order: Array | None = None) -> Solve:
-    """Return the function that solves with a sparse symmetric positive definite matrix.
+    """Return a function that solves linear systems with a sparse symmetric positive definite matrix.
 
-    CHOLMOD (scikit-sparse) or Pardiso (pypardiso) factorise it where they are installed, else SuperLU.
+    CHOLMOD (scikit-sparse) or Pardiso (pypardiso) factorise it if they are installed, else SuperLU.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def factorised(matrix: Any, order: Array | None = None) -> Solve:
     """
     for package, make in LIBRARIES.items():
         if find_spec(package) is not None:
-            # What is there may still lack its shared library.
+            # An installed package may lack its shared library.
             with suppress(ImportError):
                 return make(matrix)
     return _superlu(matrix, order)
@@ -49,20 +49,20 @@ def factorised(matrix: Any, order: Array | None = None) -> Solve:
 def dissection(graph: Any, places: Array) -> Array:
     """Return an order of elimination by nested dissection: halves of a mesh first, the nodes between them last.
 
-    On meshes in space it leaves factors of two thirds of the entries that minimum degree leaves, in less than half of
-    the time.
+    On meshes in space the factors have two thirds of the entries of those by minimum degree, in less than half the
+    time.
 
     Parameters
     ----------
     graph : scipy sparse, shape (nodes, nodes)
-        Which nodes share an element.
+        Adjacency of nodes that share an element.
     places : ndarray, shape (nodes, 3)
         Their coordinates [m].
     """
     graph = scipy.sparse.csr_array(graph)
     reached = np.zeros(len(places), dtype=bool)
     order: list[Array] = []
-    # Written from the end: what separates two parts comes after both.
+    # Filled from the end: the separator of two parts comes after both.
     parts = [np.arange(len(places))]
     while parts:
         part = parts.pop()
@@ -114,12 +114,12 @@ def _cholmod(matrix: Any) -> Solve:
     factorise = getattr(import_module("sksparse.cholmod"), "cholesky", None)
     factors = factorise(matrix.tocsc()) if factorise else None
     if not callable(factors):
-        raise ImportError("scikit-sparse of another interface")
+        raise ImportError("scikit-sparse with another interface")
     return lambda right: np.asarray(factors(right))
 
 
 def _pardiso(matrix: Any) -> Solve:
-    # Its kind 2: symmetric positive definite, the upper triangle in rows.
+    # Matrix type 2: symmetric positive definite, upper triangle in rows.
     rows = scipy.sparse.csr_matrix(scipy.sparse.triu(matrix))
     rows.sort_indices()
     solver = import_module("pypardiso").PyPardisoSolver(mtype=2)

@@ -30,9 +30,9 @@ from .sections import Circle, Material, Rectangle, Section
 
 LARGEST_ELEMENTS = 500
 SUPPORTS = tuple(FIXED_BY_SUPPORT)
-# Beams whose modes are kept: a sweep comes back to the same ones. Of those of many elements fewer, for their memory.
+# Beams whose modes are cached, as sweeps use the same ones repeatedly; fewer of those with many elements, for memory.
 FEW_ELEMENTS, MANY_BEAMS, FEW_BEAMS = 60, 128, 16
-# Points of a beam whose traces are kept.
+# Points of a beam whose traces are cached.
 MANY_POINTS = 16
 
 
@@ -42,25 +42,25 @@ class FiniteElementBeam(HasCard):
     """A straight beam of Hermite cubic and bar elements, inclined to the normal of the track.
 
     Its axis runs from its tip E to its root A along ``e1 = (sin a, cos a)``; its transverse direction is
-    ``t1 = (cos a, -sin a)``, world x along the track and y along its normal towards the slider. Euler-Bernoulli
+    ``t1 = (cos a, -sin a)``, with world x along the track and y along its normal towards the slider. Euler-Bernoulli
     bending, no shear, no rotatory inertia.
 
     Parameters
     ----------
     material : Material
-        What it is made of.
+        Material.
     section : Rectangle, Circle or Section
         Its cross-section.
     length : float
         Length [m], from tip to root.
     angle : float, optional
-        Angle from the track's normal [rad], above zero where the root is ahead of the tip in x; that of its axis, a,
-        strictly between -pi/2 and pi/2.
+        Angle a of its axis from the track's normal [rad], above zero where the root is ahead of the tip in x; strictly
+        between -pi/2 and pi/2.
     elements : int, optional
         Number of finite elements; they are equal, at most 500.
     damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
         Damping ratio of every mode [1], one for each, or a law of frequency; from 0 to 1 (1 excluded), one for each
-        mode kept in the order of rising frequency, of no effect on rigid modes.
+        mode kept in the order of rising frequency, without effect on rigid modes.
     root_support : {"free", "guided", "pinned", "clamped"}, optional
         Support of the root: free, guided (no rotation), pinned or clamped; where it is guided, both translations are
         free.
@@ -69,10 +69,10 @@ class FiniteElementBeam(HasCard):
     mass : {"consistent", "lumped"}, optional
         Mass matrix of the elements: consistent or lumped.
     cutoff : float, optional
-        Keep the modes up to this frequency, all if left out [Hz]; rigid ones always. All of them are exactly the
-        finite-element model.
+        Keep the modes up to this frequency, all if left out [Hz]; rigid ones always. With all modes the body is exactly
+        the finite-element model.
     name : str, optional
-        What it is called in records; tells equal bodies apart.
+        Name in records; distinguishes equal bodies.
 
     Raises
     ------
@@ -109,27 +109,27 @@ class FiniteElementBeam(HasCard):
 
     @property
     def dimensions(self) -> str:
-        """Its size in words."""
+        """Size in words."""
         return f"{self.length:.4g} m"
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Distances of its two ends from the first [m]."""
+        """Distances of its two ends from the tip [m]."""
         return 0.0, self.length
 
     @property
     def drawn_places(self) -> Array:
-        """Distances from the tip at which it is drawn [m], those of its nodes and of the middles between them."""
+        """Distances from the tip at which it is drawn [m]: its nodes and the middles between them."""
         return places_between(self.ends, 2 * self.elements)
 
     @property
     def has_modes_at_hand(self) -> bool:
-        """Whether its modes are known already, or are found at once."""
+        """Whether its modes are already computed, or quick to compute."""
         return self.elements <= FEW_ELEMENTS
 
     @property
     def posture(self) -> str:
-        """How it stands, in words."""
+        """Orientation in words."""
         return f"leaning {np.degrees(self.angle):.4g} deg"
 
     @property
@@ -186,7 +186,7 @@ class FiniteElementBeam(HasCard):
         return np.asarray(reduced.shapes.T @ (reduced.mass @ nodal))
 
     def root_reaction(self, held_x: bool = False) -> RootReaction:
-        """Return what gives the force that the root's support exerts, from the balance of the whole beam."""
+        """Return the force of the root's support as a function of the motion, from the balance of the whole beam."""
         return _reduced(self, held_x).reaction
 
     def _reaction(self, reduced: _Reduced) -> RootReaction:
@@ -208,9 +208,9 @@ class FiniteElementBeam(HasCard):
 class RootReaction:
     """Force of the root's support along world x and y [N] and its moment [N m], from the balance of the whole beam.
 
-    Reaction = mass times acceleration - drives - contact force, each with its lever about the root. It needs no
-    stiffness of modes that a cutoff left out; damping is internal and has no share. The moment counts positive when it
-    raises the slope of the transverse displacement along the axis.
+    Reaction = mass times acceleration - drives - contact force, each with its lever about the root. It does not need
+    the stiffness of modes beyond a cutoff; damping is internal and does not contribute. The moment is positive when it
+    increases the slope of the transverse displacement along the axis.
 
     Attributes
     ----------
@@ -229,7 +229,7 @@ class RootReaction:
 
 @dataclass(frozen=True)
 class _Reduced:
-    """What is kept of a beam: what it is asked for comes back at every point of a sweep."""
+    """Cached properties of a beam, used again at every point of a sweep."""
 
     beam: FiniteElementBeam
     modes: Modes
@@ -240,7 +240,7 @@ class _Reduced:
 
     @cached_property
     def reaction(self) -> RootReaction:
-        """What gives the force of the root's support."""
+        """Force of the root's support as a function of the motion."""
         return self.beam._reaction(self)
 
 
@@ -300,7 +300,7 @@ def _rigid_shapes(beam: FiniteElementBeam, mass: Array, fixed: Array) -> Array:
     nodes = np.linspace(0.0, beam.length, beam.elements + 1) - beam.length / 2.0
     motions = np.zeros((mass.shape[0], 3))
     motions[0::3, 0] = motions[1::3, 1] = 1.0
-    # The rotation has slope 1 / length, so that all three columns are of the order of 1 whatever the size of the beam.
+    # The rotation has slope 1 / length, so that all three columns are of the order of 1 for beams of any size.
     motions[0::3, 2], motions[1::3, 2] = np.outer(beam.axes[1], nodes / beam.length)
     motions[2::3, 2] = 1.0 / beam.length
     if fixed.size:

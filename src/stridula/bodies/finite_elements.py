@@ -19,7 +19,7 @@ FIXED_BY_SUPPORT: dict[str, tuple[int, ...]] = {
 def element_stiffness(axial: float, bending: float, length: float) -> Array:
     """Return the stiffness of one element for (u, w, theta) at both ends, shape (6, 6).
 
-    `axial` is ES [N], `bending` EI [N m²], `length` [m]. Source: Przemieniecki, *Theory of Matrix Structural
+    `axial` is ES [N], `bending` is EI [N m²], `length` is in m. Source: Przemieniecki, *Theory of Matrix Structural
     Analysis*, 1968, chapter 5.
     """
     stiffness = np.zeros((6, 6))
@@ -62,7 +62,7 @@ def world_from_axes(angle: float) -> Array:
     """Return the matrix that turns (x, y, rotation) of a node into (u, w, theta) along the element, shape (3, 3).
 
     The axis is ``e1 = (sin a, cos a)``, the transverse direction ``t1 = (cos a, -sin a)``; the pair is left-handed,
-    so theta, the slope dw/ds, is minus the counter-clockwise angle. The rotation kept is theta itself.
+    so theta, the slope dw/ds, is minus the counter-clockwise angle. The rotation of a node is theta itself.
     """
     sine, cosine = np.sin(angle), np.cos(angle)
     return np.array([[sine, cosine, 0.0], [cosine, -sine, 0.0], [0.0, 0.0, 1.0]])

@@ -1,7 +1,7 @@
 """Quadratic elements on a profile: stiffness and mass of a body of revolution for each order round its axis.
 
-``u_r = U cos n theta``, ``u_theta = V sin n theta``, ``u_z = W cos n theta``. The strains of (U, V, W) are, each with
-the cosine or the sine that belongs to it,
+``u_r = U cos n theta``, ``u_theta = V sin n theta``, ``u_z = W cos n theta``. The strains of (U, V, W), each times its
+cosine or sine, are
 
     rr: U,r    theta theta: (U + n V) / r    zz: W,z
     rz: U,z + W,r    r theta: V,r - V / r - n U / r    theta z: V,z - n W / r
@@ -23,7 +23,7 @@ from ..arrays import Array
 from .profile_mesh import SAME_PLACE, ProfileMesh
 from .sections import Material
 
-# The integrands with 1 / r are no polynomials: four points along a side leave their error below that of the elements.
+# Integrands with 1 / r are not polynomials: with four points along a side their error is below that of the elements.
 INTEGRATION_ORDER = 6
 # Operators on a shape function p: p / r, p,r and p,z.
 OVER_R, ALONG_R, ALONG_Z = range(3)
@@ -32,7 +32,7 @@ NEWTON_STEPS = 12
 
 
 def _strains() -> tuple[Array, Array]:
-    """Return what strains (six) take of (U, V, W) by each operator, and what they take of n times these."""
+    """Return the coefficients of the six strains for (U, V, W) under each operator, and for n times these."""
     plain, by_order = np.zeros((6, 3, 3)), np.zeros((6, 3, 3))
     plain[0, U, ALONG_R] = plain[1, U, OVER_R] = plain[2, W, ALONG_Z] = 1.0
     plain[3, U, ALONG_Z] = plain[3, W, ALONG_R] = plain[4, V, ALONG_R] = plain[5, V, ALONG_Z] = 1.0
@@ -43,10 +43,10 @@ def _strains() -> tuple[Array, Array]:
 
 
 def _weights() -> Array:
-    """Return the products of operators that the stiffness is made of.
+    """Return the weights of products of operators in the stiffness.
 
-    Shape (2, 3, 3, 3, 3, 3): of Lame's first constant and of the shear modulus, at each power of n, of a component and
-    an operator on it, and of another component and an operator on that.
+    Shape (2, 3, 3, 3, 3, 3): for Lame's first constant and the shear modulus, at each power of n, for a component and
+    an operator on it, and another component and an operator on that.
     """
     parts = _strains()
     dilation = [part[:3].sum(axis=0) for part in parts]
@@ -61,7 +61,7 @@ def _weights() -> Array:
 
 @dataclass(frozen=True, eq=False)
 class FourierElements:
-    """The elements of a profile; (U, V, W) of all points follow each other, each with as many degrees of freedom.
+    """The elements of a profile; the degrees of freedom are U of all points, then V, then W.
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ class FourierElements:
         return (constant + float(order) * linear + float(order) ** 2 * square).tocsc()
 
     def points_on(self, sides: Array) -> Array:
-        """Return the numbers of the points on sides of cells, shape (sides, 2), and in cells all of whose sides are."""
+        """Return the numbers of the points on sides of cells, shape (sides, 2), and in cells with all sides there."""
         mesh = self.basis.mesh
         known = {(int(low), int(high)): k for k, (low, high) in enumerate(np.sort(mesh.facets, axis=0).T)}
         facets = np.array([known[int(low), int(high)] for low, high in np.sort(sides, axis=1)], dtype=int)
@@ -124,7 +124,7 @@ class FourierElements:
 
 
 def fourier_elements(profile: ProfileMesh, materials: Sequence[Material]) -> FourierElements:
-    """Return the elements of a profile, of one material for each of its regions."""
+    """Return the elements of a profile with one material for each region."""
     basis = _basis(profile)
     young, poisson, density = (np.zeros(len(profile.cells)) for _ in range(3))
     for cells, material in zip(profile.regions.values(), materials, strict=True):
@@ -163,7 +163,7 @@ def _mass(u: Any, v: Any, w: Any) -> Any:
 
 
 def _products(basis: Any, of_cells: Array) -> list[list[Any]]:
-    """Return the integrals of all products of two operators on shape functions, with weights r and those of cells."""
+    """Return the integrals of all products of two operators on shape functions, weighted by r and a factor per cell."""
     found: list[list[Any]] = [[None] * 3 for _ in range(3)]
     for p in range(3):
         for q in range(p, 3):
@@ -187,7 +187,7 @@ def _block(weights: Array, products: list[list[list[Any]]], size: int) -> Any:
 
 
 def _reference(corners: Array, place: Array) -> Array:
-    """Return the coordinates within a cell, each from 0 to 1, of a place in it, shape (2,)."""
+    """Return the local coordinates, each from 0 to 1, of a place in a cell, shape (2,)."""
     here, edges = np.full(2, 1.0 / 3.0), corners - corners[:, :1]
     twist = edges[:, 2] - edges[:, 1] - edges[:, 3] if corners.shape[1] == 4 else np.zeros(2)
     first, second = edges[:, 1], edges[:, -1]

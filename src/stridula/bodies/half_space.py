@@ -1,4 +1,4 @@
-"""How the surface of an elastic half-space yields to uniform tractions on squares of it."""
+"""Displacement of the surface of an elastic half-space under uniform tractions on squares."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from ..checks import ArgumentError, positive
 from .matrix_input import check_finite, numbers
 from .sections import Material
 
-# Share of the side by which squares may overlap, as rounding makes them.
+# Share of the side by which squares may overlap due to rounding.
 OVERLAP = 1e-9
-# Sine between two directions below which they are one.
+# Largest cosine between directions at right angles, due to rounding.
 ALONG = 1e-9
 
 
 def surface_frame(normal: object, along: object) -> Array:
-    """Return the unit vectors along `along`, out along `normal` and across both, shape (3, 3).
+    """Return the unit vectors along `along`, along `normal` and across both, shape (3, 3).
 
     Raises
     ------
     ValueError
-        If one of them is not three numbers, or they do not lie at right angles.
+        If one of them is not three numbers, or they are not at right angles.
     """
     given = {"normal": numbers("normal", normal), "along": numbers("along", along)}
     for name, vector in given.items():
@@ -30,7 +30,7 @@ def surface_frame(normal: object, along: object) -> Array:
         check_finite(name, vector)
     out, first = (vector / np.linalg.norm(vector) for vector in given.values())
     if abs(out @ first) > ALONG:
-        raise ArgumentError("along", "lie square to the normal", along)
+        raise ArgumentError("along", "be at right angles to the normal", along)
     return np.stack([first, out, np.cross(first, out)])
 
 
@@ -40,15 +40,15 @@ def half_space_shapes(material: Material, places: Array, side: float, frame: Arr
     Parameters
     ----------
     material : Material
-        What it is made of.
+        Material.
     places : ndarray, shape (squares, 3)
         Middles of the squares [m].
     side : float
         Side of each [m].
     frame : ndarray, shape (3, 3)
-        What `surface_frame` returns; the squares' sides lie along its first and last vector.
+        Result of `surface_frame`; the squares' sides lie along its first and last vector.
     coupled : bool
-        Whether pressure moves the surface along itself, and shear out of it.
+        Whether pressure also moves the surface tangentially, and shear along the normal.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def half_space_shapes(material: Material, places: Array, side: float, frame: Arr
 
 
 def _flexibility(material: Material, apart: Array, side: float, coupled: bool) -> Array:
-    """Return displacements along, out and across in the middles for unit forces on squares, shape (3 n, 3 n).
+    """Return displacements along, out and across at the middles for unit forces on squares, shape (3 n, 3 n).
 
     Boussinesq's and Cerruti's solutions (Johnson 1985, 3.2 and 3.6) over squares, in closed form (Love 1929).
     """

@@ -1,4 +1,4 @@
-"""What is said while the modes of large bodies are found: records of the logger "stridula", at INFO."""
+"""Log messages during the search for modes of large bodies: logger "stridula", level INFO."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from time import perf_counter
 from typing import Any
 
 LOGGER = logging.getLogger("stridula")
-# Modes of fewer degrees of freedom are found before one has read that they are.
+# With fewer degrees of freedom the modes are found before a message could be read.
 LARGE = 1000
 
 
 @contextmanager
 def search_told(body: Any, size: int) -> Iterator[None]:
-    """Tell of the search for the modes of a body of `size` degrees of freedom, when it begins and when it ends.
+    """Log the beginning and the end of the search for the modes of a body of many degrees of freedom, `size`.
 
-    Where there are many. The first record has what is done as ``doing``, the last one None.
+    The first record describes the search in ``doing``, the last one has None.
     """
     if size < LARGE:
         yield

@@ -1,4 +1,4 @@
-"""What files of matrices hold, as the arguments of a `ReducedBody`."""
+"""Contents of files of matrices as arguments of a `ReducedBody`."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from .matrix_input import (
 
 
 def from_container(held: dict[str, Any]) -> dict[str, Any]:
-    """Return the arguments of a body from what a file holds, where every number and text is an array, too."""
+    """Return the arguments of a body from the content of a file, in which numbers and texts are also arrays."""
     arguments = {word: value for word, value in held.items() if word != "rayleigh"}
     if "rayleigh" in held:
         mass, stiffness = held["rayleigh"].tolist()
@@ -42,7 +42,7 @@ def from_container(held: dict[str, Any]) -> dict[str, Any]:
 def from_matrices(
     files: AlignedMatrices, points: Mapping[str, Any], translation: Any, nodes: Nodes | None = None
 ) -> dict[str, Any]:
-    """Return the arguments of a body from files of matrices, without the degrees of freedom held in them."""
+    """Return the arguments of a body from files of matrices, without the constrained degrees of freedom."""
     free, size = files.free, files.free.size
     check_size("stiffness", int(free.sum()), LARGEST_SPARSE)
     arguments: dict[str, Any] = {name: matrix[free][:, free] for name, matrix in files.matrices.items()}
@@ -60,7 +60,7 @@ def from_matrices(
 
 
 def _held_back(mass: Any, pulled: Array) -> Array:
-    """Return the mass's answer to what pulls on it."""
+    """Return the acceleration of the mass under loads."""
     if mass.shape[0] > LARGEST_SIZE:
         return factorised(sparse_symmetric("mass", sparse_square("mass", mass)))(pulled)
     dense = symmetric("mass", square("mass", mass))
@@ -69,7 +69,7 @@ def _held_back(mass: Any, pulled: Array) -> Array:
 
 
 def _by_number(word: str, value: Any, labels: Array | None, nodes: Nodes | None) -> Any:
-    """Return a point given by a node, a place or labels as numbers of degrees of freedom, any other as it is."""
+    """Return a point given by a node, a place or labels as numbers of degrees of freedom; any other unchanged."""
     if labels is None and nodes is not None:
         raise ArgumentError("mesh", "be left out where files do not say which nodes their rows are", word)
     if labels is None or (isinstance(value, np.ndarray) and value.ndim > 1):
@@ -89,7 +89,7 @@ def _is_place(value: Any) -> bool:
 
 
 def _of_node(word: str, node: int, labels: Array) -> tuple[int | None, ...]:
-    """Return the degrees of freedom along x, y and, where the files know it, z; None where the node does not move."""
+    """Return the degrees of freedom along x, y and, if the files have it, z; None where the node does not move."""
     directions = 3 if ((labels[:, 0] > 0) & (labels[:, 1] == 3)).any() else 2
     place = np.flatnonzero(labels[:, 0] == node)
     along = {int(labels[k, 1]): int(k) for k in place}
@@ -111,7 +111,7 @@ def _number(word: str, label: tuple[int, int], labels: Array) -> int:
 
 
 def _translation(value: Any, labels: Array | None, size: int) -> Array:
-    """Return rows, with labels also from the numbers of the degrees of freedom along x, y and, in space, z."""
+    """Return rows; with labels, also from the numbers of the degrees of freedom along x, y and, in space, z."""
     if labels is None or not is_labelled(value, Integral):
         return rows_of("translation", value, size)
     motion = np.stack([(labels[:, 0] > 0) & (labels[:, 1] == dof) for dof in value]).astype(float)

@@ -1,4 +1,4 @@
-"""Matrices, rows, points and damping as users give them: each is checked, and becomes an array of its own."""
+"""Checks of matrices, rows, points and damping from users, each returned as a new array."""
 
 from __future__ import annotations
 
@@ -58,9 +58,9 @@ def check_damping(matrix: Array) -> None:
 
 
 def numbers(name: str, value: Any) -> Array:
-    """Return `value` as an array of floats of its own, or raise ValueError if it is not one of real numbers."""
+    """Return `value` as a new array of floats, or raise ValueError if it is not an array of real numbers."""
     if hasattr(value, "check_format"):
-        # To unfold one whose indices lie outside would write outside of its memory.
+        # Making it dense with indices out of bounds would write outside of its memory.
         value.check_format(full_check=True)
     try:
         array = value.toarray() if scipy.sparse.issparse(value) else np.array(value)
@@ -84,7 +84,7 @@ def check_finite(name: str, array: Array) -> None:
 
 
 def square(name: str, value: Any, size: int | None = None) -> Array:
-    """Return a matrix as an array after a check of its size, which comes before anything large is made."""
+    """Return a matrix as an array; its size is checked before anything large is allocated."""
     matrix = value if hasattr(value, "shape") else numbers(name, value)
     if len(matrix.shape) != 2 or matrix.shape[0] != matrix.shape[1]:
         raise ArgumentError(name, "be a square matrix", value, got=f"the shape {tuple(matrix.shape)}")
@@ -99,7 +99,7 @@ def square(name: str, value: Any, size: int | None = None) -> Array:
 
 
 def symmetric(name: str, matrix: Array) -> Array:
-    """Return a matrix made exactly symmetric, or raise ValueError if it is not so to a hundred-millionth."""
+    """Return a matrix made exactly symmetric, or raise ValueError if its relative asymmetry exceeds 1e-8."""
     skew = np.abs(matrix - matrix.T)
     if skew.max() > SYMMETRY * np.abs(matrix).max():
         row, column = np.unravel_index(np.argmax(skew), skew.shape)
@@ -120,7 +120,7 @@ def stays_sparse(matrix: Any) -> bool:
 
 
 def sparse_square(name: str, value: Any, size: int | None = None) -> Any:
-    """Return a large sparse matrix in rows of its own, each entry once and finite."""
+    """Return a large sparse matrix as a new one in rows, without duplicates, all entries finite."""
     if not stays_sparse(value) or value.shape[0] != value.shape[1] or value.shape[0] != (size or value.shape[0]):
         wanted = f"be a sparse matrix of {size} degrees of freedom, as mass is" if size else "be a square matrix"
         raise ArgumentError(name, wanted, got=f"a {type(value).__name__} of the shape {getattr(value, 'shape', ())}")
@@ -145,7 +145,7 @@ def sparse_symmetric(name: str, matrix: Any) -> Any:
         )
     whole = scipy.sparse.csr_array(0.5 * (matrix + matrix.T))
     whole.eliminate_zeros()
-    # What was made of a file and what was made here are equal to the byte.
+    # The same bytes for matrices from a file and from memory.
     whole.indices, whole.indptr = whole.indices.astype(np.int32), whole.indptr.astype(np.int32)
     whole.sort_indices()
     for array in (whole.data, whole.indices, whole.indptr):
@@ -166,9 +166,9 @@ def check_sparse_mass(mass: Any) -> None:
 
 
 def rows_of(name: str, value: Any, size: int, directions: int | None = None) -> Array:
-    """Return rows on the degrees of freedom, one along x and y, or along x, y and z.
+    """Return rows on the degrees of freedom, one each along x and y, or along x, y and z.
 
-    `directions` is how many there must be, 2 or 3 if left out.
+    `directions` is the required number of rows; 2 or 3 if left out.
     """
     rows = value if hasattr(value, "shape") else numbers(name, value)
     allowed = [(count, size) for count in (2, 3) if directions in (None, count)]
@@ -199,7 +199,7 @@ def points_of(points: Any, size: int) -> dict[str, Array]:
 
 
 def point_rows(word: str, value: Any, size: int) -> Array:
-    """Return the rows of a point given by rows or by the numbers of two or three degrees of freedom."""
+    """Return the rows of a point, given by rows or by the numbers of two or three degrees of freedom."""
     if not is_labelled(value, Integral):
         return rows_of(word, value, size)
     rows = np.zeros((len(value), size))
@@ -212,18 +212,18 @@ def point_rows(word: str, value: Any, size: int) -> Array:
 
 
 def is_labelled(value: Any, kind: type | tuple[type, ...]) -> bool:
-    """Return whether `value` is two or three things of a kind, any of which may be None."""
+    """Return whether `value` is two or three entries of a kind, any of which may be None."""
     few = isinstance(value, (tuple, list)) or (isinstance(value, np.ndarray) and value.shape in ((2,), (3,)))
     return few and len(value) in (2, 3) and all(entry is None or isinstance(entry, kind) for entry in value)
 
 
 def is_pair(value: Any, kind: type | tuple[type, ...]) -> bool:
-    """Return whether `value` is a pair of things of a kind, either of which may be None."""
+    """Return whether `value` is a pair of entries of a kind, either of which may be None."""
     return is_labelled(value, kind) and len(value) == 2
 
 
 def damping_of(value: Any, size: int) -> float | Array | DampingLaw:
-    """Return a damping as a ratio, ratios per mode, a law of frequency, or a symmetric matrix."""
+    """Return damping as a ratio, ratios per mode, a law of frequency, or a symmetric matrix."""
     if is_damping_law(value):
         return value
     if isinstance(value, (Real, str)) or value is None:

@@ -1,4 +1,4 @@
-"""Files of meshes, read by meshio."""
+"""Reading of mesh files by meshio."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from ..disk import check_path, named, one_line
 from .profile_mesh import BODY
 
 PLANES = {"xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
-# Cells by their corners, which come first in those of higher degree.
+# Kinds of cells by their number of corners, which come first in cells of higher degree.
 TRIANGLES, QUADRILATERALS = ("triangle", "triangle6", "triangle7"), ("quad", "quad8", "quad9")
 LINES = ("line", "line3")
 CORNERS = dict.fromkeys(TRIANGLES, 3) | dict.fromkeys(QUADRILATERALS, 4) | dict.fromkeys(LINES, 2)
-# What meshio calls the surroundings of a part, which are no group of the file.
+# Name that meshio gives to the boundary of a part, which is not a group of the file.
 NO_GROUP = "gmsh:bounding_entities"
 
 
 def read_profile(
     path: str | os.PathLike[str], scale: float, plane: str
 ) -> tuple[Array, Array, dict[str, Array], dict[str, Array]]:
-    """Return nodes, cells, regions and edges of the profile in a file, as `MeshProfile` takes them.
+    """Return nodes, cells, regions and edges of the profile in a file, as arguments of `MeshProfile`.
 
     Raises
     ------
     OSError
         If the file cannot be read.
     ValueError
-        If it is no file of a mesh, or has no triangles or quadrilaterals in the plane.
+        If it is not a mesh file, or has no triangles or quadrilaterals in the plane.
     """
     columns = PLANES[choice("plane", plane, tuple(PLANES))]
     mesh = _read(path)
@@ -57,7 +57,7 @@ def read_profile(
 
 
 def numbers_of(numbers: dict[int, Array], sets: dict[int, Array]) -> Array:
-    """Return the numbers that cells of a group have, from those of each block."""
+    """Return the numbers of the cells of a group, from those of each block."""
     found = [numbers[block][chosen].ravel() for block, chosen in sets.items() if block in numbers]
     return np.sort(np.concatenate(found)) if found else np.zeros(0, dtype=int)
 
@@ -73,15 +73,15 @@ def _read(path: str | os.PathLike[str]) -> Any:
         with redirect_stdout(said), redirect_stderr(said):
             return meshio.read(path)
     except (Exception, SystemExit) as error:
-        # It leaves the program where no reader takes a file, and its readers raise anything.
+        # meshio exits the program if no reader accepts a file, and its readers raise any exception.
         words = in_one_line(error) if isinstance(error, Exception) else "no reader takes it"
         raise ArgumentError("path", "be a file of a mesh", got=f"{named(path)}: {words}") from error
 
 
 def _joined(mesh: Any, kinds: tuple[str, ...]) -> tuple[Array, dict[int, Array]]:
-    """Return the corners of all cells, and the numbers that those of each block of the file have, a row for each.
+    """Return the corners of all cells, and the numbers of the cells of each block of the file, a row for each.
 
-    Where triangles and quadrilaterals mix, these are halved.
+    Where triangles and quadrilaterals are mixed, quadrilaterals are halved.
     """
     blocks = {k: np.asarray(b.data)[:, : CORNERS[b.type]] for k, b in enumerate(mesh.cells) if b.type in kinds}
     mixed = len({block.shape[1] for block in blocks.values()}) > 1
@@ -96,7 +96,7 @@ def _joined(mesh: Any, kinds: tuple[str, ...]) -> tuple[Array, dict[int, Array]]
 
 
 def _groups(mesh: Any) -> dict[str, dict[int, Array]]:
-    """Return the named groups of a file: the cells of each block that belong to each."""
+    """Return the named groups of a file: the cells of each block that belong to a group."""
     found = {
         name: {k: np.asarray(one, dtype=int) for k, one in enumerate(sets) if one is not None and len(one)}
         for name, sets in mesh.cell_sets.items()
@@ -120,7 +120,7 @@ def _lines(mesh: Any, sets: dict[int, Array]) -> Array:
 
 
 def _divided(groups: dict[str, Array], cells: int) -> dict[str, Array]:
-    """Return the groups that have cells, and all other cells as one more; no groups if any two share cells."""
+    """Return the groups with cells, and all other cells as one more group; no groups if any two share cells."""
     regions = {name: one for name, one in groups.items() if one.size}
     times = np.bincount(np.concatenate([np.zeros(0, dtype=int), *regions.values()]), minlength=cells)
     if times.max() > 1:

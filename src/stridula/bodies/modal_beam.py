@@ -33,7 +33,7 @@ class ModalBeam(InPlane):
     Parameters
     ----------
     material : Material
-        What it is made of.
+        Material.
     section : Rectangle, Circle or Section
         Its cross-section.
     length : float
@@ -43,16 +43,15 @@ class ModalBeam(InPlane):
     axial_modes : int, optional
         Number of axial modes, unless there is a cutoff.
     damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
-        Damping ratio of every mode [1], one for each, or a law of frequency; from 0 to 1 (1 excluded), one for each
-        mode in their order.
+        Damping ratio of every mode [1], one for each in their order, or a law of frequency; from 0 to 1 (1 excluded).
     cutoff : float, optional
         Keep the modes up to this frequency [Hz]; instead of the counts above.
     name : str, optional
-        What it is called in records; tells equal bodies apart.
+        Name in records; distinguishes equal bodies.
     tension : float, optional
-        Tension [N]; constant, it stiffens bending and leaves the axial modes as they are.
+        Tension [N]; constant, it stiffens bending and does not change the axial modes.
     plane : sequence, optional
-        Unit vectors along it and towards the slider, [[x, y, z], [x, y, z]], of a beam in space; they stand for world x
+        Unit vectors along it and towards the slider, [[x, y, z], [x, y, z]], for a beam in space; they replace world x
         and y above.
 
     Raises
@@ -109,12 +108,12 @@ class ModalBeam(InPlane):
 
     @property
     def dimensions(self) -> str:
-        """Its size in words."""
+        """Size in words."""
         return f"{self.length:.4g} m"
 
     @property
     def posture(self) -> str:
-        """How it stands, in words: tracks lie along world x."""
+        """Orientation in words: empty, as tracks lie along world x."""
         return ""
 
     @property
@@ -146,13 +145,13 @@ class ModalBeam(InPlane):
         if self.cutoff is None:
             return self.bending_modes, self.axial_modes
         highest = 2.0 * np.pi * self.cutoff * (1.0 + 1e-12)
-        # The root k of w_k = highest in a form without cancellation, whatever the tension.
+        # The root k of w_k = highest in a form without cancellation for any tension.
         stiff, stretched = self._of_stiffness(1), self._of_tension(1)
         half = 0.5 * stretched / stiff * (stretched / highest)
         return int(np.sqrt(highest / stiff / (half + np.hypot(1.0, half)))), int(highest / self._axial(1))
 
     def modes(self, held_x: bool = False) -> Modes:
-        """Return the modes, bending ones first; `held_x` is for bodies whose root is driven and must be false."""
+        """Return the modes, bending ones first; `held_x` is for bodies with a driven root and must be false."""
         if held_x:
             raise ArgumentError("held_x", "be False for a ModalBeam: its ends are fixed", held_x)
         return _modes(self)
@@ -160,7 +159,7 @@ class ModalBeam(InPlane):
     def trace(self, position: float, held_x: bool = False) -> Array:
         """Return the rows that give the displacement at abscissa `position` along the world's axes from the modes.
 
-        Without a plane that is (u, w), shape (2, modes), else the shape is (3, modes).
+        Without a plane the rows are (u, w), shape (2, modes), else the shape is (3, modes).
         """
         self.check_position(position)
         bending, axial = self.harmonics
@@ -170,14 +169,14 @@ class ModalBeam(InPlane):
         return self.in_the_world(rows)
 
     def path(self) -> Path:
-        """Return the line along which others slide: its axis."""
+        """Return the path along which other bodies slide: its axis."""
         return _path(self)
 
     def support_force(self, end: str) -> Array:
         """Return the rows that give the force along its normal on the support of an end from the modes, shape (modes,).
 
-        ``T w' - EI w'''`` at the left end, its opposite at the right end. Of a mode that is ``w_k²`` times its inertia
-        about the other end, ``rho S L / k pi`` of its amplitude.
+        ``T w' - EI w'''`` at the left end, its opposite at the right end. For a mode this is ``w_k²`` times its inertia
+        about the other end, ``rho S L / k pi`` times its amplitude.
         """
         numbers = np.arange(1, self.harmonics[0] + 1)
         inertia = self._line_density * self.length / (numbers * np.pi)
@@ -191,7 +190,7 @@ class ModalBeam(InPlane):
         return self.material.density * self.section.area
 
     def _bending(self, harmonic: int | Array) -> Array:
-        # Without a tension it is that of stiffness to the last bit.
+        # Without tension this is exactly the frequency by stiffness alone.
         return np.asarray(np.hypot(self._of_stiffness(harmonic), self._of_tension(harmonic)))
 
     def _of_stiffness(self, harmonic: int | Array) -> Array:

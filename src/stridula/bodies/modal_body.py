@@ -1,4 +1,4 @@
-"""A body given by its modes: those of another program, of a measurement, or of a record."""
+"""A body given by its modes: from another program, a measurement, or a record."""
 
 from __future__ import annotations
 
@@ -27,39 +27,39 @@ from .turning import Turning
 
 @dataclass(frozen=True, eq=False)
 class ModalBody(NamedPoints):
-    """A linear body given by mass-normalised modes and what they move its points by.
+    """A linear body given by mass-normalised modes and their displacements at its points.
 
     Parameters
     ----------
     angular_frequency : array_like, shape (modes,)
         Undamped angular frequencies [rad/s], zero for rigid modes; may be empty where there are residual shapes.
     points : mapping
-        Displacement of each point along world (x, y), or in space (x, y, z), in each mode, by its name [kg^(-1/2)]: the
-        shape is (2, modes) or (3, modes), that of residual shapes, if any, in further columns.
+        Displacement of each point along world (x, y), or in space (x, y, z), in each mode, by its name [kg^(-1/2)]:
+        shape (2, modes) or (3, modes), with residual shapes, if any, in further columns.
     damping_rate : float or array_like, shape (modes,), optional
         Twice the damping ratio times the angular frequency [1/s].
     translation : array_like, optional
-        ``Phi^T M 1``: how a uniform acceleration along each direction drives each mode [kg^(1/2)], of the shape of a
-        point; gravity and uniform initial velocities need it.
+        ``Phi^T M 1``: the drive of each mode by a uniform acceleration along each direction [kg^(1/2)], of the shape of
+        a point; gravity and uniform initial velocities need it.
     residual : int, optional
-        How many of the columns, the last ones, are residual shapes, of unit stiffness and without mass.
+        Number of residual shapes, of unit stiffness and without mass; they are the last columns.
     name : str, optional
-        What it is called in records; tells equal bodies apart.
+        Name in records; distinguishes equal bodies.
     turning : Turning, optional
-        How the modes are carried round by a body that turns; they are seen from where it stands.
+        Rotation of the modes with a body that turns, seen from a frame at rest.
     velocities : mapping, optional
-        World components (x, y, z) of the velocity at which its material passes a point [m/s], by the point's name, for
-        bodies that turn.
+        World components (x, y, z) of the velocity of the material at a point [m/s], by the point's name, for bodies
+        that turn.
     outer_surface : PointSurface or RingSurface, optional
-        Its outer surface and how the modes move it, as `surface` of another body gives it; to be heard it needs one.
+        Outer surface with its mode shapes, as from `surface` of another body; sound needs it.
     circles : mapping, optional
-        Of points round whose circle about the axis others may move, by name: its radius [m], the abscissa of the point
-        along it [m], and the world components (x, y, z) of its direction there; for bodies with `turning`, whose
+        Circles about the axis along which other bodies may slide, by the name of a point on each: radius [m], abscissa
+        of the point [m], and world components (x, y, z) of the direction there; for bodies with `turning`, whose
         velocity may be 0.
     drawn : DrawnSurface or DrawnRings, optional
-        Its surface as it is drawn in pictures and films, the `drawn` of another body.
+        Surface for pictures and films, the `drawn` of another body.
     places : mapping, optional
-        Where in the world points are at rest, (x, y, z) [m], by name, for pictures and films.
+        World places (x, y, z) of points at rest [m], by name, for pictures and films.
 
     Raises
     ------
@@ -120,23 +120,24 @@ class ModalBody(NamedPoints):
         y: Sequence[float] = (0.0, 1.0, 0.0),
         name: str = "",
     ) -> ModalBody:
-        """Return a planar body as one in space, its plane anywhere.
+        """Return a planar body as a body in space, in any plane.
 
         Parameters
         ----------
         body : FiniteElementBeam, ModalBeam, PointMass or ReducedBody
             A body of the plane, without a damping matrix of its own.
         points : mapping
-            Positions on it by the names that they get, such as ``{"tip": "tip"}`` or ``{"middle": 0.5}``.
+            Positions on it by the names of the new points, such as ``{"tip": "tip"}`` or ``{"middle": 0.5}``.
         x, y : sequence of float, optional
-            World components in space of what is world x and y in the plane: two unit vectors at right angles.
+            World components in space of the plane's world x and y: two unit vectors at right angles.
         name : str, optional
-            What it is called in records, as the body if left out.
+            Name in records; that of the body if left out.
 
         Raises
         ------
         ValueError
-            If the body is one in space or has coupled modes, a position is not on it, or the vectors are no such pair.
+            If the body is in space or has coupled modes, a position is not on it, or the vectors are not unit vectors
+            at right angles.
         """
         if not hasattr(body, "trace") or body.is_spatial:
             raise ArgumentError("body", "be a body of the plane", body)
@@ -168,29 +169,30 @@ class ModalBody(NamedPoints):
         coupled: bool = True,
         name: str = "",
     ) -> ModalBody:
-        """Return an elastic half-space that yields, without mass, where squares of its surface are pushed.
+        """Return a massless elastic half-space loaded on squares of its surface.
 
-        Each square is a point, called by its number from 1, that a uniform traction over it moves in the middle. Far
-        from there it is at rest. It needs memory for ``9 squares²`` numbers, and twice that of contacts at all squares.
+        Each square is a point, named by its number from 1: a force at it is a uniform traction over the square, its
+        displacement is that of the middle. Far away the half-space is at rest. It needs memory for ``9 squares²``
+        numbers, and twice that with contacts at all squares.
 
         Parameters
         ----------
         material : Material
-            What it is made of; its density has no effect.
+            Material; its density has no effect.
         places : array_like, shape (squares, 3)
-            Middles of the squares in the world's axes [m]; squares must not overlap. Distances along the normal are
-            left out: gaps belong to contacts.
+            World places of the middles of the squares [m]; squares must not overlap. Distances along the normal are
+            ignored: gaps belong to contacts.
         side : float
             Side of each square [m].
         normal : sequence of float, optional
-            World components of what lies out of the surface, of any length.
+            World components of the outward normal, of any length.
         along : sequence of float, optional
-            World components of one direction of the sides, square to the normal.
+            World components of one direction of the sides, at right angles to the normal.
         coupled : bool, optional
-            Whether pressure also moves the surface along itself, and shear out of it, by ``1 - 2 nu``. False for a
-            half-space of half Young's modulus that stands for two like ones in contact, where the two cancel.
+            Whether pressure also moves the surface tangentially, and shear along the normal, by ``1 - 2 nu``. False for
+            a half-space of half Young's modulus that represents two equal ones in contact, where both cancel.
         name : str, optional
-            What it is called in records.
+            Name in records.
 
         Raises
         ------
@@ -240,7 +242,7 @@ class ModalBody(NamedPoints):
 
     @property
     def is_spatial(self) -> bool:
-        """Whether it moves along world z, too."""
+        """Whether it also moves along world z."""
         return len(next(iter(self.points.values()))) == 3
 
     @property
@@ -250,7 +252,7 @@ class ModalBody(NamedPoints):
 
     @property
     def has_translation(self) -> bool:
-        """Whether it is known how a translation moves it."""
+        """Whether its modal translation is known."""
         return self.translation is not None
 
     @property
@@ -259,7 +261,7 @@ class ModalBody(NamedPoints):
         return self.outer_surface is not None
 
     def surface(self) -> PointSurface | RingSurface:
-        """Return the outer surface and how the modes move it.
+        """Return the outer surface with its mode shapes.
 
         Raises
         ------
@@ -272,16 +274,16 @@ class ModalBody(NamedPoints):
 
     @property
     def is_drawn(self) -> bool:
-        """Whether its surface is known as it is drawn."""
+        """Whether its surface for drawing is known."""
         return self.drawn is not None
 
     @property
     def drawn_at_rest(self) -> DrawnSurface | None:
-        """Its surface as it is drawn, without modes; None if it is not known."""
+        """Surface for drawing, without modes; None if it is not known."""
         return None if self.drawn is None else self.drawn.at_rest
 
     def place(self, position: str) -> Array | None:
-        """Return where in the world a point is at rest [m], shape (3,), None if it is not known."""
+        """Return the world place of a point at rest [m], shape (3,), None if it is not known."""
         self.check_position(position)
         return (self.places or {}).get(position)
 
@@ -292,7 +294,7 @@ class ModalBody(NamedPoints):
 
     @property
     def total_mass(self) -> float:
-        """Mass that its modes take part with in a translation [kg], the largest; nan without a translation."""
+        """Modal mass in a translation [kg], the largest over the directions; nan without a translation."""
         if self.translation is None:
             return float("nan")
         return float(np.max(np.sum(np.asarray(self.translation) ** 2, axis=1)))
@@ -310,11 +312,11 @@ class ModalBody(NamedPoints):
         return np.asarray(self.points[position])
 
     def turning_velocity(self, position: str) -> Array:
-        """Return the velocity at which the material of a body that turns passes a point [m/s], shape (3,)."""
+        """Return the velocity of the material at a point of a body that turns [m/s], shape (3,)."""
         return np.asarray((self.velocities or {}).get(position, np.zeros(3)))
 
     def circle(self, position: str, velocity: float = 0.0, history: History | None = None) -> CircularPath:
-        """Return the circle through a point of `circles`, for others to slide along; see `CircularPath`."""
+        """Return the circle through a point of `circles`, as a track for other bodies; see `CircularPath`."""
         self.check_position(position)
         return CircularPath(self, position, velocity, Constant() if history is None else history)
 
@@ -330,7 +332,7 @@ class ModalBody(NamedPoints):
 
     @property
     def waves_round(self) -> Turning:
-        """Its pairs of modes and how they are carried round."""
+        """Pairs of modes and the way they are carried round."""
         assert self.turning is not None
         return self.turning
 

@@ -1,4 +1,4 @@
-"""A rectangular plate given by its exact modes: simply supported along its four edges, in its plane rigid or not."""
+"""A rectangular plate given by its exact modes: simply supported along its edges, rigid or elastic in its plane."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .plane_stress import PlaneStress, lowest, plane_stress, rigid
 from .planes import InPlane, checked_plane
 from .sections import Material
 
-# Sine or cosine that rounding leaves of a right angle.
+# Largest sine or cosine of a right angle due to rounding.
 ALONG_AN_EDGE = 1e-15
 FROM_0 = "two whole numbers of at least 0, along length and width, not both 0"
 
@@ -32,7 +32,7 @@ class Line:
     Parameters
     ----------
     origin : tuple of float
-        The point of abscissa 0, its distances along length and width from the plate's corner [m].
+        Point of abscissa 0: its distances along length and width from the plate's corner [m].
     direction : float, optional
         Angle from the plate's length to the line [rad], towards its width.
     """
@@ -60,51 +60,52 @@ class Line:
 
 @dataclass(frozen=True)
 class ModalPlate(InPlane):
-    """A thin rectangular plate in its exact modes, those of bending first, each kind by rising frequency.
+    """A thin rectangular plate in its exact modes, bending modes first, each kind by rising frequency.
 
     Kirchhoff, simply supported along its edges: ``w = sin(m pi x / length) sin(n pi y / width)`` and
     ``w_mn = pi² ((m / length)² + (n / width)²) sqrt(D / rho h)`` with ``D = E h³ / 12 (1 - nu²)``; modal mass
     ``rho h length width / 4`` (Leissa 1969, Vibration of Plates). Bodies slide on it along a line: world x is along the
     line, world y along the plate's normal, towards the slider.
 
-    In its own plane it is rigid, or with `in_plane` stretches and shears in plane stress, its edges held along their
-    normals and free along themselves: ``u = A sin(kx x) cos(ky y)`` along the length,
+    In its own plane it is rigid, or, with `in_plane`, elastic in plane stress, its edges held along their normals and
+    free along themselves: ``u = A sin(kx x) cos(ky y)`` along the length,
     ``v = B cos(kx x) sin(ky y)`` along the width, with ``(kx, ky) = (m pi / length, n pi / width)``. Longitudinal modes
     have ``(A, B)`` along ``(kx, ky)`` and ``w = c_L |k|``, ``c_L² = E / rho (1 - nu²)``; shear modes, with m and n of
     at least 1, have it along ``(ky, -kx)`` and ``w = c_T |k|``, ``c_T² = E / 2 rho (1 + nu)``. Modal mass
     ``rho h length width / 4`` for unit ``(A, B)``, twice that where m or n is 0 (Xing & Liu 2009, Int. J. Mech. Sci.
-    51, 246-255). Contacts are in the middle plane: what presses does not stretch it, and what rubs does not bend it.
+    51, 246-255). Contacts are in the middle plane: normal forces do not stretch it, and friction does not bend it.
 
     Parameters
     ----------
     material : Material
-        What it is made of; its Poisson's ratio counts.
+        Material, including its Poisson's ratio.
     thickness, length, width : float
         Thickness and sides [m].
     bending_modes : tuple of int, optional
-        Numbers of half-waves kept along the length and along the width; each pair of them is a mode that bends.
+        Numbers of half-waves kept along the length and along the width; each pair of them is a bending mode.
     damping : float, sequence of float, Rayleigh, RisingDamping or SampledDamping, optional
-        Damping ratio of every mode [1], from 0 to 1 (1 excluded), one for each mode in their order: those of bending as
-        in `numbers`, then those in the plane as in `in_plane_numbers`, or a law of their frequency.
+        Damping ratio of every mode [1], from 0 to 1 (1 excluded), one for each mode in their order (bending as in
+        `numbers`, then in the plane as in `in_plane_numbers`), or a law of their frequency.
     cutoff : float, optional
         Keep all the modes up to this frequency [Hz] instead of `bending_modes` and `in_plane_modes`.
     line : Line, optional
-        Where bodies slide on it; along its length through the middle of its width, from the edge, if left out.
+        Line along which bodies slide on it; along its length through the middle of its width, from the edge, if left
+        out.
     name : str, optional
-        What it is called in records; tells equal bodies apart.
+        Name in records; distinguishes equal bodies.
     in_plane : bool, optional
-        Whether it moves in its plane, too; else it is rigid there.
+        Whether it is elastic in its plane; else it is rigid there.
     in_plane_modes : tuple of int, optional
-        Most half-waves along the length and along the width of the modes in the plane, counted from 0; not both 0. A
-        pair of them is a longitudinal mode and, where neither is 0, a shear mode.
+        Largest numbers of half-waves along the length and along the width of the modes in the plane, counted from 0;
+        not both 0. Each pair of numbers is a longitudinal mode and, where neither is 0, a shear mode.
     plane : sequence, optional
-        Unit vectors along its line and along its normal, [[x, y, z], [x, y, z]], of a plate in space; they stand for
+        Unit vectors along its line and along its normal, [[x, y, z], [x, y, z]], for a plate in space; they replace
         world x and y above.
 
     Raises
     ------
     ValueError
-        If an argument is out of its range, if no mode of a kind wanted lies below `cutoff`, or if the line does not
+        If an argument is out of its range, if no mode of a requested kind lies below `cutoff`, or if the line does not
         cross the plate.
     """
 
@@ -150,12 +151,12 @@ class ModalPlate(InPlane):
 
     @property
     def dimensions(self) -> str:
-        """Its size in words."""
+        """Size in words."""
         return f"{self.length:.4g} m x {self.width:.4g} m x {self.thickness:.4g} m"
 
     @property
     def posture(self) -> str:
-        """How it stands, in words: tracks lie along world x."""
+        """Orientation in words: empty, as tracks lie along world x."""
         return ""
 
     @property
@@ -164,7 +165,7 @@ class ModalPlate(InPlane):
         return BodyPoint(self, (self.length / 2.0, self.width / 2.0))
 
     def at(self, position: float | tuple[float, float]) -> BodyPoint:
-        """Return the point at an abscissa of the line [m], or at a distance along length and one along width [m]."""
+        """Return the point at an abscissa of the line [m], or at distances along length and width [m]."""
         return BodyPoint(self, position if isinstance(position, (int, float)) else _pair("position", position))
 
     def check_position(self, position: Any) -> None:
@@ -188,13 +189,13 @@ class ModalPlate(InPlane):
     @property
     def drawn_places(self) -> Array:
         """Abscissas of the line at which it is drawn, as a cut along it [m], four for each half-wave of bending."""
-        # Along the line a product of two sines has the sum of their wavenumbers.
+        # Along the line the highest wavenumber of a product of two sines is the sum of theirs.
         highest = float((self.wavenumbers @ np.abs(self.track_line.tangent)).max())
         low, high = self.ends
         return places_between(self.ends, math.ceil(4.0 * highest * (high - low) / math.pi))
 
     def abscissa(self, position: float | tuple[float, float]) -> float:
-        """Return the abscissa of the place on the line that is nearest to a point [m]."""
+        """Return the abscissa of the point of the line nearest to a position [m]."""
         if not isinstance(position, tuple):
             return position
         return float(np.subtract(position, self.track_line.origin) @ np.array(self.track_line.tangent))
@@ -216,22 +217,22 @@ class ModalPlate(InPlane):
 
     @property
     def amplitude(self) -> float:
-        """Largest value of a mass-normalised shape of bending [kg^(-1/2)], ``sqrt(4 / rho h length width)``."""
+        """Largest value of a mass-normalised bending shape [kg^(-1/2)], ``sqrt(4 / rho h length width)``."""
         return float(np.sqrt(4.0 / self.total_mass))
 
     @property
     def harmonics(self) -> tuple[int, int]:
-        """Numbers of modes kept that bend and that move in the plane."""
+        """Numbers of bending modes and of modes in the plane kept."""
         return len(self.numbers), len(self.in_plane_numbers)
 
     @property
     def numbers(self) -> Array:
-        """Numbers (m, n) of half-waves of each mode that bends along length and width, shape (bending modes, 2)."""
+        """Numbers (m, n) of half-waves of each bending mode along length and width, shape (bending modes, 2)."""
         return _numbers(self)
 
     @property
     def wavenumbers(self) -> Array:
-        """Wavenumbers (m pi / length, n pi / width) of each mode that bends [rad/m], shape (bending modes, 2)."""
+        """Wavenumbers (m pi / length, n pi / width) of each bending mode [rad/m], shape (bending modes, 2)."""
         return np.asarray(self.numbers * (np.pi / np.array([self.length, self.width])))
 
     @property
@@ -248,13 +249,13 @@ class ModalPlate(InPlane):
         return _in_plane(self).polarisations
 
     def modes(self, held_x: bool = False) -> Modes:
-        """Return the modes; `held_x` is for bodies whose root is driven and must be false."""
+        """Return the modes; `held_x` is for bodies with a driven root and must be false."""
         if held_x:
             raise ArgumentError("held_x", "be False for a ModalPlate: its edges are fixed", held_x)
         return _modes(self)
 
     def shapes(self, x: Any, y: Any) -> Array:
-        """Return the mass-normalised shapes of the modes that bend at points of the plate.
+        """Return the mass-normalised shapes of the bending modes at points of the plate.
 
         Parameters
         ----------
@@ -297,7 +298,7 @@ class ModalPlate(InPlane):
         position : float or tuple of float
             Abscissa of the line, or distances along length and width [m].
         held_x : bool, optional
-            Of no effect.
+            Without effect.
 
         Returns
         -------
@@ -313,10 +314,10 @@ class ModalPlate(InPlane):
         return self.in_the_world(rows)
 
     def path(self) -> Path:
-        """Return the line along which others slide.
+        """Return the path along which other bodies slide.
 
-        ``sin a sin b = [cos(a - b) - cos(a + b)] / 2``, and so for displacements in the plane. On a line along a side
-        the angle across it stays: one sine is left.
+        ``sin a sin b = [cos(a - b) - cos(a + b)] / 2``, and similarly for displacements in the plane. On a line along a
+        side the angle across it is constant, so that one sine remains.
         """
         (x, y), direction = self.track_line.origin, np.array(self.track_line.tangent)
         sides = np.array([self.length, self.width])
@@ -335,7 +336,7 @@ class ModalPlate(InPlane):
 
     @property
     def in_plane_shares(self) -> Array:
-        """What products of sines S and cosines C, of kx x times of ky y, give of each mode in the plane on the line.
+        """Coefficients of the products of sines S and cosines C, of kx x times of ky y, in each mode in the plane.
 
         Displacement along the line is ``shares[0] S C + shares[1] C S`` [kg^(-1/2)]; shape (2, in-plane modes).
         """
@@ -404,7 +405,7 @@ def _ends(plate: ModalPlate, line: Line) -> tuple[float, float]:
         if rate:
             first, second = sorted((-start / rate, (side - start) / rate))
             low, high = max(low, first), min(high, second)
-    # No minus zero.
+    # Turns -0.0 into 0.0.
     return low + 0.0, high + 0.0
 
 
@@ -413,7 +414,7 @@ def _numbers(plate: ModalPlate) -> Array:
     if plate.cutoff is None:
         most = plate.bending_modes
     else:
-        # Half-waves that one side alone would have at the cut-off.
+        # Half-waves at the cutoff with waves along one side alone.
         waves = math.sqrt(2.0 * plate.cutoff / (math.pi * math.sqrt(plate.rigidity / plate.surface_density)))
         most = (int(waves * plate.length) + 1, int(waves * plate.width) + 1)
     check_mode_count(math.prod(most), plate.cutoff)
@@ -442,7 +443,7 @@ def _modes(plate: ModalPlate) -> Modes:
     mean = (1.0 - (-1.0) ** m) / (m * np.pi) * (1.0 - (-1.0) ** n) / (n * np.pi)
     translation = np.zeros((2, sum(plate.harmonics)))
     translation[1, : len(m)] = plate.total_mass * plate.amplitude * mean
-    # In the plane, also only those whose cosine has no half-wave.
+    # In the plane, only those whose cosine has no half-wave.
     sheet = _in_plane(plate)
     along, across = sheet.numbers.T
     moved = sheet.amplitudes * [_mean_of_sine(along) * (across == 0), _mean_of_sine(across) * (along == 0)]

@@ -1,4 +1,4 @@
-"""What every linear body ends as: mass-normalised modes."""
+"""Mass-normalised modes, to which every linear body is reduced, and the protocol of bodies."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ class Modes:
     damping_rate : ndarray, shape (modes,)
         ``d = 2 zeta w`` [1/s] for a damping ratio zeta; from ``2 w`` on a mode is overdamped.
     translation : ndarray, shape (2, modes) or (3, modes)
-        ``Phi^T M 1``: how a uniform acceleration along world x, y and, in space, z drives each mode [kg^(1/2)].
+        ``Phi^T M 1``: the drive of each mode by a uniform acceleration along world x, y and, in space, z [kg^(1/2)].
     damping_matrix : ndarray, shape (modes, modes), optional
-        Modal damping matrix ``Phi^T C Phi`` [1/s] where it is not diagonal; `damping_rate` is its diagonal then.
+        Modal damping matrix ``Phi^T C Phi`` [1/s] if it is not diagonal; `damping_rate` is then its diagonal.
     turning : Turning, optional
-        How the modes are carried round by a body that turns.
+        Rotation of the modes with a body that turns.
     """
 
     angular_frequency: Array
@@ -50,12 +50,12 @@ class Modes:
 
     @property
     def massless(self) -> Array:
-        """Which are residual shapes, shape (modes,)."""
+        """Mask of the residual shapes, shape (modes,)."""
         return np.isinf(self.angular_frequency)
 
     @property
     def stiffness(self) -> Array:
-        """Modal stiffnesses, shape (modes,): w² [1/s²], and 1 of residual shapes."""
+        """Modal stiffnesses, shape (modes,): w² [1/s²], and 1 for residual shapes."""
         return np.where(self.massless, 1.0, self.angular_frequency) ** 2
 
     @property
@@ -74,7 +74,7 @@ Described = TypeVar("Described", bound=type)
 
 
 def hashed_once(described: Described) -> Described:
-    """Let a frozen dataclass remember its hash: bodies are looked up by all that they are made of, many times a run."""
+    """Make a frozen dataclass cache its hash: bodies are looked up by all their fields many times in a run."""
     by_value: Callable[[Any], int] = described.__hash__  # type: ignore[assignment]
 
     def hashed(self: Any) -> int:
@@ -85,7 +85,7 @@ def hashed_once(described: Described) -> Described:
         return found
 
     def state(self: Any) -> dict[str, Any]:
-        # In another process texts have another hash.
+        # Hashes of texts differ between processes.
         return {name: value for name, value in self.__dict__.items() if name != "_hash"}
 
     described.__hash__ = hashed  # type: ignore[method-assign, assignment]
@@ -94,14 +94,14 @@ def hashed_once(described: Described) -> Described:
 
 
 class Body(Protocol):
-    """What every body can say of itself; points are named by what `check_position` admits.
+    """Protocol of all bodies; a position of a point is anything that `check_position` accepts.
 
     Attributes
     ----------
     kind : str
-        Its name in scenarios.
+        Name in scenarios.
     has_positions : bool
-        Whether positions along it are points, beside the named ones.
+        Whether positions along it are points, besides the named ones.
     """
 
     kind: ClassVar[str]
@@ -109,7 +109,7 @@ class Body(Protocol):
 
     @property
     def is_spatial(self) -> bool:
-        """Whether it moves along world z, too; else it is rigid there."""
+        """Whether it also moves along world z; else it is rigid there."""
 
     @property
     def point_names(self) -> tuple[str, ...]:
@@ -117,19 +117,19 @@ class Body(Protocol):
 
     @property
     def has_translation(self) -> bool:
-        """Whether it is known how a translation moves it."""
+        """Whether its modal translation is known."""
 
     @property
     def dimensions(self) -> str:
-        """Its size in words, empty where it has none."""
+        """Size in words, empty if it has none."""
 
     @property
     def posture(self) -> str:
-        """How it stands, in words, empty where there is nothing to say."""
+        """Orientation in words, empty if it has none."""
 
     @property
     def name(self) -> str:
-        """What it is called in records; tells equal bodies apart."""
+        """Name in records; distinguishes equal bodies."""
 
     @property
     def axes(self) -> Array:
@@ -140,16 +140,16 @@ class Body(Protocol):
         """Mass [kg]."""
 
     def modes(self, held_x: bool = False) -> Modes:
-        """Return the modes; with `held_x` those left when its driven end does not move along x."""
+        """Return the modes; with `held_x` those with the driven end held along x."""
 
     def trace(self, position: Any, held_x: bool = False) -> Array:
         """Return the rows that give the world displacement at `position` from the modes.
 
-        Their shape is (2, modes) along x and y, or (3, modes) of a body in space.
+        Shape (2, modes) along x and y, or (3, modes) for a body in space.
         """
 
     def check_position(self, position: Any) -> None:
-        """Raise ValueError if it has no point at `position`."""
+        """Raise ValueError if there is no point at `position`."""
 
 
 class HasRoot(Protocol):
@@ -161,16 +161,16 @@ class HasRoot(Protocol):
 
     @property
     def tip_support(self) -> str:
-        """What holds the other end."""
+        """Support of the other end."""
 
     def modes(self, held_x: bool = False) -> Modes:
-        """Return the modes; with `held_x` those left when the root does not move along x."""
+        """Return the modes; with `held_x` those with the root held along x."""
 
     def root_lever(self, position: Any) -> Array:
         """Return forces and moment at the root for forces at `position` along world x and y, shape (3, 2)."""
 
     def root_reaction(self, held_x: bool = False) -> Any:
-        """Return what tells the forces of the support of the root."""
+        """Return the force of the support of the root as a function of the motion."""
 
 
 def has_root(body: Any) -> TypeGuard[HasRoot]:
@@ -205,20 +205,20 @@ class BodyPoint:
         if check is None or isinstance(self.body, type):
             raise ArgumentError("body", "be a body of stridula", self.body)
         if isinstance(self.position, np.generic):
-            # Numbers of NumPy are not equal or unequal to a pair, but an array of both.
+            # Comparing a NumPy number with a pair gives an array.
             object.__setattr__(self, "position", self.position.item())
         check(self.position)
 
     @property
     def label(self) -> str:
-        """Its name, or the numbers of its position to the last digit."""
+        """Name, or the numbers of its position in full precision."""
         return (
             self.position if isinstance(self.position, str) else ", ".join(map(repr, np.ravel(self.position).tolist()))
         )
 
     @property
     def point_name(self) -> str | None:
-        """Its name among the points of its body, None for a position between."""
+        """Name among the points of its body, None for a position between them."""
         if isinstance(self.position, str):
             return self.position
         named = ((name, getattr(self.body, name).position) for name in self.body.point_names)
@@ -226,17 +226,17 @@ class BodyPoint:
 
     @property
     def place(self) -> Array | None:
-        """Where in the world it is at rest [m], shape (3,), None if it is not known."""
+        """World place at rest [m], shape (3,), None if it is not known."""
         found = getattr(self.body, "place", None)
         return None if found is None else found(self.position)
 
     @property
     def circle(self) -> CircularPath | None:
-        """The closed path that it stands for, None for a point alone."""
+        """The closed path that it represents, None for a point alone."""
         return None
 
     @property
     def turning_velocity(self) -> Array:
-        """World components of the velocity at which the material of a body that turns passes it [m/s], shape (3,)."""
+        """World components of the velocity of the material there if the body turns [m/s], shape (3,)."""
         found = getattr(self.body, "turning_velocity", None)
         return np.zeros(3) if found is None else np.asarray(found(self.position))

@@ -1,4 +1,4 @@
-"""A body whose points have names and no positions between them."""
+"""Bodies whose points have names, without positions between them."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from .modes import Body, BodyPoint
 
 
 class NamedPoints(HasCard):
-    """What bodies of named points share; the names are those of `point_names`."""
+    """Base class of bodies with named points; the names are those of `point_names`."""
 
     has_positions: ClassVar[bool] = False
 
     def at(self: Body, position: str) -> BodyPoint:
-        """Return the point called `position`."""
+        """Return the point of the name `position`."""
         return BodyPoint(self, position)
 
     def check_position(self: Body, position: str) -> None:
-        """Raise ValueError if no point is called `position`."""
+        """Raise ValueError if no point has the name `position`."""
         choice("position", position, self.point_names)
 
     @property
     def dimensions(self) -> str:
-        """Its size in words, empty without one."""
+        """Size in words, empty without one."""
         return ""
 
     @property
     def posture(self) -> str:
-        """How it stands, in words, empty where there is nothing to say."""
+        """Orientation in words, empty without one."""
         return ""

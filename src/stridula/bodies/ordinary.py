@@ -1,4 +1,4 @@
-"""What numbers can hold: sizes that neither underflow nor overflow, and counts of modes that fit into memory."""
+"""Checks that numbers neither underflow nor overflow, and that modes fit into memory."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy as np
 
 from ..checks import ArgumentError
 
-# A hundred times what a track has that is heard: a step of so many takes a tenth of a millisecond.
+# A hundred times the modes of a track in the audible range: a step with so many takes a tenth of a millisecond.
 MOST_MODES = 50_000
-# Modes that springs and dashpots couple are marched in dense matrices.
+# Modes coupled by springs and dashpots are marched with dense matrices.
 MOST_COUPLED_MODES = 4000
 
 
 class NotOrdinary(ArgumentError):
-    """Numbers so large or so small that what follows from them cannot be held."""
+    """Numbers so large or so small that results from them overflow or underflow."""
 
     def __init__(self, names: str) -> None:
         super().__init__(names, "hold numbers of ordinary size", got="ones that overflow")
@@ -29,7 +29,7 @@ class NotOrdinary(ArgumentError):
 
 @contextmanager
 def of_ordinary_size(names: str) -> Iterator[None]:
-    """Raise NotOrdinary, of what `names` says, where numbers inside overflow, divide by zero or leave no inverse."""
+    """Raise NotOrdinary for `names` where numbers inside overflow, are divided by zero or have no inverse."""
     try:
         with np.errstate(divide="raise", over="raise", invalid="raise"):
             yield
@@ -38,13 +38,13 @@ def of_ordinary_size(names: str) -> Iterator[None]:
 
 
 def check_overflow(*arrays: np.ndarray) -> None:
-    """Raise OverflowError where an array holds what is not finite."""
+    """Raise OverflowError if an array holds values that are not finite."""
     if not all(np.isfinite(array).all() for array in arrays):
         raise OverflowError
 
 
 def check_first_modes(first: tuple[Any, ...], cutoff: float) -> None:
-    """Raise ValueError where lowest frequencies [rad/s] are no numbers above 0, and cannot be counted to a cutoff."""
+    """Raise ValueError if a lowest frequency [rad/s] is not a finite number above 0."""
     for frequency in first:
         if not 0.0 < frequency < math.inf:
             raise ArgumentError(
@@ -55,7 +55,7 @@ def check_first_modes(first: tuple[Any, ...], cutoff: float) -> None:
 
 
 def check_mode_count(modes: float, cutoff: float | None) -> None:
-    """Raise ValueError where a body has more than `MOST_MODES` modes."""
+    """Raise ValueError if a body has more than `MOST_MODES` modes."""
     if modes <= MOST_MODES:
         return
     if cutoff is None:
@@ -66,7 +66,7 @@ def check_mode_count(modes: float, cutoff: float | None) -> None:
 
 
 def check_coupled_count(modes: int) -> None:
-    """Raise ValueError where more than `MOST_COUPLED_MODES` modes are coupled."""
+    """Raise ValueError if more than `MOST_COUPLED_MODES` modes are coupled."""
     if modes > MOST_COUPLED_MODES:
         raise ArgumentError(
             "connections",

@@ -1,4 +1,4 @@
-"""Paths: what the modes of a body look like along a line on which others slide."""
+"""Paths: mode shapes of a body along a line on which other bodies slide."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class Waves:
     multiples : ndarray of int, shape (modes, 2)
         Multiples (m, n) of the two angles of the path.
     amplitude : ndarray, shape (modes, 2)
-        Amplitudes of the sum and of the difference of the angles [kg^(-1/2)]; the second is zero where n is.
+        Amplitudes for the sum and the difference of the angles [kg^(-1/2)]; the second is zero where n is.
     cosines : bool, optional
-        Whether they are cosines.
+        Whether they are cosines instead of sines.
     """
 
     multiples: Array
@@ -54,10 +54,10 @@ class Waves:
 
 @dataclass(frozen=True)
 class Path:
-    """A line on a body: along it every mode is at most two sinusoids of the abscissa s.
+    """A line on a body along which every mode is at most two sinusoids of the abscissa s.
 
-    They are those of two angles, ``rate s + phase``, each from 0 to pi between the ends. Modes that move the surface
-    along its normal come first, then those that move it along the tangent.
+    Their arguments are combinations of two angles, ``rate s + phase``, each from 0 to pi between the ends. Modes along
+    the normal come first, then modes along the tangent.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class Path:
     def traces(self, abscissa: float) -> tuple[Array, Array]:
         """Return the displacements (tangent, normal) at an abscissa [m] from the modes, and their derivatives along it.
 
-        Both of shape (2, modes).
+        Both have the shape (2, modes).
         """
         bending = len(self.normal.multiples)
         rows, slopes = np.zeros((2, 2, bending + len(self.tangential.multiples)))
@@ -88,7 +88,7 @@ class Path:
 
 
 class Track(Body, Protocol):
-    """A body that others slide along: any that has a path."""
+    """A body on which other bodies slide: any with a path."""
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -99,11 +99,11 @@ class Track(Body, Protocol):
         """The point in its middle."""
 
     def path(self) -> Path:
-        """Return the line along which others slide."""
+        """Return the path along which other bodies slide."""
 
 
 def is_track(body: Any) -> TypeGuard[Track]:
-    """Return whether others slide along a body: asked of every run, a Protocol takes long to be asked."""
+    """Return whether other bodies slide along a body; faster than a check of the Protocol."""
     return hasattr(body, "path")
 
 

@@ -1,4 +1,4 @@
-"""The modes of a rectangular sheet in its plane, its edges held along their normals and free along themselves."""
+"""Modes of a rectangular sheet in its plane, its edges held along their normals and free along themselves."""
 
 from __future__ import annotations
 
@@ -52,13 +52,13 @@ def lowest(material: Material, length: float, width: float) -> float:
 def plane_stress(
     material: Material, length: float, width: float, most: tuple[int, int], cutoff: float | None
 ) -> PlaneStress:
-    """Return the modes with at most so many half-waves along length and width, or with all up to a cut-off [Hz]."""
+    """Return the modes with at most `most` half-waves along length and width, or all up to a cutoff [Hz]."""
     sides, (longitudinal, shear) = np.array([length, width]), speeds(material)
     if cutoff is not None:
         most = (int(2.0 * cutoff * length / shear) + 1, int(2.0 * cutoff * width / shear) + 1)
     check_mode_count(2 * (most[0] + 1) * (most[1] + 1), cutoff)
     m, n = (numbers.ravel() for numbers in np.meshgrid(*(np.arange(k + 1) for k in most), indexing="ij"))
-    # A sheet held along its normals does not move as a whole.
+    # A sheet held along the normals of its edges has no rigid motion.
     numbers = np.stack([m, n], axis=1)[1:]
     waves = numbers / sides
     size = np.hypot(*waves.T)
@@ -79,7 +79,7 @@ def rigid(length: float, width: float) -> PlaneStress:
 
 
 def of_numbers(numbers: Array, polarisations: Array, frequency: Array, sides: Array) -> PlaneStress:
-    """Return modes of these half-waves over sides [m], all arrays read-only."""
+    """Return the modes with these half-waves over sides [m], all arrays read-only."""
     # A cosine of no half-wave has a mean square of 1, any other sine or cosine of 1/2.
     squares = np.where(numbers == 0, 1.0, 0.5).prod(axis=1)
     found = PlaneStress(

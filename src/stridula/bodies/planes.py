@@ -1,4 +1,4 @@
-"""Bodies of the plane that may be put into another plane of space."""
+"""Planar bodies that may be placed in any plane of space."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from ..checks import ArgumentError
 from .cards import HasCard
 from .matrix_input import numbers
 
-# Error of unit vectors at right angles that rounding may make.
+# Largest error of unit vectors at right angles due to rounding.
 SQUARE = 1e-12
 
 
 def checked_plane(name: str, given: Any) -> tuple[tuple[float, ...], ...]:
-    """Return what in space is x and y of a plane, two unit vectors at right angles."""
+    """Return the directions in space of x and y of a plane, two unit vectors at right angles."""
     axes = numbers(name, given)
     if axes.shape != (2, 3) or not np.allclose(axes @ axes.T, np.eye(2), rtol=0.0, atol=SQUARE):
         raise ArgumentError(name, "be unit vectors at right angles, three numbers each", given)
@@ -24,13 +24,13 @@ def checked_plane(name: str, given: Any) -> tuple[tuple[float, ...], ...]:
 
 
 class InPlane(HasCard):
-    """What tracks share that lie in a plane of their own, or in that of world x and y."""
+    """Base class of tracks in a plane of their own, or in the plane of world x and y."""
 
     plane: Any
 
     @property
     def is_spatial(self) -> bool:
-        """Whether its plane is given; it takes part in systems in space without, too, rigid along world z."""
+        """Whether its plane is given; without one it may also be in systems in space, rigid along world z."""
         return self.plane is not None
 
     @property
@@ -39,5 +39,5 @@ class InPlane(HasCard):
         return np.eye(2) if self.plane is None else np.array(self.plane)
 
     def in_the_world(self, rows: Array) -> Array:
-        """Return rows along world x and y, in space z, from those along it and along its normal, shape (2, modes)."""
+        """Return rows along world x, y and, in space, z from those along it and along its normal, shape (2, modes)."""
         return rows if self.plane is None else np.asarray(self.axes.T @ rows)

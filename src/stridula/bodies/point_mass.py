@@ -13,20 +13,20 @@ from ..declared import Name, Number, check_declared
 from .modes import BodyPoint, Modes
 from .named_points import NamedPoints
 
-# Below, stiffness over mass overflows.
+# Below this, stiffness over mass overflows.
 SMALLEST_MASS = 1e-100
 
 
 @dataclass(frozen=True)
 class PointMass(NamedPoints):
-    """A mass that moves freely along world x and y and does not turn.
+    """A point mass that moves freely along world x and y and does not turn.
 
     Parameters
     ----------
     mass : float
         Mass [kg]; at least 1e-100.
     name : str, optional
-        What it is called in records; tells equal bodies apart.
+        Name in records; distinguishes equal bodies.
 
     Raises
     ------
@@ -62,7 +62,7 @@ class PointMass(NamedPoints):
         return float(self.mass)
 
     def modes(self, held_x: bool = False) -> Modes:
-        """Return the two rigid modes, along x and along y; `held_x` is for bodies with a driven end, must be false."""
+        """Return both rigid modes, along x and along y; `held_x` is for bodies with a driven end and must be false."""
         if held_x:
             raise ArgumentError("held_x", "be False for a PointMass: it has no driven end", held_x)
         return Modes(np.zeros(2), np.zeros(2), np.eye(2) * np.sqrt(self.mass))

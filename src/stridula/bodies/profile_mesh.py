@@ -1,4 +1,4 @@
-"""The cells of a profile in the half-plane (r, z): checked, with places that can be held and points that are found."""
+"""The cells of a profile in the half-plane (r, z), with checks, named places and a search for points."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError
 
-# Share of the profile's size below which two places are one.
+# Distance below which two places are the same, relative to the profile's size.
 SAME_PLACE = 1e-9
 MOST_CELLS = 100_000
-# The region of profiles that have one, and of cells in no other.
+# Name of the only region of a profile, and of cells in no other region.
 BODY = "body"
 # Sides of the smallest box around a region.
 SIDES = ("inner", "outer", "bottom", "top")
-# Growth of the sides of cells with the distance from smaller ones, and points of an interval at which it is reckoned.
+# Growth of the sides of cells with the distance from smaller ones, and samples of an interval to integrate it.
 GROWTH, SAMPLES = 0.5, 257
-# Rows of a table of pairs of sides that is made at once.
+# Sides whose pairs with all others are checked at once.
 SIDES_AT_ONCE = 256
 
 
@@ -55,7 +55,7 @@ class ProfileMesh:
 
     @cached_property
     def sides(self) -> Array:
-        """Pairs of nodes of all the sides of cells, each once, the smaller number first, shape (sides, 2)."""
+        """Pairs of nodes of all sides of cells, each once, the smaller number first, shape (sides, 2)."""
         return np.unique(np.sort(_sides(self.cells).reshape(-1, 2)), axis=0)
 
     @property
@@ -67,14 +67,14 @@ class ProfileMesh:
 
     @property
     def outline(self) -> Array:
-        """Pairs of nodes of the sides of one cell alone, the profile to their left, shape (sides, 2)."""
+        """Pairs of nodes of the sides that belong to one cell only, the profile to their left, shape (sides, 2)."""
         sides = _sides(self.cells).reshape(-1, 2)
         _, which, times = np.unique(np.sort(sides), axis=0, return_inverse=True, return_counts=True)
         return np.asarray(sides[times[which.ravel()] == 1])
 
     @property
     def thinnest(self) -> float:
-        """Least distance through the profile, straight in from the middle of a side of its outline [m]."""
+        """Least thickness of the profile, along the normals at the middles of the sides of its outline [m]."""
         ends = self.nodes[self.outline]
         start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
         inward = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.linalg.norm(along, axis=1)[:, None]
@@ -120,7 +120,7 @@ class ProfileMesh:
         return np.asarray(self.sides[inside[self.sides].all(axis=1)])
 
     def cell_at(self, r: float, z: float) -> int | None:
-        """Return the number of the cell that a point [m] lies in, None outside."""
+        """Return the number of the cell that contains a point [m], None outside."""
         sides = self.nodes[_sides(self.cells)]
         along = sides[:, :, 1] - sides[:, :, 0]
         to_point = np.array([r, z]) - sides[:, :, 0]
@@ -136,12 +136,12 @@ class ProfileMesh:
 def checked_mesh(
     name: str, nodes: Array, cells: Array, regions: Mapping[str, Array], edges: Mapping[str, Array] | None = None
 ) -> ProfileMesh:
-    """Return the cells of a profile, counter-clockwise, nodes within rounding of the axis on it.
+    """Return the cells of a profile, counter-clockwise; nodes within rounding of the axis are put on it.
 
     Raises
     ------
     ValueError
-        If they cross the axis or each other, are not convex, lie in several pieces or are too many.
+        If they cross the axis or each other, are not convex, form several pieces or are too many.
     """
     if len(cells) > MOST_CELLS:
         raise ArgumentError(name, f"have at most {MOST_CELLS} cells", got=f"{len(cells)}: coarser ones may do")
@@ -186,7 +186,7 @@ def _counter_clockwise(name: str, nodes: Array, cells: Array) -> Array:
 
 
 def _check_whole(name: str, mesh: ProfileMesh) -> None:
-    """Raise ValueError unless cells hang together by their sides."""
+    """Raise ValueError unless all cells are connected by their sides."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
@@ -200,7 +200,7 @@ def _check_whole(name: str, mesh: ProfileMesh) -> None:
 
 
 def _check_edge(name: str, mesh: ProfileMesh) -> None:
-    """Raise ValueError where the outline of the profile crosses or touches itself."""
+    """Raise ValueError if the outline of the profile crosses or touches itself."""
     every, times = np.unique(np.sort(_sides(mesh.cells).reshape(-1, 2)), axis=0, return_counts=True)
     outline = every[times == 1]
     found = np.flatnonzero(times > 2)
@@ -217,7 +217,7 @@ def _check_edge(name: str, mesh: ProfileMesh) -> None:
 
 
 def _first_crossing(nodes: Array, outline: Array, margin: float) -> int | None:
-    """Return the number of the first side that meets another one with which it shares no node."""
+    """Return the number of the first side that meets another one without a common node."""
     a, b = nodes[outline[:, 0]], nodes[outline[:, 1]]
     length = np.linalg.norm(b - a, axis=1)
     low, high = np.minimum(a, b) - margin, np.maximum(a, b) + margin
@@ -247,10 +247,10 @@ def _straddles(a: Array, b: Array, length: Array, line: Array, side: Array, marg
 
 
 def lines(values: Array, sizes: Array, least: int = 1) -> Array:
-    """Return rising numbers with others between, `least` steps or more in each interval.
+    """Return rising numbers with further ones between them, `least` steps or more in each interval.
 
-    Steps are at most as long as the size of their interval and grow by `GROWTH` of the distance from one whose steps
-    are shorter.
+    Steps are at most as long as the size of their interval and grow by `GROWTH` times the distance from an interval
+    with shorter steps.
     """
     sizes = np.minimum(sizes, np.diff(values) / least)
     found = [values[:1]]
@@ -265,7 +265,7 @@ def lines(values: Array, sizes: Array, least: int = 1) -> Array:
 
 
 def merged(values: Array, margin: float) -> Array:
-    """Return rising numbers, those within a margin of the one before it left out."""
+    """Return the sorted numbers without those within a margin of the one before."""
     ordered = np.unique(values)
     return np.asarray(ordered[np.append(True, np.diff(ordered) > margin)])
 

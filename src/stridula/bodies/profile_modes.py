@@ -18,33 +18,33 @@ from ..arrays import Array
 from .fourier_elements import FourierElements, U, V, W
 from .ordinary import check_mode_count
 
-# Frequency of the shift, below zero, as a share of the cutoff: far enough from rigid motions for the factorisation.
+# Frequency of the negative shift, as a share of the cutoff: far enough from rigid motions for the factorisation.
 SHIFT = 0.1
-# Modes of an order asked for at first, beyond as many as the order before it has.
+# Modes of an order in the first search, beyond the number of the order before.
 MORE = 2
-# Up to so many degrees of freedom matrices are dense.
+# Most degrees of freedom for dense matrices.
 DENSE = 150
-# Share of the size of rigid motions at held points below which they are not held.
+# Size of a rigid motion at held points, relative to the motion, below which it is not held.
 UNHELD = 1e-9
 COSINE, SINE = 0, 1
-# Modes left out lie above the cutoff: each step leaves at most SHIFT² of an error.
+# Modes left out lie above the cutoff: each step reduces the error to at most SHIFT² of it.
 STATIC_STEPS = 8
-# Share of the energy of static answers in a shape below which it is round-off.
+# Share of the energy of static responses in a shape below which it is round-off.
 INDEPENDENT = 1e-12
 
 
 class Kind(NamedTuple):
-    """Motions that have their angle in common.
+    """Motions with the same dependence on the angle.
 
     Attributes
     ----------
     order : int
         Number of waves n round the axis.
     components : tuple of int
-        Those that move, of U, V and W.
+        Components that move, of U, V and W.
     sides : tuple of int
-        Which of the pair it stands for: both for n above 0; for n = 0 the cosine, motion without twist, or the sine,
-        torsion.
+        Members of the pair that it represents: both for n above 0; for n = 0 the cosine, motion without twist, or the
+        sine, torsion.
     """
 
     order: int
@@ -59,13 +59,13 @@ class Family:
     Attributes
     ----------
     kind : Kind
-        What they have in common.
+        Kind of all its modes.
     squared : ndarray, shape (modes,)
         Squared angular frequencies [1/s²], rising; zero for rigid modes, infinite for residual shapes.
     shapes : ndarray, shape (3, points, modes)
-        U, V and W of unit modal mass; of unit stiffness those of residual shapes.
+        U, V and W of unit modal mass; of unit stiffness for residual shapes.
     lowest : float
-        Lowest frequency of all, kept or not [Hz].
+        Lowest frequency of all modes, kept or not [Hz].
     """
 
     kind: Kind
@@ -76,12 +76,12 @@ class Family:
 
 @dataclass(frozen=True, eq=False)
 class Constraint:
-    """A set of degrees of freedom that are held.
+    """A set of held degrees of freedom.
 
     Attributes
     ----------
     components : tuple of int
-        Those that are: 0, 1, 2 for r, theta and z.
+        Held components: 0, 1, 2 for r, theta and z.
     points : ndarray of int
         Numbers of the points.
     """
@@ -129,10 +129,10 @@ def _family(
     whole = scipy.sparse.block_diag([elements.mass] * 3, format="csr")
     mass = (angle * (free.T @ whole @ free)).tocsc()
     stiffness = (angle * (free.T @ elements.stiffness_of(kind.order) @ free)).tocsc()
-    # Symmetric to the last bit, which the factorisation takes for granted.
+    # Exactly symmetric, as the factorisation assumes.
     mass, stiffness = 0.5 * (mass + mass.T), 0.5 * (stiffness + stiffness.T)
     rigid = _unheld(elements, held, kind)
-    # Every row of `free` has one entry at most, and every column one that is +1.
+    # Every row of `free` has at most one entry, and every column has one +1.
     rigid = np.asarray(scipy.sparse.csr_matrix(free > 0.0).astype(float).T @ rigid)
     shifted = Shifted(stiffness, mass, -((SHIFT * 2.0 * math.pi * cutoff) ** 2))
     squared, vectors = _lowest_modes(shifted, rigid, cutoff, expected)
@@ -147,9 +147,9 @@ def _family(
 
 
 def _free(elements: FourierElements, held: Sequence[Constraint], kind: Kind) -> Any:
-    """Return what the degrees of freedom are made of those left free, shape (3 points, free).
+    """Return the matrix from the free degrees of freedom to all, shape (3 points, free).
 
-    On the axis the displacement has one value for all angles: only W for n = 0, only U = -V for n = 1, none above.
+    On the axis the displacement is the same for all angles: only W for n = 0, only U = -V for n = 1, none above.
     """
     order, components, _ = kind
     count, axis = elements.count, elements.axis_points
@@ -178,7 +178,7 @@ def _block(components: Sequence[int], points: Array) -> tuple[Array, Array]:
 
 
 def _unheld(elements: FourierElements, held: Sequence[Constraint], kind: Kind) -> Array:
-    """Return the rigid motions of an order that nothing holds, shape (3 points, motions)."""
+    """Return the rigid motions of an order that are not held, shape (3 points, motions)."""
     order, components, _ = kind
     numbers = _RIGID.get((order, components))
     if numbers is None:
@@ -186,19 +186,19 @@ def _unheld(elements: FourierElements, held: Sequence[Constraint], kind: Kind) -
     motions = _rigid(elements, order)[:, :, list(numbers)]
     rows = [motions[_block(one.components, one.points)].reshape(-1, len(numbers)) for one in held]
     if rows:
-        # As many rows of nothing as there are motions, so that each has a size.
+        # As many rows of zeros as there are motions, so that each has a singular value.
         at_held = np.concatenate([*rows, np.zeros((len(numbers), len(numbers)))])
         _, sizes, basis = scipy.linalg.svd(at_held, full_matrices=False)
         motions = motions @ basis[sizes <= UNHELD * math.sqrt(len(at_held))].T
     return np.asarray(motions.reshape(3 * elements.count, -1))
 
 
-# Numbers of the motions of `_rigid` that each family has.
+# Numbers of the motions of `_rigid` in each family.
 _RIGID = {(0, (U, W)): (0,), (0, (V,)): (1,), (1, (U, V, W)): (0, 1)}
 
 
 def _rigid(elements: FourierElements, order: int) -> Array:
-    """Return rigid motions by a unit of length at most, shape (3, points, 2).
+    """Return rigid motions of at most a unit of length, shape (3, points, 2).
 
     For n = 0 along the axis and about it; for n = 1 across the axis, and about a line across it.
     """
@@ -212,7 +212,7 @@ def _rigid(elements: FourierElements, order: int) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Shifted:
-    """Matrices of a kind, and their solution with a shift.
+    """Matrices of a kind and their factors with a shift.
 
     Attributes
     ----------
@@ -228,7 +228,7 @@ class Shifted:
 
     @cached_property
     def solve(self) -> Callable[[Array], Array]:
-        """Solution of ``(K - s M) x = f``, factorised once."""
+        """Solver of ``(K - s M) x = f``, factorised once."""
         matrix = (self.stiffness - self.shift * self.mass).tocsc()
         options = {"SymmetricMode": True}
         found: Callable[[Array], Array] = splu(
@@ -240,7 +240,7 @@ class Shifted:
 def _lowest_modes(shifted: Shifted, rigid: Array, cutoff: float, expected: int) -> tuple[Array, Array]:
     """Return squared frequencies, rising, and vectors of unit mass: all up to a cutoff [Hz] and one more.
 
-    The first are the rigid motions as they are, the others orthogonal to them.
+    The first are the given rigid motions, the others are orthogonal to them.
     """
     stiffness, mass = shifted.stiffness, shifted.mass
     size, count = stiffness.shape[0], rigid.shape[1]
@@ -265,7 +265,7 @@ def _lowest_modes(shifted: Shifted, rigid: Array, cutoff: float, expected: int) 
 
 
 def _loads(elements: FourierElements, order: int, mass: Any, places: Sequence[tuple[float, float]]) -> Array:
-    """Return forces along r, theta and z at places of the profile, and those of gravity, shape (3 points, forces)."""
+    """Return unit forces along r, theta and z at places of the profile, and gravity, shape (3 points, forces)."""
     found = np.zeros((3, elements.count, 3 * len(places)))
     for number, (r, z) in enumerate(places):
         points, values = elements.shape_functions(r, z)
@@ -277,10 +277,10 @@ def _loads(elements: FourierElements, order: int, mass: Any, places: Sequence[tu
 
 
 def _residual_shapes(shifted: Shifted, kept: Array, forces: Array) -> Array:
-    """Return the static answers of the modes left out to forces, orthonormal in the stiffness (MacNeal 1971).
+    """Return the static responses of the modes left out to forces, orthonormal in the stiffness (MacNeal 1971).
 
-    Without the modes kept the shift is small against what is left of the stiffness, so that its share is found from
-    the answer before it.
+    Without the modes kept, the shift is small compared to the remaining stiffness, so that its share is computed from
+    the response of the previous step.
     """
     carried = shifted.mass @ kept
     forces = forces - carried @ (kept.T @ forces)

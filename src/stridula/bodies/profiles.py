@@ -1,4 +1,4 @@
-"""Profiles of bodies of revolution: unions of rectangles, lines with a thickness, meshes of the half-plane."""
+"""Profiles of bodies of revolution: unions of rectangles, lines with a thickness, meshes in the half-plane."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .modes import hashed_once
 from .profile_mesh import BODY, MOST_CELLS, SAME_PLACE, ProfileMesh, checked_mesh, lines, merged, overlap
 
 Range = tuple[float, float]
-# Largest side of the cells of a part by its thickness and its region [m].
+# Largest side [m] of the cells of a part, given its thickness [m] and its region.
 Size = Callable[[float, str], float]
 
 
@@ -29,45 +29,45 @@ class Profile(Protocol):
     Attributes
     ----------
     shape : str
-        Its name in scenarios.
+        Name in scenarios.
     """
 
     shape: ClassVar[str]
 
     @property
     def size(self) -> float | None:
-        """Largest side of its cells [m], None where that follows from the waves."""
+        """Largest side of its cells [m], None if it depends on the shortest waves."""
 
     @property
     def region_names(self) -> tuple[str, ...]:
-        """Names of its regions, each of one material."""
+        """Names of its regions, each with one material."""
 
     def mesh(self, size: Size) -> ProfileMesh:
-        """Return its cells, with sides as long as parts of their thickness may have, where it is free to choose."""
+        """Return its cells, with sides up to `size` for the thickness of each part unless the cells are given."""
 
 
 @hashed_once
 @dataclass(frozen=True)
 class RectangleProfile:
-    """A profile made of rectangles that share sides: discs, rings, discs with hats, wheels in steps.
+    """A profile made of rectangles that share sides: discs, rings, discs with hats, stepped wheels.
 
-    Lines through all corners divide it, so that the cells of neighbours fit whatever their sizes.
+    Lines through all corners divide it, so that the cells of neighbours of any size fit together.
 
     Parameters
     ----------
     rectangles : mapping or sequence of tuple
-        Of each region by its name: the range of r and the range of z of a rectangle [m], such as
-        ``{"disc": ((0.05, 0.15), (0.0, 0.01))}``. A sequence of pairs of a name and a rectangle lets several
-        rectangles belong to a region.
+        Rectangle of each region by its name: range of r and range of z [m], such as
+        ``{"disc": ((0.05, 0.15), (0.0, 0.01))}``. With a sequence of pairs of a name and a rectangle, a region may have
+        several rectangles.
     size : float, optional
-        Largest side of a cell [m]; if left out as the shortest waves below the cutoff need it. Across every
-        rectangle there are two cells at least.
+        Largest side of a cell [m]; if left out, chosen for the shortest waves below the cutoff. There are at least two
+        cells across every rectangle.
 
     Raises
     ------
     ValueError
-        If a range does not rise, if a rectangle crosses the axis or covers another one, or if they do not hang
-        together by their sides.
+        If a range does not rise, if a rectangle crosses the axis or overlaps another one, or if they are not connected
+        by their sides.
     """
 
     shape: ClassVar[str] = "rectangles"
@@ -91,11 +91,11 @@ class RectangleProfile:
         return tuple(dict.fromkeys(name for name, _ in self.rectangles))
 
     def mesh(self, size: Size) -> ProfileMesh:
-        """Return its cells, in each rectangle with sides as long as its shorter side lets them be."""
+        """Return its cells, in each rectangle with sides up to `size` for its shorter side."""
         boxes = self._boxes
         sizes = np.array([size(float(np.diff(box).min()), name) for name, box in self.rectangles])
         r, z = (self._lines(axis, sizes) for axis in (0, 1))
-        # Lines divide what lies between rectangles, too.
+        # Lines also divide the space between rectangles.
         _check_count(float(len(r)) * len(z) * len(boxes) / 50.0)
         middle = np.stack(np.meshgrid(0.5 * (r[1:] + r[:-1]), 0.5 * (z[1:] + z[:-1]), indexing="ij"), axis=2)
         low, high = boxes[:, None, None, :, 0], boxes[:, None, None, :, 1]
@@ -111,11 +111,11 @@ class RectangleProfile:
         return checked_mesh("rectangles", nodes, cells.reshape(-1, 4), regions)
 
     def _lines(self, axis: int, sizes: Array) -> Array:
-        """Return the places along an axis that divide the profile, from the size of the cells of each rectangle."""
+        """Return the coordinates of the dividing lines along an axis, given the size of the cells of each rectangle."""
         values, spans = merged(self._boxes[:, axis].ravel(), self._margin), self._boxes[:, axis]
         middle = 0.5 * (values[1:] + values[:-1])
         inside = (spans[:, :1] < middle) & (middle < spans[:, 1:])
-        # Cells of no rectangle are left out.
+        # Intervals without a rectangle have no limit.
         allowed = np.minimum(np.where(inside, sizes[:, None], math.inf).min(axis=0), np.diff(values))
         _check_count(float((np.diff(values) / allowed).sum()))
         return lines(values, allowed, least=2)
@@ -132,25 +132,25 @@ class RectangleProfile:
 @hashed_once
 @dataclass(frozen=True)
 class LineProfile:
-    """A profile given by its middle line and its thickness: glasses, bells, shells, wheels with curved webs.
+    """A profile given by its middle line and thickness: glasses, bells, shells, wheels with curved webs.
 
-    Half the thickness lies on either side of the line, across it. At an end on the axis the section lies on the axis.
+    Half the thickness lies on either side of the line. At an end on the axis the end section lies on the axis.
 
     Parameters
     ----------
     points : sequence of tuple
-        Points (r, z) of the middle line in their order [m]; it is straight between them.
+        Points (r, z) of the middle line in order [m]; it is straight between them.
     thickness : float or sequence of float
-        Thickness, or that at each point, linear between them [m].
+        Thickness, or thickness at each point, linear between them [m].
     size : float, optional
-        Largest side of a cell along the line [m]; if left out as the shortest waves below the cutoff need it. There are
-        two cells across.
+        Largest side of a cell along the line [m]; if left out, chosen for the shortest waves below the cutoff. There
+        are two cells across.
 
     Raises
     ------
     ValueError
-        If there are fewer than two points, if two that follow each other coincide, if the profile crosses the axis or
-        itself, or if the line bends more sharply than its thickness lets it.
+        If there are fewer than two points, if consecutive points coincide, if the profile crosses the axis or itself,
+        or if the line bends too sharply for its thickness.
     """
 
     shape: ClassVar[str] = "line"
@@ -184,7 +184,7 @@ class LineProfile:
         return (BODY,)
 
     def mesh(self, size: Size) -> ProfileMesh:
-        """Return its cells, with sides along the line as long as its thickness there lets them be."""
+        """Return its cells, with sides along the line up to `size` for the thickness there."""
         points = np.array(self.points)
         thick = np.broadcast_to(np.asarray(self.thickness, dtype=float), len(points))
         steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
@@ -213,17 +213,17 @@ class MeshProfile:
     nodes : array_like, shape (nodes, 2)
         Distance r from the axis and place z along it of each node [m].
     cells : array_like of int, shape (cells, 3) or (cells, 4)
-        Nodes of each cell from 0, one way round or the other.
+        Nodes of each cell from 0, in either sense of rotation.
     regions : mapping, optional
-        Numbers of the cells of each region by its name; together all cells, each once.
+        Numbers of the cells of each region by its name; each cell must be in exactly one.
     edges : mapping, optional
-        Pairs of nodes of edges that can be held by their names, shape (sides, 2).
+        Pairs of nodes of each named edge, which can be held, shape (sides, 2).
 
     Raises
     ------
     ValueError
-        If numbers of nodes or cells are wrong, if the cells cross the axis or each other or lie in several pieces, or
-        if regions do not divide them.
+        If numbers of nodes or cells are wrong, if the cells cross the axis or each other or form several pieces, or if
+        the regions do not contain each cell once.
     """
 
     shape: ClassVar[str] = "mesh"
@@ -254,14 +254,14 @@ class MeshProfile:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], scale: float = 1.0, plane: str = "xy") -> MeshProfile:
-        """Return the profile in a file of a mesh: gmsh, Abaqus, Nastran, VTK and what else meshio reads.
+        """Read a profile from a mesh file: gmsh, Abaqus, Nastran, VTK or any other format of meshio.
 
         Parameters
         ----------
         path : str or path
-            The file. Named groups of cells become regions, cells of no group one called ``body``; groups that share
-            cells are left out, all of them. Named groups of lines become edges that can be held. Triangles and
-            quadrilaterals may mix, these are halved then; sides are taken as straight.
+            The file. Named groups of cells become regions, cells of no group a region named ``body``; if any groups
+            share cells, all groups are ignored. Named groups of lines become edges that can be held. If triangles and
+            quadrilaterals are mixed, the latter are halved; sides are taken as straight.
         scale : float, optional
             Length of the file's unit [m]: 1e-3 for millimetres.
         plane : {"xy", "xz", "yz"}, optional
@@ -284,7 +284,7 @@ class MeshProfile:
         return tuple(self.regions)
 
     def mesh(self, size: Size) -> ProfileMesh:
-        """Return its cells, whatever their size."""
+        """Return its cells; `size` has no effect."""
         found: ProfileMesh = self._mesh  # type: ignore[attr-defined]
         return found
 
@@ -311,12 +311,12 @@ class MeshProfile:
 
 
 def _across(points: Array) -> Array:
-    """Return the vectors across a line at its points: to its left, as long as half its corner needs, shape (n, 2)."""
+    """Return the mitre vectors of a line at its points, to its left, for an offset of 1, shape (n, 2)."""
     along = np.diff(points, axis=0)
     along /= np.linalg.norm(along, axis=1)[:, None]
     normals = np.stack([-along[:, 1], along[:, 0]], axis=1)
     before, after = np.vstack([normals[:1], normals]), np.vstack([normals, normals[-1:]])
-    # Both lines at a distance of 1 meet there.
+    # The offset lines at a distance of 1 meet at the mitre vector.
     share = 1.0 + np.sum(before * after, axis=1)
     if share.min() <= SAME_PLACE:
         at = int(np.argmin(share))

@@ -1,4 +1,4 @@
-"""A body given by its mass and stiffness matrices, as a finite-element program exports them."""
+"""A body given by its mass and stiffness matrices, as exported by a finite-element program."""
 
 from __future__ import annotations
 
@@ -45,37 +45,36 @@ FILES = ("path", "mass", "stiffness")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ReducedBody(NamedPoints):
-    """A linear body given by matrices, its mode shapes found from ``K phi = w² M phi``.
+    """A linear body given by matrices, its mode shapes computed from ``K phi = w² M phi``.
 
-    A mode is rigid, its frequency exactly zero, if its computed w² is below 64 eps = 1.4e-14 of the largest one, what
-    rounding may leave of a zero: a mode slower than 1.2e-7 of the fastest cannot be told from a rigid one. Bodies are
-    compared and hashed by content and cannot be changed.
+    A mode is rigid, its frequency exactly zero, if its computed w² is below 64 eps = 1.4e-14 of the largest one, the
+    rounding error of a zero: a mode slower than 1.2e-7 of the fastest cannot be distinguished from a rigid one. Bodies
+    are compared and hashed by content and cannot be changed.
 
     Parameters
     ----------
     mass, stiffness : array_like or scipy sparse, shape (n, n)
         Mass matrix, positive definite, and stiffness matrix, positive semidefinite; real and symmetric, in SI units for
-        displacements in metres. Asymmetry up to 1e-8 of the largest entry, as text files have it, is averaged away. At
-        most 4000 degrees of freedom; of sparse matrices, if a cutoff is given, 300 000.
+        displacements in metres. Asymmetry up to 1e-8 of the largest entry, as in text files, is averaged out. At most
+        4000 degrees of freedom; for sparse matrices with a cutoff, 300 000.
     points : mapping
-        What each point's displacement along world (x, y), or in space (x, y, z), is made of, by its name: rows on the
-        degrees of freedom, shape (2, n) or (3, n), or the numbers of two or three of them from 0, such as ``(0, 1)``;
-        None for a direction in which the point does not move. With z the body is one in space.
+        Displacement of each point along world (x, y), or in space (x, y, z), by its name: rows on the degrees of
+        freedom, shape (2, n) or (3, n), or the numbers of two or three degrees of freedom from 0, such as ``(0, 1)``;
+        None for a direction in which the point does not move. With z the body is in space.
     damping : float, sequence of float, Rayleigh, RisingDamping, SampledDamping or array_like, optional
-        One damping ratio [1] for every elastic mode, one for each mode kept in the order of rising frequency (of no
+        One damping ratio [1] for every elastic mode, one for each mode kept in the order of rising frequency (without
         effect on rigid modes), a law of their frequency, or a symmetric positive semidefinite matrix C [N s/m], shape
-        (n, n). If a cutoff leaves modes out, ``Phi^T C Phi`` of the modes kept is taken: what C couples to the others
-        is lost.
+        (n, n). With a cutoff, ``Phi^T C Phi`` of the modes kept is used: their coupling by C to the others is lost.
     translation : array_like, shape (2, n) or (3, n), optional
         Displacement of every degree of freedom when the body moves by 1 m along x (first row), along y and, in space,
         along z. Gravity and uniform initial velocities need it.
     cutoff : float, optional
         Keep the modes up to this frequency [Hz], rigid ones always; all modes if left out.
     residual_flexibility : bool, optional
-        Whether the modes that a cutoff leaves out still yield statically to the forces at the points and to gravity,
-        so that the body is as soft there as all its modes make it.
+        Whether the modes beyond a cutoff still respond statically to forces at the points and to gravity, so that the
+        body has its full static flexibility there.
     name : str, optional
-        What it is called in records; tells equal bodies apart.
+        Name in records; distinguishes equal bodies.
 
     Raises
     ------
@@ -112,7 +111,7 @@ class ReducedBody(NamedPoints):
             self._check_large()
         else:
             check_mass(self.mass)
-        # Found now, since only the modes tell whether stiffness, damping and cutoff are fit.
+        # Computed now, since stiffness, damping and cutoff are checked with the modes.
         self.modes()
 
     @classmethod
@@ -131,39 +130,39 @@ class ReducedBody(NamedPoints):
         mesh: str | os.PathLike[str] | None = None,
         name: str = "",
     ) -> ReducedBody:
-        """Read a body from one file with everything, or from one file for each matrix.
+        """Read a body from one file with all its data, or from one file for each matrix.
 
-        One file with everything is given as `path`:
+        One file with all data is given as `path`:
 
-        - ``.npz`` with the arrays `mass`, `stiffness` and, if there, `damping`, `translation` and ``point_<name>``,
-          shape (2, n), one for each point; what `save` writes.
+        - ``.npz`` with the arrays `mass`, `stiffness` and optionally `damping`, `translation` and ``point_<name>``,
+          shape (2, n), one for each point; the format of `save`.
         - MATLAB ``.mat`` up to version 7 with variables of the same names, matrices full or sparse.
 
-        In both M, K and C also stand for mass, stiffness and damping.
+        In both formats M, K and C are accepted for mass, stiffness and damping.
 
         One file for each matrix is given as `mass`, `stiffness` and perhaps `damping`:
 
-        - Matrix Market, as Ansys' ``*EXPORT,,MMF`` writes it, too.
-        - Harwell-Boeing, RSA or RUA, as Ansys' HBMAT writes it as text.
+        - Matrix Market, also from Ansys' ``*EXPORT,,MMF``.
+        - Harwell-Boeing, RSA or RUA, as text from Ansys' HBMAT.
         - ``.sti`` and ``.mas`` of CalculiX' ``*FREQUENCY, SOLVER=MATRIXSTORAGE``, one triangle.
         - DMIG cards of Nastran, real, square or symmetric, in small, large or free fields.
         - OUTPUT4 of Nastran, real, text or binary in either order of bytes, columns full or in strings.
         - Text of Abaqus' ``*MATRIX GENERATE``, assembled: ``FORMAT=MATRIX INPUT``, lines "node, dof, node, dof, value",
-          or ``FORMAT=COORDINATE``, lines "row column value", rows from 1. Lines that start with ``*`` are left out. If
+          or ``FORMAT=COORDINATE``, lines "row column value", rows from 1. Lines that start with ``*`` are ignored. If
           no entry has its mirror image in the file, the file holds one triangle and the other is filled in.
 
-        A format is told by the beginning of a file, of CalculiX by its ending. Of several matrices in a file of Nastran
-        those are taken whose names begin with M, K (but not K4) and B. Such a file, or one of the two of CalculiX, may
-        be given as `path`, too.
+        A format is recognised by the beginning of a file, that of CalculiX by its ending. From several matrices in a
+        file of Nastran, those whose names begin with M, K (but not K4) and B are read. Such a file, or one of the two
+        of CalculiX, may also be given as `path`.
 
         MATRIX INPUT and DMIG label their rows by (node, dof). Rows of other files are labelled by ``job.dof`` beside
-        ``job.sti``, by ``K.mapping`` beside ``K.matrix`` (HBMAT writes it), or by `labels`. Degrees of freedom of all
-        files are then taken together and sorted by (node, dof); internal nodes, with negative numbers, are kept.
+        ``job.sti``, by ``K.mapping`` beside ``K.matrix`` (from HBMAT), or by `labels`. Degrees of freedom of all files
+        are then merged and sorted by (node, dof); internal nodes, with negative numbers, are kept.
 
-        Degrees of freedom that Abaqus constrained (1e30 and more on the diagonal of the stiffness, it writes 1e36) are
-        removed: points do not move along them. The translation of the others is chosen so that gravity still acts on
-        them through the mass that they share with the removed ones. CalculiX and Ansys leave constrained ones out
-        themselves, and with them that mass: near to where they are held, gravity pulls a little less.
+        Degrees of freedom constrained by Abaqus (1e30 and more on the diagonal of the stiffness; Abaqus writes 1e36)
+        are removed: points do not move along them. The translation of the others is chosen so that gravity still acts
+        on them through the mass that they share with the removed ones. CalculiX and Ansys omit constrained ones, and
+        with them that mass: near constraints, gravity is slightly too small.
 
         Parameters
         ----------
@@ -173,10 +172,11 @@ class ReducedBody(NamedPoints):
             As in `ReducedBody`, before degrees of freedom are removed; they replace those of the same name in `path`.
             With labels, a point is the number of a node, ``{"tip": 101}``, or a pair of labels, three in space:
             ``{"tip": ((101, 1), (101, 2))}`` moves along x with the first degree of freedom of node 101 and along y
-            with the second. A node moves along z, too, if the files have a third degree of freedom anywhere, and not
-            at all along those of its own that are not there. With `mesh`, a point may be a place, ``(x, y, z)`` [m].
+            with the second. A node also moves along z if the files have a third degree of freedom anywhere, and does
+            not move along directions without a degree of freedom. With `mesh`, a point may be a place, ``(x, y, z)``
+            [m].
         damping : str or Path, or as in `ReducedBody`, optional
-            File of the damping matrix, or what replaces the damping in `path`.
+            File of the damping matrix, or damping in place of that in `path`.
         translation : array_like, shape (2, n), or pair of int, optional
             As in `ReducedBody`, before degrees of freedom are removed. With labels, the numbers of the degrees of
             freedom that are displacements along x and y at every node, usually ``(1, 2)``, in space ``(1, 2, 3)``.
@@ -185,11 +185,11 @@ class ReducedBody(NamedPoints):
         residual_flexibility : bool, optional
             As in `ReducedBody`.
         labels : str or Path, optional
-            File that names node and degree of freedom of every row, one a line: "node.dof" as CalculiX' ``.dof``, or
-            "row node UX" below a heading as Ansys' ``.mapping``. Searched beside the matrices if left out.
+            File with node and degree of freedom of every row, one a line: "node.dof" as in CalculiX' ``.dof``, or "row
+            node UX" below a heading as in Ansys' ``.mapping``. Searched beside the matrices if left out.
         mesh : str or Path, optional
-            Deck that says where nodes are: ``*NODE`` of Abaqus or CalculiX in ``.inp``, else ``GRID`` of Nastran.
-            Places are met to a thousandth of its size.
+            Deck with the coordinates of nodes: ``*NODE`` of Abaqus or CalculiX in ``.inp``, else ``GRID`` of Nastran.
+            A place must be within a thousandth of the mesh size of a node.
         name : str, optional
             As in `ReducedBody`.
 
@@ -247,12 +247,12 @@ class ReducedBody(NamedPoints):
         return cls(**given | from_matrices(read_matrices(given_files, labels), added, given.get("translation"), nodes))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the body to an ``.npz`` file that `read` takes; what is read back is equal.
+        """Write the body to an ``.npz`` file; `read` returns an equal body.
 
         Raises
         ------
         OSError
-            If the file cannot be written; nothing half-written is left under its name.
+            If the file cannot be written; no partial file is left.
         ValueError
             If the name does not end in ``.npz``.
         """
@@ -275,7 +275,7 @@ class ReducedBody(NamedPoints):
 
     @property
     def is_spatial(self) -> bool:
-        """Whether it moves along world z, too."""
+        """Whether it also moves along world z."""
         return self._directions == 3
 
     @property
@@ -289,7 +289,7 @@ class ReducedBody(NamedPoints):
 
     @property
     def has_translation(self) -> bool:
-        """Whether it is known how a translation moves it, which gravity and uniform initial velocities need."""
+        """Whether its translation is known, which gravity and uniform initial velocities need."""
         return self.translation is not None
 
     @property
@@ -299,12 +299,12 @@ class ReducedBody(NamedPoints):
 
     @property
     def has_modes_at_hand(self) -> bool:
-        """Whether its modes are known already, or are found at once."""
+        """Whether its modes are already computed, or quick to compute."""
         return "_reduction" in vars(self) or self.mass.shape[0] <= FEW
 
     @property
     def total_mass(self) -> float:
-        """Mass that takes part in a translation along x or along y, the larger [kg]; nan without a translation."""
+        """Mass in a translation [kg], the largest over the directions; nan without a translation."""
         if self.translation is None:
             return float("nan")
         return float(np.max(np.sum(self.translation @ self.mass * self.translation, axis=1)))
@@ -315,10 +315,10 @@ class ReducedBody(NamedPoints):
         return self._reduction.shapes
 
     def modes(self, held_x: bool = False) -> Modes:
-        """Return the modes, without translation zeros for it; `held_x` is for bodies with a driven end, must be false.
+        """Return the modes; their translation is zero if not given. `held_x` is for driven ends and must be false.
 
         The damping is a matrix if C couples modes by more than 1e-10 of their own damping and by more than rounding
-        does.
+        errors.
         """
         if held_x:
             raise ArgumentError("held_x", "be False for a ReducedBody: it has no driven end", held_x)
@@ -334,7 +334,7 @@ class ReducedBody(NamedPoints):
     def modal_coordinates(self, vector: Any) -> Array:
         """Return ``Phi^T M x`` of displacements or velocities x of all degrees of freedom, shape (modes,).
 
-        Residual shapes have none: they follow the forces alone.
+        They are zero for residual shapes, which depend on the forces alone.
         """
         values = numbers("vector", vector)
         if values.shape != (self.mass.shape[0],):
@@ -380,7 +380,7 @@ class ReducedBody(NamedPoints):
             return reduce_sparse_body(self) if stays_sparse(self.mass) else reduce_body(self)
 
     def _check_large(self) -> None:
-        """Raise ValueError where sparse matrices lack a cutoff or their mass is none."""
+        """Raise ValueError if sparse matrices lack a cutoff or the mass matrix is not positive definite."""
         if self.cutoff is None:
             raise ArgumentError(
                 "cutoff",

@@ -1,4 +1,4 @@
-"""Matrices become mass-normalised modes."""
+"""Reduction of matrices to mass-normalised modes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .matrix_input import ROUND_OFF, smallest_eigenvalue
 from .modes import Modes
 
 COUPLING = 1e-10
-# Relative share of the points in a residual shape below which it is round-off.
+# Relative singular value of a residual shape below which it is round-off.
 RESIDUAL = 1e-8
 # Relative size of a sum below which it is round-off.
 ROUNDING = 1e-10
@@ -62,7 +62,7 @@ def reduce_body(body: Any) -> Reduction:
 
 
 def _residual_shapes(body: Any, angular: Array, shapes: Array) -> Array:
-    """Return the static answers of the modes left out to forces at the points and to gravity, shape (n, shapes).
+    """Return the static responses of the modes left out to forces at the points and to gravity, shape (n, shapes).
 
     They are orthonormal in the stiffness, so that ``Psi Psi^T`` is the flexibility of the modes left out wherever
     these forces act (MacNeal 1971).
@@ -73,7 +73,7 @@ def _residual_shapes(body: Any, angular: Array, shapes: Array) -> Array:
     pushes = np.concatenate(forces)
     answers = (pushes @ shapes / angular).T
     sizes = np.linalg.norm(answers, axis=0)
-    # Gravity moves a free body as a whole: what the modes left out have of it is a sum of nothing.
+    # Gravity moves a free body as a whole: the response of the modes left out is pure rounding.
     felt = sizes > ROUNDING * np.linalg.norm(np.abs(pushes) @ np.abs(shapes) / angular, axis=1)
     if not felt.any():
         return np.zeros((len(shapes), 0))
@@ -118,7 +118,7 @@ def _damping(damping: Any, angular: Array, shapes: Array, kept: Array) -> tuple[
     if not isinstance(damping, np.ndarray) or damping.ndim == 1:
         return damping_rates(damping, angular[kept]), None
     matrix = shapes.T @ damping @ shapes
-    # Of all the modes: what rounding makes of the highest is seen among the lowest.
+    # Taken over all modes: rounding errors of the highest show among the lowest.
     rounding = ROUND_OFF * float(np.diag(matrix).max())
     matrix = 0.5 * (matrix + matrix.T)[np.ix_(kept, kept)]
     diagonal = np.where(np.diag(matrix) > rounding, np.diag(matrix), 0.0)

@@ -19,25 +19,25 @@ from .named_points import NamedPoints
 from .point_mass import SMALLEST_MASS
 
 CENTRE = "centre"
-# Relative asymmetry of an inertia, and share of the largest that a principal one may lie beyond the sum of the others.
+# Allowed relative asymmetry of an inertia, and relative excess of a principal moment over the sum of the others.
 ROUND_OFF = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class RigidBody(NamedPoints):
-    """A rigid body that moves freely in space, by small rotations; without an inertia it does not turn.
+    """A rigid body that moves freely in space, with small rotations; without an inertia it does not turn.
 
     Parameters
     ----------
     mass : float
         Mass [kg]; at least 1e-100.
     inertia : float, sequence of float or array_like, shape (3, 3), optional
-        Moments of inertia about the centre of mass, along world x, y and z [kg m²]: one for all three, one for each,
-        or the symmetric tensor; the body does not turn if left out.
+        Moments of inertia about the centre of mass, along world x, y and z [kg m²]: one for all three, one for each, or
+        the symmetric tensor; if left out, the body does not turn.
     points : mapping, optional
-        Places of points from the centre of mass along world (x, y, z) [m], by name, beside ``"centre"``.
+        Places of points relative to the centre of mass along world (x, y, z) [m], by name, besides ``"centre"``.
     name : str, optional
-        What it is called in records; tells equal bodies apart.
+        Name in records; distinguishes equal bodies.
 
     Raises
     ------
@@ -84,7 +84,7 @@ class RigidBody(NamedPoints):
         return float(self.mass)
 
     def modes(self, held_x: bool = False) -> Modes:
-        """Return its rigid modes: three of translation, three about its principal axes where it turns."""
+        """Return the rigid modes: three of translation, and three about its principal axes if it turns."""
         if held_x:
             raise ArgumentError("held_x", "be False for a RigidBody: it has no driven end", held_x)
         count = 3 if self.inertia is None else 6
@@ -96,12 +96,12 @@ class RigidBody(NamedPoints):
         return np.asarray(self.shapes_at(self.offset(position)[None])[0])
 
     def offset(self, position: str) -> Array:
-        """Return where a point is from the centre of mass at rest [m], shape (3,)."""
+        """Return the place of a point at rest relative to the centre of mass [m], shape (3,)."""
         self.check_position(position)
         return np.zeros(3) if position == CENTRE else np.array(self.points[position])
 
     def shapes_at(self, offsets: Array) -> Array:
-        """Return the displacements for unit modes at places from the centre of mass [m], shape (places, 3, modes)."""
+        """Return the displacements for unit modes at places relative to the centre of mass [m], (places, 3, modes)."""
         count = self.modes().count
         rows = np.tile(np.eye(3, count) / np.sqrt(self.mass), (len(offsets), 1, 1))
         if count == 6:
@@ -124,7 +124,7 @@ class RigidBody(NamedPoints):
 
     @cached_property
     def _principal(self) -> tuple[Array, Array]:
-        """Principal moments of inertia and the axes that they are about, a column each."""
+        """Principal moments of inertia and their axes as columns."""
         tensor = np.asarray(self.inertia)
         if not (tensor - np.diag(np.diag(tensor))).any():
             return np.diag(tensor).copy(), np.eye(3)
@@ -153,7 +153,7 @@ class RigidBody(NamedPoints):
 
 
 def _tensor(inertia: Any) -> Array:
-    """Return moments of inertia as a tensor that a body may have, shape (3, 3)."""
+    """Return moments of inertia as a tensor after checks, shape (3, 3)."""
     values = numbers("inertia", inertia)
     if values.shape not in ((), (3,), (3, 3)):
         raise ArgumentError(

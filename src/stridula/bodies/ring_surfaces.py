@@ -1,4 +1,4 @@
-"""The outer surface of a body of revolution as rings: its outline, cut as finely as thickness and sound ask for."""
+"""The outer surface of a body of revolution as rings: its outline, cut as finely as thickness and sound require."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ from ..arrays import Array
 from .body_surfaces import inscribed_radius
 from .profile_mesh import SAME_PLACE, ProfileMesh
 
-# Cosine of the angle between sides of the outline from which on they meet at a corner.
+# Cosine of the angle between sides of the outline below which they form a corner.
 CORNER = 0.9
-# Length of a part over the radius of the ball within the body there, and least one over the least thickness: close to
-# an edge the air flows round it, and parts get shorter as long as that matters.
+# Length of a part over the radius of the inscribed ball there, and least length over the least thickness: air flows
+# round edges, so that parts become shorter towards them as far as that matters.
 PART_OF_BALL, LEAST_PART = 0.6, 1e-3
-# Length of a part over its distance from a corner that turns inwards, and least one there over the least thickness:
-# sources under both of its sides lie apart, so that close to it only those that do not lie deep are of use.
+# Length of a part over its distance from a reentrant corner, and least length there over the least thickness: sources
+# under both sides of the corner are far apart, so that only shallow ones represent its vicinity.
 PART_OF_WAY, LEAST_WITHIN = 0.6, 0.03
-# Samples of a run.
+# Samples of a line.
 SAMPLES = 400
 
 
 def cut_outline(mesh: ProfileMesh, largest: float) -> tuple[Array, Array, Array]:
     """Return rings all over the outer surface, two over each part of the outline.
 
-    Parts go with the radius of the largest circle that fits into the profile at their place, and with the distance from
-    corners that turn inwards; they are at most `largest`.
+    Parts are proportional to the radius of the largest circle that fits into the profile there, and to the distance
+    from reentrant corners; they are at most `largest`.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def cut_outline(mesh: ProfileMesh, largest: float) -> tuple[Array, Array, Array]
     places, normals : ndarray, shape (rings, 2)
         r and z of the rings [m], and outward unit normals.
     widths : ndarray, shape (rings,)
-        Lengths of outline that they stand for [m].
+        Lengths of outline that they represent [m].
     """
     runs, least = _runs(mesh), min(LEAST_PART * mesh.thinnest, largest)
     inner = _inner_corners(runs)
@@ -58,7 +58,7 @@ def cut_outline(mesh: ProfileMesh, largest: float) -> tuple[Array, Array, Array]
 
 
 def _runs(mesh: ProfileMesh) -> list[Array]:
-    """Return the outline off the axis as lines of points without corners, each of shape (points, 2)."""
+    """Return the outline without the axis as smooth lines of points, each of shape (points, 2)."""
     on_axis = mesh.nodes[:, 0] <= SAME_PLACE * mesh.size
     sides = {int(start): int(end) for start, end in mesh.outline if not (on_axis[start] and on_axis[end])}
     ways = {start: mesh.nodes[end] - mesh.nodes[start] for start, end in sides.items()}
@@ -76,7 +76,7 @@ def _runs(mesh: ProfileMesh) -> list[Array]:
 
 
 def _inner_corners(runs: list[Array]) -> Array:
-    """Return the points at which lines of the outline meet and it turns inwards, shape (corners, 2)."""
+    """Return the reentrant corners of the outline, shape (corners, 2)."""
     ends = {tuple(run[-1]): run[-1] - run[-2] for run in runs}
     found = [np.empty((0, 2))]
     for run in runs:
@@ -93,13 +93,13 @@ def _length(run: Array) -> float:
 
 
 def _samples(run: Array) -> tuple[Array, Array, Array]:
-    """Return lengths along a line, closer together towards its ends, their places and normals to the right of it."""
+    """Return lengths along a line, denser towards its ends, with their places and normals to the right."""
     lengths = 0.5 * _length(run) * (1.0 - np.cos(np.linspace(0.0, np.pi, SAMPLES)))
     return lengths, *_along(run, lengths)
 
 
 def _graded(run: Array, lengths: Array, sizes: Array) -> tuple[Array, Array, Array]:
-    """Return two rings for each part of a line, whose sizes are given at lengths along it, their normals and widths."""
+    """Return two rings for each part of a line, with normals and widths; sizes are given at lengths along it."""
     rate = 1.0 / sizes
     parts = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(lengths))])
     count = 2 * max(1, int(np.ceil(parts[-1])))

@@ -21,7 +21,7 @@ class Material:
     density : float
         Mass density [kg/m³].
     poisson : float, optional
-        Poisson's ratio [1], of plates and solids; from -1 to 0.5, both excluded.
+        Poisson's ratio [1], for plates and solids; from -1 to 0.5, both excluded.
     """
 
     young: Annotated[float, Number("Pa", above=0.0)]
@@ -61,7 +61,7 @@ class Rectangle:
     width : float
         Side normal to the plane of motion [m].
     height : float
-        Side in the plane of motion, the one that bends [m].
+        Side in the plane of motion, across which it bends [m].
     """
 
     shape: ClassVar[str] = "rectangle"
@@ -84,7 +84,7 @@ class Rectangle:
 
     @property
     def largest_side(self) -> float:
-        """Its larger side [m]."""
+        """Larger side [m]."""
         return max(self.width, self.height)
 
     @property
@@ -132,7 +132,7 @@ class Circle:
 
 
 def _check_ordinary(sides: str, section: Rectangle | Circle) -> None:
-    """Raise ValueError where sides are so small or so large that numbers cannot hold what follows from them."""
+    """Raise ValueError if sides are so small or so large that area or second moment underflow or overflow."""
     try:
         is_ordinary = 0.0 < section.area < math.inf and 0.0 < section.second_moment < math.inf
     except OverflowError:

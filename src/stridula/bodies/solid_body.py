@@ -37,9 +37,9 @@ from .solid_surfaces import cut_faces
 from .sparse_reduction import SparseProblem, modes_of, reduce_sparse
 
 DIRECTIONS = "xyz"
-# Speed of waves in diamond is 18 km/s; beyond, units are mixed.
+# Waves in diamond travel at 18 km/s; a higher speed indicates mixed units.
 FASTEST = 30e3
-# Of the size of a body: motions that held nodes follow by less are none.
+# Rigid motions that move held nodes by less than this share of the size of a body count as free.
 RIGID = 1e-9
 
 
@@ -54,7 +54,7 @@ class SolidReduction:
     shapes : ndarray, shape (3 nodes, modes)
         Their shapes, the three directions of a node one after the other; zero where nodes are held.
     mass : csr_array, shape (nodes, nodes)
-        Mass of one direction [kg].
+        Mass along one direction [kg].
     """
 
     modes: Modes
@@ -64,22 +64,22 @@ class SolidReduction:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SolidBody(NamedPoints):
-    """A linear elastic body given by a mesh in space, its modes found on first use.
+    """A linear elastic body given by a mesh in space; its modes are computed on first use.
 
-    Its coordinates are those of the world. Rigid motions that `fixed` leaves, six where nothing is fixed, have the
-    frequency zero exactly. Bodies are compared and hashed by content and cannot be changed.
+    Its coordinates are those of the world. Rigid motions not held by `fixed`, six if nothing is fixed, have exactly
+    zero frequency. Bodies are compared and hashed by content and cannot be changed.
 
     Parameters
     ----------
     mesh : SolidMesh
-        The mesh. Elements without nodes in the middle of their edges get them, as linear ones are too stiff in bending.
+        The mesh. Nodes in the middle of edges are added if missing, as linear elements are too stiff in bending.
     materials : Material or mapping
-        One material, or the material of each group of elements by its name; the groups must cover the mesh once.
+        One material, or the material of each group of elements by its name; each element must be in one group.
     points : mapping, optional
-        Nodes by name: each the name of a set of one node, the number of a node from 0, or coordinates [m] of a node,
-        met to a thousandth of the size of the mesh. Sets of one node are points by their own name, too.
+        Nodes by name: each the name of a set of one node, the number of a node from 0, or coordinates [m] within a
+        thousandth of the size of the mesh of a node. Sets of one node are also points by their own names.
     fixed : sequence of str or mapping, optional
-        Groups of faces or nodes that are held: their names, or by name the directions in which they are, such as "z" or
+        Held groups of faces or nodes: their names, or a mapping from names to the held directions, such as "z" or
         "xyz".
     cutoff : float, optional
         Keep the modes up to this frequency [Hz], rigid ones always; all modes if left out. Must be given for more
@@ -88,14 +88,14 @@ class SolidBody(NamedPoints):
         One damping ratio [1] for every elastic mode, one for each mode kept in the order of rising frequency, or a
         law of their frequency.
     residual_flexibility : bool, optional
-        Whether the modes that a cutoff leaves out still yield statically to the forces at the points and to gravity,
-        so that the body is as soft there as all its modes make it.
+        Whether the modes beyond a cutoff still respond statically to forces at the points and to gravity, so that the
+        body has its full static flexibility there.
     linear : bool, optional
-        Whether elements without nodes in the middle of their edges stay as they are.
+        Whether to keep linear elements, without nodes in the middle of their edges.
     contact_faces : sequence of str, optional
-        Groups of faces whose points of integration touch others: they yield as the points do.
+        Groups of faces whose points of integration touch other bodies: their full static flexibility is kept as well.
     name : str, optional
-        What it is called in records; tells equal bodies apart.
+        Name in records; distinguishes equal bodies.
 
     Raises
     ------
@@ -153,7 +153,7 @@ class SolidBody(NamedPoints):
         scale: float = 1.0,
         **options: Any,
     ) -> SolidBody:
-        """Read a body from a file of a mesh.
+        """Read a body from a mesh file.
 
         Parameters
         ----------
@@ -208,9 +208,9 @@ class SolidBody(NamedPoints):
         return face_points(self.mesh, name)
 
     def at(self, position: str | Sequence[float]) -> BodyPoint:
-        """Return the point of a name, the mean over the face of a name, or the place (x, y, z) within the mesh [m].
+        """Return the point of a name, the mean over a named face, or the point at (x, y, z) within the mesh [m].
 
-        A force on the mean over a face is spread evenly over it, along a direction that stays.
+        A force on the mean over a face is distributed evenly over it, along a constant direction.
         """
         return BodyPoint(self, position if isinstance(position, str) else place_of("position", position))
 
@@ -238,18 +238,18 @@ class SolidBody(NamedPoints):
 
     @property
     def dimensions(self) -> str:
-        """Its size in words."""
+        """Size in words."""
         sides = " x ".join(f"{side:.4g}" for side in self.mesh.size)
         return f"{sides} m, {len(self.mesh.elements)} {self.mesh.element_kind.words}"
 
     @property
     def has_modes_at_hand(self) -> bool:
-        """Whether its modes are known already, or are found at once."""
+        """Whether its modes are already computed, or quick to compute."""
         return "_reduction" in vars(self) or 3 * len(self.mesh.nodes) <= FEW
 
     @property
     def has_mass_at_hand(self) -> bool:
-        """Whether its mass is found at once: it comes with the modes."""
+        """Whether its mass is known or quick to compute: it is computed with the modes."""
         return self.has_modes_at_hand
 
     @property
@@ -263,11 +263,11 @@ class SolidBody(NamedPoints):
         return self._reduction.shapes
 
     def surface(self, frequency: float = HIGHEST) -> PointSurface:
-        """Return the outer surface as points, fine enough for sound up to a frequency [Hz], and how modes move it."""
+        """Return the outer surface as points with its mode shapes, fine enough for sound up to a frequency [Hz]."""
         return _surface(self, largest_part(frequency))
 
     def modes(self, held_x: bool = False) -> Modes:
-        """Return the modes; `held_x` is for bodies with a driven end, must be false."""
+        """Return the modes; `held_x` is for bodies with a driven end and must be false."""
         if held_x:
             raise ArgumentError("held_x", "be False for a SolidBody: it has no driven end", held_x)
         return self._reduction.modes
@@ -287,7 +287,7 @@ class SolidBody(NamedPoints):
         return np.einsum("n,nim->im", shares, self.shapes.reshape(len(self.mesh.nodes), 3, -1)[nodes])
 
     def place(self, position: Any) -> Array:
-        """Return where in the world a point is at rest [m], shape (3,); of a face its middle."""
+        """Return the world place of a point at rest [m], shape (3,); for a face its middle."""
         self.check_position(position)
         if position in self.points:
             return np.asarray(self.mesh.nodes[self.points[position]])
@@ -297,18 +297,18 @@ class SolidBody(NamedPoints):
 
     @property
     def drawn(self) -> DrawnSurface:
-        """Its surface as it is drawn: the faces of elements that no other one shares, and how modes move them."""
+        """Surface for drawing: the faces that belong to one element only, with their mode shapes."""
         return surface_of_mesh(self.mesh, self.shapes)
 
     @property
     def drawn_at_rest(self) -> DrawnSurface:
-        """Its surface as it is drawn, without modes, which need not be known."""
+        """Surface for drawing, without modes, which need not be known."""
         return surface_of_mesh(self.mesh, np.zeros((3 * len(self.mesh.nodes), 0)))
 
     def modal_coordinates(self, vector: Any) -> Array:
         """Return ``Phi^T M x`` of displacements or velocities x of all nodes, shape (nodes, 3), as shape (modes,).
 
-        Residual shapes have none: they follow the forces alone.
+        They are zero for residual shapes, which depend on the forces alone.
         """
         values = numbers("vector", vector)
         count = len(self.mesh.nodes)
@@ -329,7 +329,7 @@ class SolidBody(NamedPoints):
         return f"SolidBody({self.dimensions}, points {listed(self.points)}{name})"
 
     def __getstate__(self) -> dict[str, Any]:
-        # The modes go along: another process need not find them again.
+        # The modes are included, so that another process need not compute them again.
         return {
             name: dict(value) if isinstance(value, MappingProxyType) else value for name, value in vars(self).items()
         }
@@ -342,7 +342,7 @@ class SolidBody(NamedPoints):
 
     @property
     def _free(self) -> Array:
-        """Which degrees of freedom are not held, shape (3 nodes,)."""
+        """Mask of the degrees of freedom that are not held, shape (3 nodes,)."""
         free = np.ones((len(self.mesh.nodes), 3), dtype=bool)
         for name, directions in self.fixed.items():  # type: ignore[union-attr]
             for direction in directions:
@@ -412,7 +412,7 @@ def _surface(body: SolidBody, largest: float) -> PointSurface:
 
 
 def _on_faces(body: SolidBody) -> Array:
-    """Return unit forces at the points of faces that touch, along x, y and z each, shape (3 nodes, forces)."""
+    """Return unit forces at the points of contact faces, along x, y and z each, shape (3 nodes, forces)."""
     places = [place for name in body.contact_faces for place in body.face_points(name).place.tolist()]
     forces = np.zeros((len(body.mesh.nodes), 3, len(places), 3))
     for number, place in enumerate(places):
@@ -423,7 +423,7 @@ def _on_faces(body: SolidBody) -> Array:
 
 
 def _rigid(mesh: SolidMesh, free: Array, mass: Any) -> Array:
-    """Return the rigid motions that held nodes leave, mass-normalised, shape (free, motions)."""
+    """Return the rigid motions that held nodes allow, mass-normalised, shape (free, motions)."""
     size = float(np.linalg.norm(mesh.size))
     places = (mesh.nodes - mesh.nodes.mean(axis=0)) / size
     turns = [np.cross(axis, places).ravel() for axis in np.eye(3)]
@@ -434,7 +434,7 @@ def _rigid(mesh: SolidMesh, free: Array, mass: Any) -> Array:
         share = np.append(share, np.zeros(6 - share.size))
         motions = motions @ ways[share <= RIGID * max(share[0], 1.0)].T
     own = motions[free]
-    # As exact as the coordinates: by Cholesky twice.
+    # Cholesky twice, so that they are as accurate as the coordinates.
     for _ in range(2 if own.shape[1] else 0):
         factor = np.linalg.cholesky(own.T @ (mass @ own))
         own = scipy.linalg.solve_triangular(factor, own.T, lower=True).T
@@ -518,7 +518,7 @@ def _node(name: Any, where: Any, mesh: SolidMesh, own: Mapping[str, int]) -> int
 
 
 def _fixed(given: Any, mesh: SolidMesh) -> dict[str, str]:
-    """Return the directions in which groups are held, by their names."""
+    """Return the held directions of groups by their names."""
     if isinstance(given, str) or not isinstance(given, (Sequence, Mapping)):
         raise ArgumentError("fixed", "be names of groups, or directions by name", given)
     found = {}

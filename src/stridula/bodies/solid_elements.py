@@ -14,14 +14,14 @@ from .matrix_input import ROUND_OFF
 from .sections import Material
 from .solid_kinds import ElementKind
 
-# Exact for the mass of quadratic elements with straight edges.
+# Degrees of integration, exact for the mass of quadratic elements with straight edges.
 DEGREES = (2, 4, 4)
-# Elements that are assembled at once, which bounds the memory.
+# Elements assembled at once, to bound the memory.
 AT_ONCE = 2048
 
 
 def check_elements(kind: ElementKind, nodes: Array, elements: Array) -> None:
-    """Raise ValueError where elements do not share their nodes, or one is inverted at a point of integration."""
+    """Raise ValueError if elements do not share their nodes, or one is inverted at a point of integration."""
     _check_shared(kind, elements)
     points, _ = _integration(kind)
     element = _finite_element(kind)
@@ -85,7 +85,7 @@ def assembled(
     Returns
     -------
     mass : csr_array, shape (nodes, nodes)
-        Mass of one direction [kg]; the three directions have the same and are not coupled.
+        Mass along one direction [kg]; it is the same for all three, which are not coupled.
     stiffness : csr_array, shape (3 nodes, 3 nodes)
         Stiffness [N/m], the three directions of a node one after the other.
     """
@@ -135,7 +135,7 @@ def _of_part(kind: ElementKind, mesh: Any, number: Array, part: Array, material:
 
 
 def _mesh(kind: ElementKind, nodes: Array, elements: Array) -> tuple[Any, Array]:
-    """Return the mesh of scikit-fem, and the number of the node at each of its own degrees of freedom."""
+    """Return the mesh of scikit-fem, and the number of our node at each of its degrees of freedom."""
     import skfem
 
     element = _finite_element(kind)
@@ -150,13 +150,13 @@ def _mesh(kind: ElementKind, nodes: Array, elements: Array) -> tuple[Any, Array]
 
 
 def _order(kind: ElementKind, element: Any) -> Array:
-    """Return the number of our node at each node of scikit-fem; both say where theirs lie in the unit element."""
+    """Return the number of our node at each node of scikit-fem, matched by coordinates in the unit element."""
     distance = np.linalg.norm(element.doflocs[:, None] - kind.nodes[None], axis=2)
     return np.asarray(np.argmin(distance, axis=1))
 
 
 def _check_shared(kind: ElementKind, elements: Array) -> None:
-    """Raise ValueError where an element names a node twice or an edge or a face has two middles."""
+    """Raise ValueError if an element names a node twice, or an edge or a face has two middles."""
     twice = (np.diff(np.sort(elements, axis=1), axis=1) == 0).any(axis=1)
     if twice.any():
         raise ArgumentError(

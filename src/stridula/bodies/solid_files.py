@@ -1,4 +1,4 @@
-"""Files of meshes in space, read by meshio, which is imported on first use."""
+"""Reading of mesh files in space by meshio, which is imported on first use."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ FORMATS = {
     ".vtk": "vtk",
     ".vtu": "vtu",
 }
-# Kinds of cells by how their names begin.
+# Kinds of cells by the beginnings of their names.
 _SOLID = ("tetra", "hexahedron", "wedge", "pyramid", "polyhedron", "VTK_LAGRANGE_TETRA", "VTK_LAGRANGE_HEXA")
 _SURFACE = ("triangle", "quad")
 _THIN = ("vertex", "line")
-# An array of whole numbers with more different ones names no groups.
+# Arrays with more distinct whole numbers do not define groups.
 MOST_GROUPS = 1000
 
 
 def read_mesh(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Return what a file of a mesh holds, as arguments of `SolidMesh`.
+    """Return the content of a mesh file as arguments of `SolidMesh`.
 
     Raises
     ------
@@ -65,11 +65,11 @@ def read_mesh(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def _read(path: str | os.PathLike[str], form: str, prefix: str) -> Any:
-    """Return the mesh of meshio, which tells of what it cannot read by printing and by leaving the program."""
+    """Return the mesh from meshio, which reports some errors by printing and exiting the program."""
     import meshio
     from meshio._mesh import topological_dimension
 
-    # meshio reads these and has forgotten that they are solid.
+    # meshio reads these kinds, but does not list their dimension.
     for kind in ("wedge15", "pyramid13"):
         topological_dimension.setdefault(kind, 3)
     said = io.StringIO()
@@ -88,7 +88,7 @@ def _read(path: str | os.PathLike[str], form: str, prefix: str) -> Any:
 
 
 def _parts(held: Any, groups: dict[str, dict[int, Array]]) -> dict[str, Any]:
-    """Return nodes, elements and named groups, nodes without an element left out."""
+    """Return nodes, elements and named groups, without nodes that have no element."""
     blocks = [block for block in held.cells if block.type.startswith(_SOLID)]
     kinds = sorted({block.type for block in blocks})
     is_whole = len(kinds) == 1 and kinds[0] in KINDS
@@ -108,7 +108,7 @@ def _parts(held: Any, groups: dict[str, dict[int, Array]]) -> dict[str, Any]:
         cut_mesh = cut_into_tetrahedra(places, of_blocks)
         places, given, owner, ends = cut_mesh.nodes, cut_mesh.elements, cut_mesh.owner, cut_mesh.ends
         kind = KINDS["tetra10" if given.shape[1] == 10 else "tetra"]
-    # What lies in two groups may stand in a file twice.
+    # An element in two groups may appear in a file twice.
     _, first, number = np.unique(np.sort(given, axis=1), axis=0, return_index=True, return_inverse=True)
     rank = np.argsort(np.argsort(first))
     elements, number = given[np.sort(first)], rank[number.ravel()]
@@ -134,7 +134,7 @@ def _parts(held: Any, groups: dict[str, dict[int, Array]]) -> dict[str, Any]:
 
 
 def _volumes(held: Any, groups: dict[str, dict[int, Array]], number: Array, owner: Array) -> dict[str, Array]:
-    """Return the elements of each group of solid elements, after those that stand twice are joined.
+    """Return the elements of each group of solid elements, with duplicates merged.
 
     They are parts of the elements of the file, whose numbers are in `owner`.
     """
@@ -179,14 +179,14 @@ def _faces_and_sets(
 
 
 def _add(groups: dict[str, Array], name: str, those: Array) -> None:
-    """Join numbers to a group; nodes without an element, numbered -1, and empty groups are left out."""
+    """Add numbers to a group; nodes without an element, numbered -1, and empty groups are left out."""
     those = those[those >= 0] if those.ndim == 1 else those
     if those.size:
         groups[name] = np.unique(np.append(groups[name], those) if name in groups else those, axis=0)
 
 
 def _surface(kind: ElementKind, elements: Array) -> dict[tuple[int, ...], tuple[int, int]]:
-    """Return the faces that one element alone has, by their sorted corners: number of the element and of its face."""
+    """Return the faces of one element only, by their sorted corners: number of the element and of its face."""
     element, side = outer_faces(kind, elements).T
     keys = map(tuple, np.sort(elements[element[:, None], np.array(kind.faces)[side]], axis=1).tolist())
     return dict(zip(keys, zip(element.tolist(), side.tolist(), strict=True), strict=True))
@@ -221,7 +221,7 @@ def _grouped(held: Any, form: str, path: str | os.PathLike[str]) -> dict[str, di
 
 
 def _by_value(values: Any) -> Iterator[tuple[int, Array]]:
-    """Yield each whole number in an array and where it stands; nothing of an array of other numbers or of too many."""
+    """Yield each distinct whole number of an array with its indices; nothing for other arrays or too many numbers."""
     array = np.asarray(values)
     if array.ndim != 1 or array.dtype.kind not in "iu":
         return
@@ -232,7 +232,7 @@ def _by_value(values: Any) -> Iterator[tuple[int, Array]]:
 
 
 def _of_gmsh(held: Any) -> dict[str, dict[int, Array]]:
-    """Return the physical groups; those without a name are called by their number."""
+    """Return the physical groups; groups without a name get their number."""
     names = {(int(dimension), int(tag)): name for name, (tag, dimension) in held.field_data.items()}
     found: dict[str, dict[int, Array]] = {}
     for at, tags in enumerate(held.cell_data.get("gmsh:physical", [])):
@@ -248,7 +248,7 @@ def _of_gmsh(held: Any) -> dict[str, dict[int, Array]]:
 
 
 def _of_abaqus(held: Any, path: str | os.PathLike[str]) -> dict[str, dict[int, Array]]:
-    """Return the sets of elements; those named at ``*ELEMENT`` are told by its lines."""
+    """Return the sets of elements; those named at ``*ELEMENT`` are read from its lines."""
     found: dict[str, dict[int, Array]] = {}
     with open(path, encoding="latin-1") as file:
         at_blocks = [_parameters(line) for line in file if line.upper().startswith("*ELEMENT,")]

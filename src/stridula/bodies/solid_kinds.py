@@ -1,4 +1,4 @@
-"""Kinds of elements in space: where their nodes lie, and which are on their edges and faces."""
+"""Kinds of elements in space: coordinates of their nodes, and the nodes of their edges and faces."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _TETRA_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 _TETRA_FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3))
 _HEXA = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 _HEXA_EDGES = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
-# In the order in which VTK numbers the nodes in the middle of faces; corners go round the outward normal.
+# In VTK's order of the nodes in the middle of faces; corners counter-clockwise about the outward normal.
 _HEXA_FACES = ((0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7))
 
 
@@ -27,19 +27,19 @@ class ElementKind:
     Attributes
     ----------
     name : str
-        What meshio calls it.
+        Name in meshio.
     words : str
-        What people call it.
+        Name in messages.
     corners : tuple
         Coordinates of the corners in the unit element.
     edges, faces : tuple
-        Numbers of the corners of each edge and of each face, these round the outward normal.
+        Numbers of the corners of each edge and of each face, the latter counter-clockwise about the outward normal.
     middles : int
-        0: corners are its only nodes; 1: middles of edges are nodes, too; 2: those of faces and of the element as well.
+        Nodes besides corners: 0 for none; 1 for middles of edges; 2 also for middles of faces and of the element.
     finite_element : str
-        Its shape functions in scikit-fem.
+        Name of its class in scikit-fem.
     quadratic : str
-        Kind with middles of edges, itself if it has them.
+        Kind with nodes in the middle of edges, itself if it has them.
     """
 
     name: str
@@ -94,7 +94,7 @@ KINDS = {
 
 
 def outer_faces(kind: ElementKind, elements: Array) -> Array:
-    """Return the faces that belong to one element alone: its number and that of its face, shape (faces, 2)."""
+    """Return the faces that belong to one element only: numbers of the element and its face, shape (faces, 2)."""
     corners = np.sort(elements[:, np.array(kind.faces)], axis=2).reshape(-1, len(kind.faces[0]))
     _, which, times = np.unique(corners, axis=0, return_inverse=True, return_counts=True)
     return np.stack(np.divmod(np.flatnonzero(times[which.ravel()] == 1), len(kind.faces)), axis=1)

@@ -22,9 +22,9 @@ from .matrix_input import check_finite, numbers
 from .solid_elements import check_elements
 from .solid_kinds import KINDS, ElementKind
 
-# Meshes of more nodes have factors that no usual memory holds.
+# Factors of meshes with more nodes exceed usual memory.
 MOST_NODES = 1_000_000
-# Of the size of a mesh: how far a point may lie from the node that is meant.
+# Largest distance of a point from its node, relative to the size of a mesh.
 TOLERANCE = 1e-3
 
 
@@ -35,12 +35,12 @@ class Face:
     Attributes
     ----------
     nodes : ndarray, shape (faces, nodes of one)
-        Numbers of the nodes of each face of an element: corners in order round the outward normal, middles of edges,
-        middle.
+        Numbers of the nodes of each face of an element: corners counter-clockwise about the outward normal, middles of
+        edges, middle.
     area : ndarray, shape (faces,)
-        Areas [m²], of curved ones of their projection along the normal.
+        Areas [m²]; for curved faces, of their projection along the normal.
     normal : ndarray, shape (faces, 3)
-        Outward unit normals, of curved faces the mean.
+        Outward unit normals; for curved faces, the mean.
     """
 
     nodes: Array
@@ -50,7 +50,7 @@ class Face:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SolidMesh:
-    """A mesh of tetrahedra or hexahedra, of one kind, with named parts.
+    """A mesh of tetrahedra or hexahedra of one kind, with named parts.
 
     Meshes are compared and hashed by content and cannot be changed.
 
@@ -74,8 +74,8 @@ class SolidMesh:
     Raises
     ------
     ValueError
-        If elements are inverted, do not form one part or name nodes that are not there, if a node has no element, or if
-        a group names what is not there.
+        If elements are inverted, form several parts or refer to missing nodes, if a node has no element, or if a group
+        refers to missing nodes, elements or faces.
     """
 
     nodes: Array
@@ -111,9 +111,9 @@ class SolidMesh:
         """Read a mesh of gmsh (``.msh``), Abaqus or CalculiX (``.inp``), Nastran (``.bdf``, ``.nas``) or VTK.
 
         Groups of elements become volumes. Groups of faces, or of nodes that hold all nodes of a face on the surface,
-        become faces. Groups of nodes stay sets of nodes. Names are those of the file: physical groups of gmsh, element
-        and node sets of Abaqus, the numbers of properties of Nastran, in VTK the name of an array of whole numbers and
-        a number in it, such as "region 2". Nodes without a solid element are left out.
+        become faces. Groups of nodes remain sets of nodes. Names are those of the file: physical groups of gmsh,
+        element and node sets of Abaqus, numbers of properties of Nastran; in VTK the name of an array of whole numbers
+        and a number in it, such as "region 2". Nodes without a solid element are left out.
 
         Parameters
         ----------
@@ -125,15 +125,15 @@ class SolidMesh:
         Returns
         -------
         SolidMesh
-            The mesh, its elements as they are in the file; wedges, pyramids and mixtures of kinds cut into tetrahedra.
+            The mesh, with the elements of the file; wedges, pyramids and mixtures of kinds are cut into tetrahedra.
 
         Raises
         ------
         OSError
             If the file cannot be read.
         ValueError
-            If the file is damaged, too large, of another kind or has solid elements of a kind that is not known
-            or of several orders, or as in `SolidMesh`.
+            If the file is damaged, too large, of another format, or has solid elements of an unknown kind or of several
+            orders, or as in `SolidMesh`.
         """
         instance("path", path, (str, os.PathLike))
         length = positive("scale", scale)
@@ -165,9 +165,9 @@ class SolidMesh:
         divisions: Sequence[int],
         axis: str = "y",
     ) -> SolidMesh:
-        """Return a sector of a ring, of hexahedra of 20 nodes; a whole ring for a turn of 2 pi.
+        """Return a sector of a ring of hexahedra of 20 nodes; a whole ring for an angle of 2 pi.
 
-        The ring stands on the plane across its axis through the origin, which is its centre. Its faces are ``inner``
+        The ring stands on the plane normal to its axis through the origin, which is its centre. Its faces are ``inner``
         and ``outer``, ``start`` and ``end`` of the sector, ``bottom`` and ``top`` along the axis.
 
         Parameters
@@ -175,11 +175,11 @@ class SolidMesh:
         radii : sequence of float, length 2
             Inner and outer radius [m].
         angles : sequence of float, length 2
-            Angles of start and end [rad], counted about the axis from the next one: from z where the axis is y.
+            Angles of start and end [rad] about the axis, counted from the next axis: from z if the axis is y.
         height : float or mapping
-            Length along the axis [m], or that of each layer by its name from the bottom up, which becomes a volume.
+            Length along the axis [m], or the length of each layer by name from the bottom up; each becomes a volume.
         divisions : sequence of int, length 3
-            Numbers of elements along radius, angle and axis, there through each layer.
+            Numbers of elements along radius, angle and axis, the latter for each layer.
         axis : str, optional
             "x", "y" or "z".
         """
@@ -199,10 +199,10 @@ class SolidMesh:
     def extrusion(
         cls, nodes: Any, quadrilaterals: Any, height: float | Mapping[str, float], layers: int, axis: str = "z"
     ) -> SolidMesh:
-        """Return a plane mesh of quadrilaterals drawn along an axis, of hexahedra of 20 nodes.
+        """Return a plane mesh of quadrilaterals extruded along an axis into hexahedra of 20 nodes.
 
-        The plane mesh is in the next two coordinates: x and y for z, z and x for y. Its faces are ``bottom``, ``top``
-        and ``side``.
+        The plane mesh has the next two coordinates: x and y for z, z and x for y. The faces are ``bottom``, ``top`` and
+        ``side``.
 
         Parameters
         ----------
@@ -211,9 +211,9 @@ class SolidMesh:
         quadrilaterals : array_like of int, shape (elements, 4)
             Numbers from 0 of the corners of each, counterclockwise.
         height : float or mapping
-            Length along the axis [m], or that of each layer by its name from the bottom up, which becomes a volume.
+            Length along the axis [m], or the length of each layer by name from the bottom up; each becomes a volume.
         layers : int
-            Number of elements along the axis, through each such layer.
+            Number of elements along the axis for each layer.
         axis : str, optional
             "x", "y" or "z".
         """
@@ -242,7 +242,7 @@ class SolidMesh:
     def quadratic(self) -> SolidMesh:
         """Return the mesh with nodes in the middle of its straight edges; itself if it has them.
 
-        Such a node joins a set of nodes that holds both ends of its edge.
+        Such a node is added to sets of nodes that hold both ends of its edge.
         """
         if self.element_kind.middles:
             return self
@@ -256,15 +256,15 @@ class SolidMesh:
         Parameters
         ----------
         offset : sequence of float, length 3, optional
-            How far it is shifted along x, y and z [m].
+            Shift along x, y and z [m].
         rotation : sequence of float, length 3, optional
-            Components along x, y and z of the axis of the turn times its angle [rad]: (0, 0, pi) is upside down.
+            Rotation vector: components along x, y and z of the axis times the angle [rad]; (0, 0, pi) is upside down.
         """
         shift, turn = (_three(word, those, finite) for word, those in (("offset", offset), ("rotation", rotation)))
         return replace(self, nodes=self.nodes @ Rotation.from_rotvec(turn).as_matrix().T + np.array(shift))
 
     def named(self, name: str, nodes: Any) -> SolidMesh:
-        """Return the mesh with one more set of nodes, such as ``np.flatnonzero(mesh.nodes[:, 2] == 0.0)``."""
+        """Return the mesh with an additional set of nodes, such as ``np.flatnonzero(mesh.nodes[:, 2] == 0.0)``."""
         return replace(self, node_sets={**self.node_sets, name: nodes})
 
     def face(self, name: str) -> Face:
@@ -273,7 +273,7 @@ class SolidMesh:
         Raises
         ------
         ValueError
-            If no group of faces is called so.
+            If there is no group of faces of this name.
         """
         choice("face", name, tuple(self.faces))
         element, side = self.faces[name].T
@@ -288,7 +288,7 @@ class SolidMesh:
         Raises
         ------
         ValueError
-            If no group of faces or nodes is called so.
+            If there is no group of faces or nodes of this name.
         """
         choice("group", name, (*self.faces, *self.node_sets))
         return np.unique(self.face(name).nodes if name in self.faces else self.node_sets[name])
@@ -301,12 +301,12 @@ class SolidMesh:
         place : sequence of float, length 3
             Coordinates [m].
         tolerance : float, optional
-            How far the node may be [m]; a thousandth of the size of the mesh if left out.
+            Largest distance of the node [m]; a thousandth of the size of the mesh if left out.
 
         Raises
         ------
         ValueError
-            If it lies farther away.
+            If the node is farther away.
         """
         there = np.array(_three("place", place, finite))
         allowed = (
@@ -352,7 +352,7 @@ class SolidMesh:
         return content.digest()
 
     def _check_whole(self) -> None:
-        """Raise ValueError where a node has no element or the elements form several parts."""
+        """Raise ValueError if a node has no element or the elements form several parts."""
         lonely = np.setdiff1d(np.arange(len(self.nodes)), self.elements)
         if lonely.size:
             raise ArgumentError(
@@ -381,7 +381,7 @@ def whole(word: str, value: Any, limit: int) -> Array:
 
 
 def _unpickled(values: dict[str, Any]) -> SolidMesh:
-    """Return a mesh from its values, which were checked when it was made."""
+    """Return a mesh from its values, which were checked when it was first created."""
     mesh = object.__new__(SolidMesh)
     for name, value in values.items():
         mesh._set(name, _frozen(value) if isinstance(value, dict) else value)
@@ -424,7 +424,7 @@ def _face_groups(groups: Any, elements: int, sides: int) -> Mapping[str, Array]:
 
 
 def _area_vectors(places: Array, kind: ElementKind, corners: int) -> Array:
-    """Return area times outward normal of faces, ``1/2 oint r x dr``, exact for straight and for parabolic edges."""
+    """Return area times outward normal of faces, ``1/2 oint r x dr``, exact for straight and parabolic edges."""
     first = places[:, :corners]
     second = np.roll(first, -1, axis=1)
     if not kind.middles:
@@ -442,7 +442,7 @@ def _three(word: str, values: Any, check: Any) -> tuple[Any, Any, Any]:
 
 
 def _heights(given: Any) -> dict[str, float]:
-    """Return the thickness of each layer by its name, empty for the only one."""
+    """Return the thickness of each layer by its name; the name is empty for a single layer."""
     if not isinstance(given, Mapping):
         return {"": positive("height", given)}
     if not given or not all(isinstance(name, str) and name for name in given):
@@ -451,7 +451,7 @@ def _heights(given: Any) -> dict[str, float]:
 
 
 def _divisions(values: Any) -> tuple[int, int, int]:
-    """Return numbers of elements along three directions, of which there are not too many in all."""
+    """Return numbers of elements along three directions, after a check of their product."""
     parts = _three("divisions", values, count)
     elements = math.prod(parts)
     if elements > MOST_NODES:

@@ -1,4 +1,4 @@
-"""Pieces into which flat faces of two meshes cut each other, and points of integration on them."""
+"""Intersections of flat faces of two meshes, and points of integration on them."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from .solid_places import FacePoints
 if TYPE_CHECKING:
     from .solid_mesh import Face, SolidMesh
 
-# Cosine less than 1 between normals of faces that are flat.
+# Largest deviation from 1 of the cosine between normals of flat faces.
 FLAT = 1e-9
-# Area of a piece, relative to that of a face, that is rounding.
+# Largest area of a piece, relative to that of a face, that is due to rounding.
 NOTHING = 1e-9
-# Points of a triangle that are exact for polynomials of second degree.
+# Points of integration of a triangle, exact for polynomials of second degree.
 _SHARES = np.array([(4.0, 1.0, 1.0), (1.0, 4.0, 1.0), (1.0, 1.0, 4.0)]) / 6.0
 
 
 def overlaid(first: Face, first_mesh: SolidMesh, second: Face, second_mesh: SolidMesh) -> FacePoints:
-    """Return points of integration on the pieces of faces that lie over those of another mesh.
+    """Return points of integration on the pieces of faces that overlap those of another mesh.
 
     Raises
     ------
     ValueError
-        If faces are not flat, or if a part of the first has nothing of the other before it.
+        If faces are not flat, or if a part of the first is not opposite the other.
     """
     normal = first.area @ first.normal
     normal = normal / np.linalg.norm(normal)

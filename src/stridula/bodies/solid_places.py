@@ -16,10 +16,10 @@ from .solid_kinds import ElementKind
 if TYPE_CHECKING:
     from .solid_mesh import SolidMesh
 
-# Share of the size of an element by which curved sides may lie outside of its nodes, and a place outside of it.
+# Shares of the size of an element: bulge of curved sides beyond its nodes, and tolerance for places outside of it.
 BULGE, OUTSIDE = 0.2, 1e-6
 STEPS = 30
-# Points of integration that are exact for a uniform pressure on faces of second degree, and their weights.
+# Points of integration and weights, exact for a uniform pressure on faces of second degree.
 _LINE = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)
 _SQUARE = np.array([(x, y) for x in _LINE for y in _LINE]), np.full(4, 0.25)
 _TRIANGLE = np.array([(1.0, 1.0), (4.0, 1.0), (1.0, 4.0)]) / 6.0, np.full(3, 1.0 / 6.0)
@@ -34,7 +34,7 @@ class FacePoints:
     place : ndarray, shape (points, 3)
         Coordinates [m].
     area : ndarray, shape (points,)
-        Areas that they stand for [m²].
+        Areas that the points represent [m²].
     normal : ndarray, shape (points, 3)
         Outward unit normals.
     """
@@ -60,7 +60,7 @@ def face_mean(mesh: SolidMesh, name: str) -> Array:
 
 
 def _integrated(mesh: SolidMesh, name: str) -> tuple[FacePoints, Array, Array]:
-    """Return the points of integration, the nodes of their elements and the values of the shapes there."""
+    """Return the points of integration, the nodes of their elements and the values of the shape functions there."""
     mesh.face(name)
     kind, found = mesh.element_kind, []
     for element, side in mesh.faces[name]:
@@ -91,7 +91,7 @@ def _on_face(u: Array, v: Array, corners: int) -> tuple[Array, Array, Array]:
 
 @lru_cache(maxsize=4096)
 def located(mesh: SolidMesh, place: tuple[float, float, float]) -> tuple[Array, Array]:
-    """Return the nodes that move a place of a mesh, and their shares.
+    """Return the nodes of the element at a place of a mesh, and their shares in its displacement.
 
     Raises
     ------
@@ -137,6 +137,6 @@ def _local(kind: ElementKind, nodes: Array, place: Array) -> Array:
 
 
 def _beyond(kind: ElementKind, local: Array) -> float:
-    """Return how far coordinates are outside of the unit element, not above zero within it."""
+    """Return the distance of coordinates outside of the unit element, zero or below within it."""
     far = local.sum() if len(kind.corners) == 4 else local.max()
     return float(max(-local.min(), far - 1.0))

@@ -1,4 +1,4 @@
-"""Meshes in space without a mesher: blocks, sectors of rings, drawn plane meshes; nodes in the middle of edges."""
+"""Meshes in space without a mesher: blocks, sectors of rings, extrusions; nodes in the middle of edges."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def sector(
     unit["faces"] = {names[side]: faces for side, faces in unit["faces"].items()}
     if is_ring:
         unit["faces"] = {name: faces for name, faces in unit["faces"].items() if name not in ("start", "end")}
-    # Middles are found where edges are straight, and bent with them.
+    # Middles are set on straight edges, then bent with them.
     bent = with_middles(unit)
     radius = radii[0] + (radii[1] - radii[0]) * bent["nodes"][:, 0]
     angle = angles[0] + (angles[1] - angles[0]) * bent["nodes"][:, 1]
@@ -72,14 +72,14 @@ def sector(
 def extrusion(
     places: Array, quadrilaterals: Array, heights: Mapping[str, float], through_each: int, axis: str
 ) -> dict[str, Any]:
-    """Return a plane mesh of quadrilaterals drawn along an axis, as arguments of `SolidMesh`."""
+    """Return a plane mesh of quadrilaterals extruded along an axis, as arguments of `SolidMesh`."""
     layers = through_each * len(heights)
     level = np.repeat(np.interp(np.linspace(0.0, 1.0, layers + 1), *_levels(heights)), len(places))
     nodes = np.column_stack([np.tile(places, (layers + 1, 1)), level])
     lower = quadrilaterals[None] + len(places) * np.arange(layers)[:, None, None]
     elements = np.concatenate([lower, lower + len(places)], axis=2).reshape(-1, 8)
     count = len(quadrilaterals)
-    # Sides that one quadrilateral alone has, in the order of the faces 2, 1, 3, 0 of a hexahedron.
+    # Sides of one quadrilateral only, as the faces 2, 1, 3, 0 of a hexahedron.
     pairs = np.sort(np.stack([quadrilaterals, np.roll(quadrilaterals, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     _, which, times = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
     element, edge = np.divmod(np.flatnonzero(times[which.ravel()] == 1), 4)
@@ -98,12 +98,12 @@ def extrusion(
 
 
 def _levels(heights: Mapping[str, float]) -> tuple[Array, Array]:
-    """Return ends of layers of equal thickness within 0 and 1, and where they are [m]."""
+    """Return the ends of layers of equal thickness from 0 to 1, and their true coordinates [m]."""
     return np.linspace(0.0, 1.0, len(heights) + 1), np.append(0.0, np.cumsum(list(heights.values())))
 
 
 def _layers(heights: Mapping[str, float], of_element: Array) -> dict[str, Array]:
-    """Return the elements of each layer that has a name."""
+    """Return the elements of each named layer."""
     return {name: np.flatnonzero(of_element == number) for number, name in enumerate(heights) if name}
 
 
@@ -140,5 +140,5 @@ def _closed(places: Array, parts: dict[str, Any]) -> tuple[Array, dict[str, Any]
 
 
 def _about(places: Array, axis: str) -> Array:
-    """Return places given in two directions and along an axis in x, y and z."""
+    """Return places given in two directions and along an axis as x, y and z."""
     return np.roll(places, "xyz".index(axis) + 1, axis=1)

@@ -1,4 +1,4 @@
-"""The outer surface of a meshed body as points: faces of one element alone, each cut into patches."""
+"""The outer surface of a meshed body as points: faces of one element only, each cut into patches."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from .solid_kinds import ElementKind, outer_faces
 if TYPE_CHECKING:
     from .solid_mesh import SolidMesh
 
-# Side of a patch over the radius of the ball that fits into most of the body, and over the largest part for sound.
+# Side of a patch over the median radius of inscribed balls, and over the largest part for sound.
 PATCH_OF_BALL, PATCH_OF_PART = 1.0, 0.8
-# Points that a surface has, about, at most.
+# Approximate largest number of points of a surface.
 MOST = 1000
-# Points at which thickness is looked for, about.
+# Approximate number of points at which the thickness is measured.
 SAMPLES = 300
-# Angle between normals from which on an edge is sharp [rad], and the share of a patch that is cut off along it, as
-# pressures change fast there.
+# Least angle between normals at a sharp edge [rad], and the share of a patch that is cut off along it, as pressures
+# vary strongly there.
 SHARP, AT_EDGE = 0.25 * np.pi, 0.3
 
 
 def cut_faces(mesh: SolidMesh, shapes: Array, largest: float) -> PointSurface:
-    """Return points all over the outer surface, as fine as sound and thickness ask for.
+    """Return points all over the outer surface, as fine as sound and thickness require.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def cut_faces(mesh: SolidMesh, shapes: Array, largest: float) -> PointSurface:
 
 
 def _cut(mesh: SolidMesh, shapes: Array, size: float) -> PointSurface:
-    """Return the middles of patches whose sides are about as long as a size, finer along sharp edges."""
+    """Return the middles of patches with sides of about a given size, finer along sharp edges."""
     kind, found = mesh.element_kind, []
     outer = outer_faces(kind, mesh.elements)
     for (element, side), sharp in zip(outer, _sharp_sides(mesh, outer).tolist(), strict=True):
@@ -71,7 +71,7 @@ def _cut(mesh: SolidMesh, shapes: Array, size: float) -> PointSurface:
 
 
 def _sharp_sides(mesh: SolidMesh, outer: Array) -> Array:
-    """Return which sides of outer faces, from a corner to the next, are sharp edges, shape (faces, sides)."""
+    """Return a mask of the sides of outer faces, from a corner to the next, that are sharp edges, (faces, sides)."""
     kind = mesh.element_kind
     element, number = outer.T
     corners = np.array(kind.faces)[number]
@@ -92,7 +92,7 @@ def _sharp_sides(mesh: SolidMesh, outer: Array) -> Array:
 
 
 def _merged(surface: PointSurface, size: float) -> PointSurface:
-    """Return one point for all that lie in a cube of a size and face the same way."""
+    """Return one point for all points in a cube of a given size that face the same way."""
     facing = np.abs(surface.normals).argmax(axis=1)
     sign = np.take_along_axis(surface.normals, facing[:, None], axis=1)[:, 0] > 0.0
     cubes = np.floor(surface.points / size).astype(np.int64)
@@ -104,7 +104,7 @@ def _merged(surface: PointSurface, size: float) -> PointSurface:
     )
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     owners = which.ravel()
-    # A middle that lies on the patch of another makes way for the nearest middle of its own.
+    # A mean that lies on the patch of another point is replaced by the nearest middle of its own patches.
     astray = np.flatnonzero(owners[cKDTree(surface.points).query(points)[1]] != np.arange(len(points)))
     for number in astray.tolist():
         own = np.flatnonzero(owners == number)
@@ -118,8 +118,8 @@ def _patches(
 ) -> tuple[Array, Array, Array]:
     """Return the patches of a face of the unit element.
 
-    Shares of the nodes in their middles, their slopes, and the corners of the patches seen from their middles, shape
-    (patches, 4, 3), of triangles the last one twice.
+    Shape functions at their middles, their slopes, and the corners of the patches relative to their middles, shape
+    (patches, 4, 3); the last one twice for triangles.
     """
     corners = kind.nodes[list(kind.faces[side])]
     first, second = corners[1] - corners[0], corners[-1] - corners[0]
@@ -130,7 +130,7 @@ def _patches(
         ends = np.stack([np.stack([u, u + wide, u + wide, u]), np.stack([v, v, v + high, v + high])])
         middles = ends.mean(axis=1)
     else:
-        # Triangles that stand and triangles on their heads.
+        # Upright triangles and inverted ones.
         (count,) = counts
         i, j = (one.ravel() for one in np.meshgrid(np.arange(count), np.arange(count)))
         up, down = i + j < count, i + j < count - 1
@@ -144,6 +144,6 @@ def _patches(
 
 
 def _cuts(count: int, low: bool, high: bool) -> Array:
-    """Return where a side of length 1 is cut into parts, its first and last in two where they are at sharp edges."""
+    """Return the cuts of a side of length 1 into parts; the first and last part are cut in two at sharp edges."""
     cuts = np.arange(count + 1.0)
     return np.unique(np.concatenate([cuts, [AT_EDGE] if low else [], [count - AT_EDGE] if high else []])) / count

@@ -1,4 +1,4 @@
-"""Sparse matrices become mass-normalised modes up to a cutoff, and residual shapes."""
+"""Reduction of sparse matrices to mass-normalised modes up to a cutoff and residual shapes."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from .matrix_input import ROUND_OFF
 from .modes import Modes
 from .reduction import RESIDUAL, Reduction
 
-# Up to so many degrees of freedom all modes are found at once, in less time than some of them.
+# Degrees of freedom up to which a dense solution for all modes is faster than a search for some.
 DENSE = 600
-# Distance of the shift below zero, of the squared cutoff: far enough for digits, near enough for a fast search.
+# Negative shift as a share of the squared cutoff: far enough from zero for accuracy, near enough for a fast search.
 SHIFT = 0.01
-# Beyond this share of the modes all are found at once in less time, where that can be done.
+# Beyond one in so many of all modes a dense solution is faster, where it is possible.
 DENSE_SHARE = 8
-# Modes that are searched for at most; a thousand take minutes.
+# Most modes in a search; a thousand take minutes.
 MOST_MODES = 2000
-# Modes that the first search asks for.
+# Modes requested in the first search.
 FIRST_SEARCH = 24
-# A Ritz value at this tolerance tells whether a mode was left out.
+# Tolerance of the Ritz value that shows whether a mode was missed.
 COARSE = 1e-2
-# Steps of a search and of the static answers; both end after some ten.
+# Most steps of the static responses; they usually end after some ten.
 MOST_STEPS = 200
 
 
@@ -42,9 +42,9 @@ class SparseReduction:
     Attributes
     ----------
     angular_frequency : ndarray, shape (modes,)
-        Angular frequencies [rad/s], rising; zero of rigid modes, infinite of residual shapes, which come last.
+        Angular frequencies [rad/s], rising; zero for rigid modes, infinite for residual shapes, which come last.
     shapes : ndarray, shape (n, modes)
-        Mass-normalised shapes; of residual shapes those of unit stiffness.
+        Mass-normalised shapes; residual shapes have unit stiffness.
     """
 
     angular_frequency: Array
@@ -53,16 +53,16 @@ class SparseReduction:
 
 @dataclass(frozen=True)
 class SparseProblem:
-    """Matrices whose modes are asked for.
+    """Matrices whose modes are to be computed.
 
     Attributes
     ----------
     mass, stiffness : scipy sparse, shape (n, n)
         Mass matrix, positive definite, and stiffness matrix, positive semidefinite.
     forces : ndarray, shape (n, forces)
-        Forces that the modes left out shall answer statically.
+        Forces to which the modes left out respond statically.
     rigid : ndarray, shape (n, rigid), optional
-        Motions without stiffness, mass-normalised; found among the modes if left out.
+        Motions without stiffness, mass-normalised; computed with the modes if left out.
     order : ndarray, shape (n,), optional
         Order of elimination.
     """
@@ -89,7 +89,7 @@ def reduce_sparse_body(body: Any) -> Reduction:
 
 
 def modes_of(found: SparseReduction, damping: Any, translation: Array) -> Modes:
-    """Return modes with their damping, residual shapes without."""
+    """Return modes with their damping; residual shapes have none."""
     angular = found.angular_frequency
     massless = np.isinf(angular)
     check_damping_count(damping, int((~massless).sum()))
@@ -98,16 +98,16 @@ def modes_of(found: SparseReduction, damping: Any, translation: Array) -> Modes:
 
 
 def reduce_sparse(problem: SparseProblem, cutoff: float | None) -> SparseReduction:
-    """Return the modes up to a cutoff [Hz], all without, and the residual shapes of the forces.
+    """Return the modes up to a cutoff [Hz], all modes without one, and the residual shapes of the forces.
 
-    One factorisation of ``K + s M`` serves the search for the modes (shift-invert Lanczos) and the static answers.
+    One factorisation of ``K + s M`` serves the search for the modes (shift-invert Lanczos) and the static responses.
 
     Raises
     ------
     ValueError
         If no mode is left, or if a frequency is zero where no motion is rigid.
     """
-    # Factors are made of many small blocks, which threads delay; and one thread gives the same bits on every machine.
+    # Threads slow down the many small blocks of the factors; and one thread gives the same bits on every machine.
     with threadpool_limits(1):
         return _reduced(problem, cutoff)
 
@@ -117,7 +117,7 @@ def _reduced(problem: SparseProblem, cutoff: float | None) -> SparseReduction:
     highest = np.inf if cutoff is None else 2.0 * np.pi * cutoff
     largest = float(np.max(problem.stiffness.diagonal() / problem.mass.diagonal()))
     solve: Solve | None = None
-    # Below, rounding of the largest frequencies would drown the shift.
+    # A smaller shift would be lost in the rounding of the largest frequencies.
     shift = max(SHIFT * highest**2, 1e3 * ROUND_OFF * largest) if cutoff is not None else 0.0
     if cutoff is None or size <= DENSE:
         squared, shapes = _all_modes(problem)
@@ -142,10 +142,10 @@ def _reduced(problem: SparseProblem, cutoff: float | None) -> SparseReduction:
 
 
 def residual_shapes(problem: SparseProblem, solve: Solve, kept: Array) -> Array:
-    """Return the static answers to the forces that the modes kept do not give, orthonormal in the stiffness.
+    """Return the static responses to the forces without the share of the modes kept, orthonormal in the stiffness.
 
     ``Psi Psi^T`` is the flexibility of the modes left out wherever these forces act (MacNeal 1971). Rigid modes are
-    among those kept, so a free body answers with the inertia of its rigid motion.
+    among those kept, so the response of a free body includes the inertia of its rigid motion.
     """
     forces = problem.forces
     moved = problem.mass @ kept
@@ -153,7 +153,7 @@ def residual_shapes(problem: SparseProblem, solve: Solve, kept: Array) -> Array:
     forces = forces[:, sizes > 0.0] / sizes[sizes > 0.0]
     answers = _static_answers(problem.stiffness, solve, forces - moved @ (kept.T @ forces), kept, moved)
     own = np.sqrt(np.maximum(np.sum(answers * (problem.stiffness @ answers), axis=0), 0.0))
-    # Of a force that the modes kept answer, rounding is left.
+    # If the modes kept give the whole response to a force, only rounding remains.
     answers = answers[:, own > RESIDUAL] / own[own > RESIDUAL]
     if not answers.size:
         return np.zeros((len(kept), 0))
@@ -163,9 +163,10 @@ def residual_shapes(problem: SparseProblem, solve: Solve, kept: Array) -> Array:
 
 
 def _static_answers(stiffness: Any, solve: Solve, forces: Array, kept: Array, moved: Array) -> Array:
-    """Solve ``K a = f`` for forces beside the modes kept, by conjugate gradients with the shifted factors.
+    """Solve ``K a = f`` for forces orthogonal to the modes kept, by conjugate gradients with the shifted factors.
 
-    Beside these modes ``(K + s M)^-1 K`` lies between ``1 / (1 + s / w²)`` and 1, so that a few steps reach round-off.
+    Orthogonal to these modes ``(K + s M)^-1 K`` lies between ``1 / (1 + s / w²)`` and 1, so that a few steps reach
+    round-off.
     """
     answers, left = np.zeros_like(forces), forces.copy()
     way, before = np.zeros_like(forces), np.ones(forces.shape[1])
@@ -199,7 +200,7 @@ def _orthonormal_in(stiffness: Any, vectors: Array) -> tuple[Array, Array]:
     taken = 0
     for number in range(count):
         vector = vectors[:, number].copy()
-        # Once is not enough where vectors are nearly parallel; twice is.
+        # Once is not enough if vectors are nearly parallel; twice is.
         for _ in range(2):
             part = stiff[:, :taken].T @ vector
             vector -= basis[:, :taken] @ part
@@ -214,7 +215,7 @@ def _orthonormal_in(stiffness: Any, vectors: Array) -> tuple[Array, Array]:
 
 
 def _all_modes(problem: SparseProblem) -> tuple[Array, Array]:
-    """Return all squared frequencies, rising, and their shapes, without the rigid modes that are given."""
+    """Return all squared frequencies, rising, and their shapes, without the given rigid modes."""
     squared, shapes = scipy.linalg.eigh(problem.stiffness.toarray(), problem.mass.toarray())
     rigid = 0 if problem.rigid is None else problem.rigid.shape[1]
     return squared[rigid:], shapes[:, rigid:]
@@ -223,8 +224,8 @@ def _all_modes(problem: SparseProblem) -> tuple[Array, Array]:
 def _modes_up_to(problem: SparseProblem, solve: Solve, shift: float, highest: float) -> tuple[Array, Array]:
     """Return squared frequencies and shapes of the modes up to an angular frequency, and of some beyond.
 
-    Each search leaves out what is found, until the highest found lies beyond. A last one looks for modes that a
-    search may have passed over, such as one of an equal pair.
+    Each search excludes the modes found before, until the highest lies beyond. A last search looks for modes that
+    were missed, such as one of a pair of equal frequency.
     """
     size = problem.mass.shape[0]
     found = np.zeros((size, 0)) if problem.rigid is None else problem.rigid
@@ -252,7 +253,7 @@ def _modes_up_to(problem: SparseProblem, solve: Solve, shift: float, highest: fl
 def _search(
     problem: SparseProblem, solve: Solve, shift: float, found: Array, many: int, tolerance: float = 0.0
 ) -> tuple[Array, Array]:
-    """Return the lowest squared frequencies beside what is found, and their shapes."""
+    """Return the lowest squared frequencies except those of the modes found before, and their shapes."""
     mass, size = problem.mass, problem.mass.shape[0]
     moved = mass @ found
 
@@ -261,7 +262,7 @@ def _search(
         return answer - found @ (moved.T @ answer)
 
     operator = scipy.sparse.linalg.LinearOperator((size, size), matvec=inverse, dtype=float)
-    # The same start in each run, so that the same body has the same modes to the last bit.
+    # The same start in each run, so that the modes of a body are always identical.
     start = np.random.default_rng(found.shape[1]).standard_normal(size)
     values, vectors = scipy.sparse.linalg.eigsh(
         problem.stiffness, k=many, M=mass, sigma=-shift, OPinv=operator, v0=inverse(mass @ start), tol=tolerance
@@ -270,7 +271,7 @@ def _search(
 
 
 def _beside(mass: Any, vectors: Array, exact: int) -> Array:
-    """Return vectors made orthonormal in the mass; the first ones are so already and stay as they are."""
+    """Return vectors made orthonormal in the mass; the first `exact` ones already are and do not change."""
     first, others = vectors[:, :exact], vectors[:, exact:]
     # Twice is enough, as above.
     for _ in range(2):

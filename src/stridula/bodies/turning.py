@@ -1,4 +1,4 @@
-"""Bodies that turn about their axis, seen from where they stand."""
+"""Bodies that turn about their axis, seen from a frame at rest."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from ..histories import HISTORIES, Constant, History
 
 @dataclass(frozen=True)
 class Turning:
-    """How the pairs of modes of a body that turns are carried round its axis.
+    """Rotation of the pairs of modes of a body that turns about its axis.
 
-    The two modes of a pair, one a quarter of a wave behind the other, are oscillators in the material. Seen from where
-    the body stands, the pair is carried round with the material; the waves themselves lag behind it, by Coriolis
-    forces, where they move along the surface (Bryan 1890).
+    The two modes of a pair, a quarter of a wave apart, are oscillators in the material. Seen from a frame at rest, the
+    pair is carried round with the material; due to Coriolis forces the waves lag behind it where they move along the
+    surface (Bryan 1890).
 
     Parameters
     ----------
     velocity : float
-        Angular velocity about the axis, counter-clockwise seen from where it points to [rad/s].
+        Angular velocity about the axis, counter-clockwise with the axis pointing at the viewer [rad/s].
     pairs : sequence of pairs of int
-        Numbers of the two modes of each pair; the second is the first a quarter of a wave further round.
+        Numbers of the two modes of each pair; the second is the first turned by a quarter of a wave.
     order : sequence of int
         Number of waves round the axis of each pair, n.
     drag : sequence of float
-        Phase by which the waves of each pair turn for one radian of the body [1]: n less the Coriolis forces' share.
+        Phase by which the waves of each pair turn for one radian of the body [1]: n less the share of Coriolis forces.
     history : Constant, Ramp, Harmonic or Sampled, optional
-        How the angular velocity goes in time, a factor on it.
+        Factor on the angular velocity over time.
 
     Raises
     ------
@@ -64,9 +64,9 @@ class Turning:
             object.__setattr__(self, name, tuple(values))
 
     def angles(self, time: Array, step: float) -> Array:
-        """Return the angles turned between times a step apart [rad]."""
+        """Return the angles turned between consecutive times, a step apart [rad]."""
         if self.history.settled == 0.0:
-            # A difference of times would leave its rounding.
+            # Avoids the rounding of differences of times.
             return np.asarray(step * self.rate(time[1:]))
         return np.asarray(self.velocity * np.diff(self.history.integral(time)))
 

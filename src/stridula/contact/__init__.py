@@ -1,4 +1,4 @@
-"""Where bodies touch: friction laws, rigid tracks and point contact."""
+"""Contacts between bodies: friction laws, rigid tracks, point and surface contacts."""
 
 from .coulomb import Coulomb, StaticKinetic
 from .friction_law import FrictionLaw

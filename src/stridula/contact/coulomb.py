@@ -19,7 +19,7 @@ class Coulomb(FrictionLaw):
     Parameters
     ----------
     coefficient : float
-        Coefficient of friction mu [1], the same in sticking and in sliding.
+        Coefficient of friction mu [1], the same for sticking and sliding.
     """
 
     law: ClassVar[str] = "coulomb"
@@ -27,7 +27,7 @@ class Coulomb(FrictionLaw):
     coefficient: Coefficient
 
     def parameters(self) -> dict[str, float]:
-        """Return the numbers that the march gets."""
+        """Return the parameters of the law in the march."""
         return {"coefficient": self.coefficient}
 
     def coefficient_at(self, velocity: Array | float) -> Array:
@@ -42,8 +42,8 @@ class Coulomb(FrictionLaw):
 class StaticKinetic(StaticAndKinetic):
     """Coulomb friction with a static coefficient that must be overcome and a kinetic one in sliding.
 
-    A contact that sticks goes on sticking up to `static`; one that slides, or lands, is held from then on only below
-    `kinetic`. A contact that starts closed and at rest sticks.
+    A sticking contact holds up to `static`; a contact that slides or lands starts to stick only below `kinetic`. A
+    contact that starts closed and at rest sticks.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class StaticKinetic(StaticAndKinetic):
     kinetic: Coefficient
 
     def parameters(self) -> dict[str, float]:
-        """Return the numbers that the march gets."""
+        """Return the parameters of the law in the march."""
         return {"static": self.static, "kinetic": self.kinetic}
 
     def coefficient_at(self, velocity: Array | float) -> Array:

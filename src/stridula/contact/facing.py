@@ -1,4 +1,4 @@
-"""What lies before a place of a face: a point of a body, or a plane."""
+"""The point of a body, or the plane, opposite a place of a face."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from ..bodies.solid_places import FacePoints
 from ..checks import ArgumentError
 from .rigid_track import RigidTrack
 
-# Beyond the ends of a side of a profile, or of a face, relative to it, that still belongs to it.
+# Relative tolerance at the ends of a side of a profile, or at the edges of a face.
 BEYOND = 1e-9
-# What is met, its outward normal, and how far away it is [m].
+# The opposite point or plane, its outward normal, and its distance [m].
 Met = tuple[Any, Array, float]
 
 
 def on_plane(track: RigidTrack, _: str, place: Array, normal: Array, points: FacePoints) -> Met:
-    """Return the plane through the foremost points of a face, square to its mean normal."""
+    """Return the plane through the foremost points of a face, perpendicular to its mean normal."""
     facing = -(points.area @ points.normal)
     facing = facing / np.linalg.norm(facing)
     return track, facing, float(place @ facing - (points.place @ facing).min())
 
 
 def on_solid(body: SolidBody, face: str, place: Array, normal: Array, _: FacePoints) -> Met:
-    """Return the point of a face of a meshed body before a place, along its normal."""
+    """Return the point of a face of a meshed body opposite a place, along the normal there."""
     faces = body.face(face)
     corners = len(body.mesh.element_kind.faces[0])
     nodes = body.mesh.nodes[faces.nodes[:, :corners]]
@@ -52,7 +52,7 @@ def on_solid(body: SolidBody, face: str, place: Array, normal: Array, _: FacePoi
 
 
 def on_revolution(body: AxisymmetricBody, _: str, place: Array, normal: Array, points: FacePoints) -> Met:
-    """Return the point of the surface of a body of revolution before a place, along the normal there."""
+    """Return the point of the surface of a body of revolution opposite a place, along the normal there."""
     frame, mesh = body.frame, body.mesh
     x, y, z = frame @ (place - np.asarray(body.origin))
     r, theta = float(np.hypot(x, y)), float(np.arctan2(y, x))
@@ -80,7 +80,7 @@ def words_of(place: Array) -> str:
     return f"({', '.join(f'{one:.4g}' for one in place)})"
 
 
-# By the kind of what is touched.
+# Functions by the kind of the touched body.
 BEFORE: dict[str, Callable[..., Met]] = {
     RigidTrack.kind: on_plane,
     SolidBody.kind: on_solid,

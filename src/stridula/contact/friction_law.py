@@ -1,4 +1,4 @@
-"""What a law of friction says of itself."""
+"""Base classes of friction laws."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from .linearised import Linearised
 
 
 class FrictionLaw(ABC):
-    """A law of friction: a frozen dataclass with its range beside each field, and what the march has to know.
+    """Base class of friction laws: a frozen dataclass with a range beside each field, and properties for the march.
 
     Attributes
     ----------
     law : str
-        Its name in scenarios.
+        Name in scenarios.
     set_valued : bool
         Whether a contact sticks exactly, under any force up to a limit.
     depends_on_speed : bool
-        Whether friction in sliding depends on its speed.
+        Whether friction in sliding depends on the slip speed.
     over_decades : bool
-        Whether it changes over decades of the slip speed.
+        Whether it varies over decades of the slip speed.
     state_units : str
         SI unit of its internal state, empty without one.
     state_is_positive : bool
@@ -57,7 +57,7 @@ class FrictionLaw(ABC):
 
     @property
     def states_at_start(self) -> tuple[float, float]:
-        """Internal states at the start along both tangents of a contact in space, 0 along the second without one."""
+        """Internal states at the start along both tangents of a contact in space; 0 along the second if scalar."""
         return self.state_at_start, 0.0
 
     @property
@@ -66,28 +66,28 @@ class FrictionLaw(ABC):
         return 0.0
 
     def state_in_sliding(self, velocity: float, change: float = 0.0) -> float:
-        """Return the internal state in steady sliding at `velocity` [m/s], not 0, moved in the sense of sliding."""
+        """Return the internal state in steady sliding at `velocity` [m/s], not 0, with `change` in that sense."""
         return 0.0
 
     @property
     def kernel_code(self) -> str:
-        """Name of its code in the layout of the march."""
+        """Name of its constant in the layout of the march."""
         return self.law.upper().replace("-", "_").replace(" ", "_")
 
     @abstractmethod
     def parameters(self) -> dict[str, float]:
-        """Return the numbers that the march gets, by name and in its order."""
+        """Return the parameters of the law in the march, by name and in its order."""
 
     @abstractmethod
     def coefficient_at(self, velocity: Array | float) -> Array:
         """Return tangential over normal force [1] in steady sliding at `velocity` [m/s]."""
 
     def linearised_at(self, velocity: float) -> Linearised:
-        """Return small changes about steady sliding at `velocity` [m/s], not 0; none by default."""
+        """Return the law linearised about steady sliding at `velocity` [m/s], not 0; constant by default."""
         return Linearised()
 
     def linearised_across(self, velocity: float) -> Linearised:
-        """Return small changes across steady sliding at `velocity` [m/s], not 0: by default friction turns with it."""
+        """Return the law linearised across steady sliding at `velocity` [m/s], not 0: by default the force turns."""
         return Linearised(slope=float(self.coefficient_at(velocity)) / abs(velocity))
 
     @property
@@ -97,12 +97,12 @@ class FrictionLaw(ABC):
 
     @property
     def reach(self) -> float:
-        """Slip speed [m/s] up to which it shows all that it does."""
+        """Slip speed [m/s] up to which its curve is characteristic, for plots."""
         return 1.0
 
 
 class StaticAndKinetic(FrictionLaw):
-    """A law with a static coefficient that is not below the kinetic one."""
+    """A law with a static coefficient of at least the kinetic one."""
 
     static: float
     kinetic: float

@@ -1,4 +1,4 @@
-"""The laws of friction that there are, in the order in which messages and the schema list them."""
+"""All friction laws, in the order of messages and the schema."""
 
 from __future__ import annotations
 

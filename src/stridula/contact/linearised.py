@@ -1,4 +1,4 @@
-"""A law of friction close to steady sliding."""
+"""Friction laws linearised about steady sliding."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Linearised:
-    """Small changes of tangential over normal force, and of the internal state, about steady sliding forward.
+    """Linear changes of tangential over normal force, and of the internal state, about steady sliding forward.
 
     With changes v of the slip velocity and z of the state::
 
@@ -18,11 +18,11 @@ class Linearised:
     slope : float
         Change of the ratio with the slip velocity [s/m]; below zero where friction weakens.
     by_state : float
-        Change of the ratio with the state, in one over its unit; zero without a state.
+        Change of the ratio with the state, in the inverse of its unit; zero without a state.
     state_by_velocity : float
-        How the slip velocity moves the state, in its unit per metre.
+        Rate of the state per slip velocity, in its unit per metre.
     state_by_state : float
-        How the state moves itself [1/s], below zero.
+        Rate of the state per state [1/s], below zero.
     """
 
     slope: float = 0.0

@@ -25,12 +25,12 @@ class LuGre(StaticAndKinetic):
         z' = v - stiffness |v| z / g(v),    g(v) = kinetic + (static - kinetic) exp(-(v / velocity)²)
         tangential force = normal force * (stiffness z + damping z' + viscous v)
 
-    In space z, v and the force are vectors of the tangent plane, with their size in g; bristles turn after the slip.
+    In space z, v and the force are vectors of the tangent plane, with the magnitude of v in g; bristles turn after v.
 
-    All coefficients are per unit of normal force. The deflection moves exactly over a step at constant slip velocity
-    and the force is solved for together with the contact, so that the step need not resolve the bristles. There is no
-    exact sticking: a contact counts as sticking while its slip speed is below `velocity`. An open contact forgets its
-    bristles. `friction_loss` includes what the bristles store.
+    All coefficients are per unit of normal force. The deflection is integrated exactly over a step at constant slip
+    velocity and the force is solved for together with the contact, so that the step need not resolve the bristles.
+    There is no exact sticking: a contact counts as sticking while its slip speed is below `velocity`. Bristles are
+    reset when a contact opens. `friction_loss` includes the energy stored in the bristles.
 
     Parameters
     ----------
@@ -45,10 +45,10 @@ class LuGre(StaticAndKinetic):
     damping : float, optional
         Damping of the bristles per unit of normal force [s/m], sigma1.
     viscous : float, optional
-        Rise with speed per unit of normal force [s/m], sigma2.
+        Increase with speed per unit of normal force [s/m], sigma2.
     initial_state : float or sequence of float, optional
         Deflection of the bristles at the start [m]; in steady sliding at v it is ``sign(v) g(v) / stiffness``. In space
-        along the first tangent, or two numbers, one for each.
+        along the first tangent, or two numbers, one for each tangent.
     """
 
     law: ClassVar[str] = "lugre"
@@ -70,7 +70,7 @@ class LuGre(StaticAndKinetic):
 
     @property
     def state_at_start(self) -> float:
-        """Deflection of the bristles at the start [m]; those of a contact that lands later are straight."""
+        """Deflection of the bristles at the start [m]; zero for a contact that lands later."""
         return self.states_at_start[0]
 
     @property
@@ -80,12 +80,12 @@ class LuGre(StaticAndKinetic):
         return first, others[0] if others else 0.0
 
     def state_in_sliding(self, velocity: float, change: float = 0.0) -> float:
-        """Return the deflection of the bristles [m] in steady sliding at `velocity` [m/s], not 0, and `change` more."""
+        """Return the deflection of the bristles [m] in steady sliding at `velocity` [m/s], not 0, plus `change`."""
         bristles = (float(self.coefficient_at(velocity)) - self.viscous * abs(velocity)) / self.stiffness
         return float(np.sign(velocity) * (bristles + change))
 
     def parameters(self) -> dict[str, float]:
-        """Return the numbers that the march gets."""
+        """Return the parameters of the law in the march."""
         own = {"static": self.static, "kinetic": self.kinetic, "velocity": self.velocity}
         return {**own, "stiffness": self.stiffness, "damping": self.damping, "viscous": self.viscous}
 
@@ -96,7 +96,7 @@ class LuGre(StaticAndKinetic):
 
     @property
     def reach(self) -> float:
-        """Slip speed [m/s] up to which it shows all that it does."""
+        """Slip speed [m/s] up to which its curve is characteristic, for plots."""
         return 5.0 * self.velocity
 
     def coefficient_at(self, velocity: Array | float) -> Array:
@@ -105,7 +105,7 @@ class LuGre(StaticAndKinetic):
         return np.where(np.asarray(velocity) == 0.0, 0.0, curve)
 
     def linearised_at(self, velocity: float) -> Linearised:
-        """Return small changes about steady sliding at `velocity` [m/s], not 0, where ``z = g(v) / stiffness``."""
+        """Return the law linearised about steady sliding at `velocity` [m/s], not 0, where ``z = g(v) / stiffness``."""
         speed = abs(velocity)
         curve = float(stribeck_curve(self.static, self.kinetic, self.velocity, 2.0, 0.0, speed))
         slope = stribeck_slope(self.static, self.kinetic, self.velocity, 2.0, 0.0, speed)
@@ -115,7 +115,7 @@ class LuGre(StaticAndKinetic):
         )
 
     def linearised_across(self, velocity: float) -> Linearised:
-        """Return small changes across steady sliding at `velocity` [m/s], not 0: the bristles turn after the slip."""
+        """Return the law linearised across steady sliding at `velocity` [m/s], not 0: bristles turn after the slip."""
         speed = abs(velocity)
         curve = float(stribeck_curve(self.static, self.kinetic, self.velocity, 2.0, 0.0, speed))
         by_state = -self.stiffness * speed / curve

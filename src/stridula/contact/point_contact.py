@@ -1,4 +1,4 @@
-"""A point of one body on the track of another, on a rigid track or against a point of another body."""
+"""Contact of a point of a body with a track, a rigid track or a point of another body."""
 
 from __future__ import annotations
 
@@ -21,61 +21,61 @@ from .laws import LAWS
 from .rigid_track import RigidTrack
 from .stiffness import ContactStiffness, checked_stiffness
 
-# Sine or cosine that rounding leaves of a right angle.
+# Largest sine or cosine of a right angle due to rounding.
 ALONG_AN_AXIS = 1e-15
-# Component along x from which a normal in space counts as along it.
+# Component along x above which a normal in space counts as along x.
 ALONG_X = 0.9
-# Share along the normal, of the velocity of a surface that turns, that rounding leaves.
+# Largest normal share of the velocity of a turning surface that is due to rounding.
 ALONG_SURFACE = 1e-9
 
 
 @dataclass(frozen=True)
 class PointContact:
-    """The tip of a slider on a track: unilateral (Signorini or yielding), with dry friction, without restitution.
+    """Contact of the tip of a slider with a track: unilateral (rigid or compliant), with dry friction, no restitution.
 
     The normal force is compressive and never below zero; the tangential force is the force on the track along its
     tangent. On a beam, a plate or a rigid track the contact point moves along the track with the tip; against a
-    point of another body it is frozen. On a circle of a body of revolution it moves along with the travel of the tip
-    along the first tangent, any number of times round; normal and tangents go round with it.
+    point of another body it is fixed. On a circle of a body of revolution it moves with the travel of the tip along
+    the first tangent, any number of times round; normal and tangents turn with it.
 
     Parameters
     ----------
     tip : BodyPoint
         The point of the slider that touches.
     track : ModalBeam, ModalPlate, RigidTrack, BodyPoint or CircularPath
-        What it slides on: a beam, a plate along its line, a rigid track, a point of another body, or a circle of a body
-        of revolution.
+        Track: a beam, a plate along its line, a rigid track, a point of another body, or a circle of a body of
+        revolution.
     at : float, optional
         Abscissa of the tip on the track at the start [m]; strictly between the ends of a beam or of a plate's line.
     friction : Coulomb, StaticKinetic, Stribeck, ExponentialWeakening, LinearWeakening, LuGre or RateAndState, optional
-        Law of friction; none if left out.
+        Friction law; no friction if left out.
     gap : float, optional
         Distance between tip and track at the start [m].
     inclination : float, optional
         Angle from world x to the track's tangent, counter-clockwise [rad]; the normal, from the track to the tip, is
         the tangent turned by 90 degrees counter-clockwise. Zero on a beam or a plate.
     name : str, optional
-        What it is called in records.
+        Name in records.
     normal : sequence of float, optional
-        World components of the track's normal in space, from the track to the tip, of any length; in the plane of x
-        and y as `inclination` says if left out.
+        World components of the track's normal in space, from the track to the tip, of any length; if left out, in the
+        plane of x and y by `inclination`.
     tangent : sequence of float, optional
-        World components of what lies along the first tangent in space; world x, or z where the normal is along x, if
-        left out. What it has along the normal is taken off. The second tangent is the first times the normal. Left out
-        on a circle, whose direction is the first tangent; on a beam or a plate, whose axes they are, so is the normal.
+        World components of the first tangent in space; world x, or z if the normal is along x, if left out. Its
+        component along the normal is removed. The second tangent is the first times the normal. Must be left out on a
+        circle, whose direction is the first tangent; on a beam or a plate the normal as well, as they follow its axes.
     surface_velocity : float or sequence of float, optional
-        Velocity at which the surface of a touched point's body moves under the tip [m/s], as that of a disc that turns
-        about its axis while its vibration is seen from where it stands: along the tangent, in space along both.
+        Velocity of the surface of a touched point's body under the tip [m/s], such as that of a disc that turns about
+        its axis while its vibration is described in a frame at rest: along the tangent, in space along both.
     stiffness : float, LinearStiffness, PowerStiffness or HertzStiffness, optional
-        Stiffness of the contact itself, a number in N/m; rigid if left out.
+        Contact stiffness, a number in N/m; rigid if left out.
     surface : str, optional
-        Name of the surface that it is a point of: a part of its points may lift off in equilibrium.
+        Name of the surface that it is a point of; some points of a surface may be open in equilibrium.
     area : float, optional
-        Area that it stands for, as a point of a surface [m²]; not known if left out.
+        Area that it represents, as a point of a surface [m²]; unknown if left out.
 
     Notes
     -----
-    A contact of a body in space has two tangents: friction is a force in their plane against the slip.
+    A contact of a body in space has two tangents: friction is a force in their plane, opposite to the slip.
     """
 
     tip: BodyPoint
@@ -113,7 +113,7 @@ class PointContact:
         for word in ("name", "surface"):
             instance(word, getattr(self, word), str)
         if self.area and not self.surface:
-            raise ArgumentError("area", "be left out but at a point of a surface", self.area)
+            raise ArgumentError("area", "be left out except at a point of a surface", self.area)
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
         self._check_directions()
 
@@ -152,7 +152,7 @@ class PointContact:
                 raise ArgumentError("surface_velocity", "be 0 against a body that turns", self.surface_velocity)
             speed = float(np.linalg.norm(point.turning_velocity))
             if abs(float(self.frame[0] @ point.turning_velocity)) > ALONG_SURFACE * speed:
-                words = f"be square to the velocity at which the body of the {name} turns"
+                words = f"be at right angles to the velocity at which the body of the {name} turns"
                 raise ArgumentError("normal", words, self.normal)
 
     def _check_circle(self) -> None:
@@ -163,14 +163,14 @@ class PointContact:
                 "tangent", "be left out on a circle, whose direction is the first tangent", self.tangent
             )
         if abs(float(self._normal_in_space @ self.circle.direction(self.at))) > ALONG_SURFACE:
-            raise ArgumentError("normal", "be square to the circle where the tip is at the start", self.normal)
+            raise ArgumentError("normal", "be at right angles to the circle at the start", self.normal)
         if self.tip.turning_velocity.any():
             raise ArgumentError("tip", "be on a body that does not turn, on a circle", self.tip)
 
     def _check_surface(self) -> None:
         given = np.atleast_1d(self.surface_velocity)
         if (self.touched_point is None or self.circle is not None) and given.any():
-            words = "be 0 but against a point of a body: tracks have velocities of their own"
+            words = "be 0 except against a point of a body: tracks have velocities of their own"
             raise ArgumentError("surface_velocity", words, self.surface_velocity)
         if given.size > (2 if self.is_spatial else 1):
             words = "be one number, or two in space, one for each tangent"
@@ -178,7 +178,7 @@ class PointContact:
 
     @property
     def contacts(self) -> tuple[PointContact]:
-        """Itself: the one contact of a point."""
+        """The contact itself, as a tuple."""
         return (self,)
 
     @property
@@ -189,7 +189,7 @@ class PointContact:
 
     @property
     def turning_velocities(self) -> tuple[tuple[Turning, Array], ...]:
-        """Of each body that turns, how, and how fast it moves the track against the tip along the tangents [m/s]."""
+        """Turning of each body that turns, and the velocity of the track past the tip that it causes [m/s]."""
         found = []
         for point, sign in ((self.tip, -1.0), (self.touched_point, 1.0)):
             if point is not None and point.turning_velocity.any():
@@ -200,18 +200,18 @@ class PointContact:
 
     @property
     def yields(self) -> ContactStiffness | None:
-        """Stiffness of the contact itself, None where it is rigid."""
+        """Contact stiffness, None if it is rigid."""
         found: ContactStiffness | None = self.stiffness  # type: ignore[assignment]
         return found
 
     @property
     def is_spatial(self) -> bool:
-        """Whether a body in space touches, so that there are two tangents."""
+        """Whether one of the bodies is in space, so that there are two tangents."""
         return self.tip.body.is_spatial or getattr(self.track_body, "is_spatial", False)
 
     @property
     def has_state_vector(self) -> bool:
-        """Whether the internal state of its law has a component along each of two tangents."""
+        """Whether the internal state of its friction law has a component along each of two tangents."""
         return self.is_spatial and self.friction.state_is_vector
 
     @property
@@ -221,25 +221,25 @@ class PointContact:
 
     @property
     def placed_end(self) -> BodyPoint | None:
-        """The end whose place in the world is known, its tip first; None if neither is."""
+        """The end with a known world place, the tip first; None if there is none."""
         ends = (self.tip, self.touched_point)
         return next((one for one in ends if one is not None and one.place is not None), None)
 
     @property
     def touched_point(self) -> BodyPoint | None:
-        """The point that the tip touches, on a circle that at the start; None where it moves along a track."""
+        """The point that the tip touches, on a circle the one at the start; None if the tip moves along a track."""
         if self.circle is not None:
             return self.circle.point_at(self.at)
         return self.track if isinstance(self.track, BodyPoint) else None
 
     @property
     def circle(self) -> CircularPath | None:
-        """The circle that the tip moves along, None on any other track."""
+        """The circle along which the tip moves, None on any other track."""
         return getattr(self.track, "circle", None)
 
     @cached_property
     def path_body(self) -> Track | None:
-        """The body that the tip moves along, None on a rigid track and against a point."""
+        """The body along which the tip moves, None on a rigid track and against a point."""
         return self.track if is_track(self.track) else None
 
     @property
@@ -249,7 +249,7 @@ class PointContact:
 
     @cached_property
     def frame(self) -> Array:
-        """World components of the track's normal and tangent, shape (2, 2); in space of both tangents, (3, 3)."""
+        """World components of the track's normal and tangent, shape (2, 2); in space with both tangents, (3, 3)."""
         axes = self._frame_in_space if self.is_spatial else self._plane_frame
         axes.flags.writeable = False
         return axes

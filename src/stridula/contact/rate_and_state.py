@@ -23,9 +23,9 @@ class RateAndState(FrictionLaw):
         aging:  theta' = 1 - |V| theta / D
         slip:   theta' = -|V| theta / D ln(|V| theta / D)
 
-    which is ``reference + a ln(V/V0) + b ln(V0 theta/D)`` wherever the contact slides forward. The state moves exactly
-    over a step at constant slip velocity. There is no exact sticking: a contact counts as sticking while its slip speed
-    is below `velocity`. An open contact forgets its state.
+    which is ``reference + a ln(V/V0) + b ln(V0 theta/D)`` while the contact slides forward. The state is integrated
+    exactly over a step at constant slip velocity. There is no exact sticking: a contact counts as sticking while its
+    slip speed is below `velocity`. The state is reset when a contact opens.
 
     Parameters
     ----------
@@ -40,9 +40,9 @@ class RateAndState(FrictionLaw):
     velocity : float
         Reference slip velocity [m/s].
     evolution : {"aging", "slip"}, optional
-        Law of evolution of the state: aging, which is Dieterich's, or slip, Ruina's.
+        Law of evolution of the state: aging (Dieterich's) or slip (Ruina's).
     initial_state : float, optional
-        State at the start [s], that of steady sliding at `velocity` if left out; it is ``slip_distance / velocity``.
+        State at the start [s]; if left out that of steady sliding at `velocity`, ``slip_distance / velocity``.
     """
 
     law: ClassVar[str] = "rate and state"
@@ -65,26 +65,26 @@ class RateAndState(FrictionLaw):
 
     @property
     def state_at_landing(self) -> float:
-        """State of a contact that closes later [s], which is new, too."""
+        """State of a contact that closes later [s]: that of a new one."""
         return self.state_at_start
 
     def state_in_sliding(self, velocity: float, change: float = 0.0) -> float:
-        """Return the state [s] in steady sliding at `velocity` [m/s], not 0, and `change` more."""
+        """Return the state [s] in steady sliding at `velocity` [m/s], not 0, plus `change`."""
         return self.slip_distance / abs(velocity) + change
 
     @property
     def kernel_code(self) -> str:
-        """Name of its code in the layout of the march, one for each law of evolution."""
+        """Name of its constant in the layout of the march, one for each law of evolution."""
         return self.evolution.upper()
 
     def parameters(self) -> dict[str, float]:
-        """Return the numbers that the march gets."""
+        """Return the parameters of the law in the march."""
         own = {"reference": self.reference, "a": self.a, "b": self.b}
         return {**own, "slip_distance": self.slip_distance, "velocity": self.velocity}
 
     @property
     def reach(self) -> float:
-        """Slip speed [m/s] up to which it shows all that it does."""
+        """Slip speed [m/s] up to which its curve is characteristic, for plots."""
         return 1e4 * self.velocity
 
     def coefficient_at(self, velocity: Array | float) -> Array:
@@ -97,9 +97,9 @@ class RateAndState(FrictionLaw):
         return np.where(speed == 0.0, 0.0, ratio)
 
     def linearised_at(self, velocity: float) -> Linearised:
-        """Return small changes about steady sliding at `velocity` [m/s], not 0, where ``theta = D / |V|``."""
+        """Return the law linearised about steady sliding at `velocity` [m/s], not 0, where ``theta = D / |V|``."""
         speed = abs(velocity)
-        # u / sqrt(1 + u²) of asinh's argument u, which is 1 but where regularised.
+        # u / sqrt(1 + u²) for the argument u of asinh; it is 1 except in the regularised range.
         share = float(np.tanh(self.coefficient_at(speed) / self.a))
         return Linearised(
             slope=self.a * share / speed,

@@ -1,4 +1,4 @@
-"""What the forces at the points of a surface come to together."""
+"""Resultants of the forces at the points of a surface."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .surface_points import SurfacePoints
 
 Faces = SurfaceContact | SurfacePoints
 
-# Of each resultant its unit and meaning; force, moment and centre lie along the world's axes.
+# Unit and meaning of each resultant; force, moment and centre have world components.
 RESULTANTS = {
     "force": ("N", "resultant force on the body"),
     "moment": ("N m", "moment on the body"),

@@ -1,4 +1,4 @@
-"""A track that does not bend: floor, wall, belt, disc or shaken plane."""
+"""A rigid track: floor, wall, belt, disc or shaken plane."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from ..histories import HISTORIES, Constant, Harmonic, History, Ramp, Sampled
 
 @dataclass(frozen=True)
 class RigidTrack:
-    """An endless rigid plane, fixed or moving as prescribed by its velocity or by its acceleration.
+    """An endless rigid plane, fixed or moving with a prescribed velocity or acceleration.
 
-    Along its tangent it moves at ``velocity`` times its history. Where an ``acceleration`` is given, that has the
-    history, and ``velocity`` is the one at the start: a belt that is shaken, or the ground of an accelerogram. So it
-    does along its normal.
+    Along its tangent it moves at ``velocity`` times its history. If an ``acceleration`` is given, the history applies
+    to it, and ``velocity`` is the initial one: a shaken belt, or the ground of an accelerogram. The same holds along
+    its normal.
 
     Parameters
     ----------
     velocity : float, optional
-        Velocity along its tangent [m/s], as of a belt or a disc, where an acceleration is given at the start.
+        Velocity along its tangent [m/s], as of a belt or a disc; initial velocity if an acceleration is given.
     normal_velocity : float, optional
-        Velocity along its normal, towards the tip [m/s], as of a shaken plane, where an acceleration is given at the
-        start.
+        Velocity along its normal, towards the tip [m/s], as of a shaken plane; initial velocity if an acceleration is
+        given.
     history, normal_history : Constant, Ramp, Harmonic or Sampled, optional
-        Factors over time on the velocities, or on the accelerations where those are given.
+        Factors over time on the velocities, or on the accelerations if these are given.
     name : str, optional
-        What it is called in records.
+        Name in records.
     lateral_velocity : float, optional
         Velocity along its second tangent [m/s], in space, with the history of `velocity`.
     acceleration : float, optional
@@ -63,11 +63,11 @@ class RigidTrack:
         return not (moving or self.acceleration or self.normal_acceleration)
 
     def travel(self, time: Array) -> Array:
-        """Return how far it has moved along its tangent [m]."""
+        """Return the distance moved along its tangent [m]."""
         return _travel(self.velocity, self.acceleration, self.history, time)
 
     def lateral_travel(self, time: Array) -> Array:
-        """Return how far it has moved along its second tangent [m]."""
+        """Return the distance moved along its second tangent [m]."""
         return _travel(self.lateral_velocity, 0.0, self.history, time)
 
     def lateral_speed(self, time: Array) -> Array:
@@ -75,7 +75,7 @@ class RigidTrack:
         return _speed(self.lateral_velocity, 0.0, self.history, time)
 
     def normal_travel(self, time: Array) -> Array:
-        """Return how far it has moved along its normal, towards the tip [m]."""
+        """Return the distance moved along its normal, towards the tip [m]."""
         return _travel(self.normal_velocity, self.normal_acceleration, self.normal_history, time)
 
     def speed(self, time: Array) -> Array:

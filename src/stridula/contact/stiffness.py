@@ -1,4 +1,4 @@
-"""Contacts that yield themselves: rough or lined surfaces, and round bodies pressed together."""
+"""Contact stiffness: rough or lined surfaces, and round bodies pressed together."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from ..bodies import Material
 from ..checks import instance
 from ..declared import Number, check_declared
 
-# How much a contact yields that does not touch yet [m/N].
+# Flexibility of a contact that does not touch yet [m/N].
 FLAT = 1e6
 Newtons = Annotated[float, Number("N/m", above=0.0)]
 
 
 class ContactStiffness(Protocol):
-    """A normal force that grows with the indentation of the contact: ``(K d^p) (1 + r d') + c d'``, never below 0.
+    """A normal force that increases with the indentation of the contact: ``(K d^p) (1 + r d') + c d'``, never below 0.
 
-    ``d`` is the indentation, the gap below zero, ``d'`` its velocity. Each is a frozen dataclass.
+    ``d`` is the indentation, a negative gap, ``d'`` its velocity. Implementations are frozen dataclasses.
 
     Attributes
     ----------
     kind : str
-        Its name in scenarios.
+        Name in scenarios.
     """
 
     kind: ClassVar[str]
@@ -35,25 +35,25 @@ class ContactStiffness(Protocol):
 
 
 def force_at(stiffness: ContactStiffness, indentation: float) -> float:
-    """Return the force at an indentation [m] that stays, in newtons."""
+    """Return the force [N] at a constant indentation [m]."""
     k, p, *_ = stiffness.numbers
     return float(k * max(indentation, 0.0) ** p)
 
 
 def indentation_under(stiffness: ContactStiffness, force: float) -> float:
-    """Return the indentation under a force [N] that stays, in metres."""
+    """Return the indentation [m] under a constant force [N]."""
     k, p, *_ = stiffness.numbers
     return float((max(force, 0.0) / k) ** (1.0 / p))
 
 
 def stored_at(stiffness: ContactStiffness, indentation: float) -> float:
-    """Return the energy stored at an indentation [m], in joules."""
+    """Return the stored energy [J] at an indentation [m]."""
     _, p, *_ = stiffness.numbers
     return force_at(stiffness, indentation) * max(indentation, 0.0) / (p + 1.0)
 
 
 def tangent_of(stiffness: ContactStiffness, indentation: float) -> tuple[float, float]:
-    """Return how a contact yields about an indentation [m]: more for a unit of force [m/N], and beyond that [m]."""
+    """Return the tangent of indentation over force about an indentation [m]: flexibility [m/N] and intercept [m]."""
     force = force_at(stiffness, indentation)
     if force == 0.0:
         k, p, *_ = stiffness.numbers
@@ -63,13 +63,13 @@ def tangent_of(stiffness: ContactStiffness, indentation: float) -> tuple[float, 
 
 
 def per_area(stiffness: ContactStiffness, area: float) -> ContactStiffness:
-    """Return the stiffness of an area [m²] of one that is for a unit of area."""
+    """Return the stiffness of an area [m²] from the stiffness per unit of area."""
     k, p, damping, rate = stiffness.numbers
     return LinearStiffness(area * k, area * damping) if p == 1.0 and not rate else PowerStiffness(area * k, p, rate)
 
 
 def slopes_at(stiffness: ContactStiffness, force: float) -> tuple[float, float]:
-    """Return how the force changes with the indentation [N/m] and with its velocity [N s/m] about one that stays."""
+    """Return the derivatives of the force by indentation [N/m] and its velocity [N s/m] about a constant force."""
     k, p, damping, rate = stiffness.numbers
     slope = k if p == 1.0 else k * p * indentation_under(stiffness, force) ** (p - 1.0)
     return slope, damping + rate * force
@@ -77,14 +77,14 @@ def slopes_at(stiffness: ContactStiffness, force: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class LinearStiffness:
-    """A contact with a spring and a dashpot: a lining, a layer, or a rough surface about its load.
+    """A contact with a spring and a dashpot: a lining, a layer, or a rough surface linearised about its load.
 
     Parameters
     ----------
     stiffness : float
-        Force for a unit of the indentation [N/m].
+        Force per indentation [N/m].
     damping : float, optional
-        Force for a unit of the velocity of the indentation [N s/m]; the whole force never pulls.
+        Force per velocity of the indentation [N s/m]; the total force is never tensile.
     """
 
     kind: ClassVar[str] = "linear"
@@ -102,16 +102,16 @@ class LinearStiffness:
 
 @dataclass(frozen=True)
 class PowerStiffness:
-    """A contact whose force goes with a power of the indentation (Hunt & Crossley 1975): rough or round surfaces.
+    """A contact whose force is a power of the indentation (Hunt & Crossley 1975): rough or round surfaces.
 
     Parameters
     ----------
     coefficient : float
         Force at an indentation of 1 m [N/m^p].
     exponent : float, optional
-        The power p, from 1 on, below 10: 1.5 of a ball on a plane, 2 to 3.5 of rough surfaces.
+        Exponent p, at least 1 and below 10: 1.5 for a ball on a plane, 2 to 3.5 for rough surfaces.
     damping : float, optional
-        Share by which the force is larger for a unit of the velocity of the indentation [s/m].
+        Relative increase of the force per velocity of the indentation [s/m].
     """
 
     kind: ClassVar[str] = "power law"
@@ -135,11 +135,11 @@ class HertzStiffness:
     Parameters
     ----------
     radius : float
-        Radius of the sphere on a plane, of two spheres ``1 / R = 1 / R1 + 1 / R2`` [m].
+        Radius of the sphere on a plane [m]; for two spheres ``1 / R = 1 / R1 + 1 / R2``.
     modulus : float
-        Modulus of both together, ``1 / E* = (1 - nu1²) / E1 + (1 - nu2²) / E2`` [Pa].
+        Combined modulus, ``1 / E* = (1 - nu1²) / E1 + (1 - nu2²) / E2`` [Pa].
     damping : float, optional
-        Share by which the force is larger for a unit of the velocity of the indentation [s/m].
+        Relative increase of the force per velocity of the indentation [s/m].
     """
 
     kind: ClassVar[str] = "hertz"
@@ -152,14 +152,14 @@ class HertzStiffness:
 
     @classmethod
     def between(cls, first: Material, second: Material, radius: float, damping: float = 0.0) -> HertzStiffness:
-        """Return the stiffness of bodies of two materials.
+        """Return the stiffness between bodies of two materials.
 
         Parameters
         ----------
         first, second : Material
-            What they are made of.
+            Materials of the bodies.
         radius : float
-            Radius of the sphere on a plane, of two spheres ``1 / R = 1 / R1 + 1 / R2`` [m].
+            Radius of the sphere on a plane [m]; for two spheres ``1 / R = 1 / R1 + 1 / R2``.
         damping : float, optional
             Damping rate [s/m].
         """
@@ -179,12 +179,12 @@ STIFFNESSES = (LinearStiffness, PowerStiffness, HertzStiffness)
 
 
 def checked_stiffness(given: Any) -> ContactStiffness | None:
-    """Return the stiffness of a contact, of a number [N/m] a linear one, None where it is rigid.
+    """Return the stiffness of a contact, a linear one for a number [N/m], None if it is rigid.
 
     Raises
     ------
     ValueError
-        If it is neither.
+        If it is none of these.
     """
     if given is None or isinstance(given, STIFFNESSES):
         return given

@@ -1,4 +1,4 @@
-"""A face of a meshed body on a disc, on another meshed body or on a rigid plane."""
+"""Contact of a face of a meshed body with a disc, another meshed body or a rigid plane."""
 
 from __future__ import annotations
 
@@ -22,48 +22,49 @@ from .point_contact import PointContact
 from .rigid_track import RigidTrack
 from .stiffness import ContactStiffness, checked_stiffness, per_area
 
-# Cosine between a face and what it touches, from which the two face each other.
+# Least cosine between opposite normals of two faces that face each other.
 FACING = 0.5
-# Overlap of faces, relative to the size of the one that slides, that is rounding of their coordinates.
+# Largest overlap of faces, relative to the size of the sliding one, that is due to rounding of coordinates.
 OVERLAP = 1e-6
 
 
 @dataclass(frozen=True)
 class SurfaceContact:
-    """A face in contact, point by point: each point of integration of the face touches what lies before it.
+    """A face in contact, point by point: each point of integration touches the opposite point of the track.
 
-    Gaps, areas and directions follow from the geometry; meshes need not match. Give it to a `System` among the
-    contacts. Points are frozen in space, as those of point contacts of bodies in space are.
+    Gaps, areas and directions follow from the geometry; meshes need not match. Pass it to a `System` among the
+    contacts. Points are fixed in space, as in point contacts of bodies in space.
 
     Parameters
     ----------
     body : SolidBody
-        The body whose face touches; its `contact_faces` should name the face, so that it yields there.
+        Body whose face touches; its `contact_faces` should name the face, to keep its static flexibility there.
     face : str
-        The name of the face.
+        Name of the face.
     track : AxisymmetricBody, SolidBody or RigidTrack
-        What it slides on. A rigid track is a plane through the foremost points of the face, square to its mean normal.
+        Body or plane on which it slides. A rigid track is a plane through the foremost points of the face,
+        perpendicular to its mean normal.
     track_face : str, optional
-        The face of a `SolidBody` that is touched.
+        Touched face, if the track is a `SolidBody`.
     friction : FrictionLaw, optional
-        Law of friction; none if left out.
+        Friction law; no friction if left out.
     gap : float, optional
-        Distance beyond that of the geometry [m].
+        Distance in addition to that of the geometry [m].
     stiffness : float, LinearStiffness, PowerStiffness or HertzStiffness, optional
-        Stiffness of the contact for a unit of area, a number in N/m³; rigid if left out.
+        Contact stiffness per unit of area, a number in N/m³; rigid if left out.
     tangent : sequence of float, optional
-        World components of what lies along the first tangent; if left out that in which the track turns or, where it
-        does not, as that of a `PointContact`.
+        World components of the first tangent; if left out, the direction in which the track turns or, if it does not,
+        as for a `PointContact`.
     overlay : bool, optional
-        Whether points are those of the pieces into which the faces of both bodies cut each other, where both are flat:
-        more points, through which a uniform pressure goes exactly between unlike meshes.
+        Whether points are those of the intersections of the faces of both bodies, which must be flat: more points,
+        which transmit a uniform pressure exactly between meshes that do not match.
     name : str, optional
-        What it is called in records: its points are this name and their numbers from 1.
+        Name in records; the names of its points are this one with numbers from 1.
 
     Raises
     ------
     ValueError
-        If an argument is out of its range, if a point has nothing before it, or if faces overlap or do not face each
+        If an argument is out of its range, if nothing is opposite a point, or if faces overlap or do not face each
         other.
     """
 
@@ -88,11 +89,11 @@ class SurfaceContact:
         else:
             for name, given in (("track_face", self.track_face), ("overlay", self.overlay)):
                 if given:
-                    raise ArgumentError(name, "be left out but on a SolidBody", given)
+                    raise ArgumentError(name, "be left out except on a SolidBody", given)
         instance("name", self.name, str)
         check_declared(self)
         object.__setattr__(self, "stiffness", checked_stiffness(self.stiffness))
-        self.contacts  # noqa: B018, found now, so that what is wrong is said here
+        self.contacts  # noqa: B018, computed now, so that errors are raised here
 
     @cached_property
     def points(self) -> FacePoints:

@@ -1,4 +1,4 @@
-"""A surface in contact of which the points are known, and no mesh: one that a record keeps."""
+"""Surfaces in contact given by their points without a mesh, as in records."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from .point_contact import PointContact
 
 @dataclass(frozen=True)
 class SurfacePoints:
-    """The contacts of the points of a surface, each with its area and with a tip whose place is known.
+    """The contacts of the points of a surface, each with its area and a tip of known place.
 
     Parameters
     ----------
     name : str
-        What the surface is called.
+        Name of the surface.
     contacts : tuple of PointContact
         The contacts of its points.
     """
@@ -38,7 +38,7 @@ class SurfacePoints:
 
 
 def surfaces_among(contacts: Sequence[PointContact]) -> list[SurfacePoints]:
-    """Return the surfaces among contacts, those of which all points have an area and a place."""
+    """Return the surfaces among contacts: those all of whose points have an area and a place."""
     found: dict[str, list[PointContact]] = {}
     for one in contacts:
         if one.surface:

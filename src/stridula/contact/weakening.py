@@ -1,4 +1,4 @@
-"""Laws of dry friction whose coefficient falls with the speed of sliding; sticking stays exact."""
+"""Laws of dry friction whose coefficient falls with the slip speed; sticking is exact."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Stribeck(StaticAndKinetic):
     exponent : float, optional
         Exponent [1]: 2 is Gauss's curve, 1 an exponential.
     viscous : float, optional
-        Rise with speed [s/m], per unit of normal force.
+        Increase with speed per unit of normal force [s/m].
     """
 
     law: ClassVar[str] = "stribeck"
@@ -42,13 +42,13 @@ class Stribeck(StaticAndKinetic):
     viscous: Slope = 0.0
 
     def parameters(self) -> dict[str, float]:
-        """Return the numbers that the march gets."""
+        """Return the parameters of the law in the march."""
         own = {"static": self.static, "kinetic": self.kinetic, "velocity": self.velocity}
         return {**own, "exponent": self.exponent, "viscous": self.viscous}
 
     @property
     def reach(self) -> float:
-        """Slip speed [m/s] up to which it shows all that it does."""
+        """Slip speed [m/s] up to which its curve is characteristic, for plots."""
         return 5.0 * self.velocity
 
     def coefficient_at(self, velocity: Array | float) -> Array:
@@ -56,7 +56,7 @@ class Stribeck(StaticAndKinetic):
         return stribeck_curve(self.static, self.kinetic, self.velocity, self.exponent, self.viscous, velocity)
 
     def linearised_at(self, velocity: float) -> Linearised:
-        """Return small changes about steady sliding at `velocity` [m/s], not 0."""
+        """Return the law linearised about steady sliding at `velocity` [m/s], not 0."""
         return Linearised(
             stribeck_slope(self.static, self.kinetic, self.velocity, self.exponent, self.viscous, velocity)
         )
@@ -86,17 +86,17 @@ class ExponentialWeakening(StaticAndKinetic):
 
     @property
     def kernel_code(self) -> str:
-        """Name of its code in the layout of the march: that of Stribeck's law, whose exponent is 1."""
+        """Name of its constant in the layout of the march: that of Stribeck's law with exponent 1."""
         return Stribeck.law.upper()
 
     def parameters(self) -> dict[str, float]:
-        """Return the numbers that the march gets."""
+        """Return the parameters of the law in the march."""
         own = {"static": self.static, "kinetic": self.kinetic, "velocity": self.velocity}
         return {**own, "exponent": 1.0, "viscous": 0.0}
 
     @property
     def reach(self) -> float:
-        """Slip speed [m/s] up to which it shows all that it does."""
+        """Slip speed [m/s] up to which its curve is characteristic, for plots."""
         return 5.0 * self.velocity
 
     def coefficient_at(self, velocity: Array | float) -> Array:
@@ -104,7 +104,7 @@ class ExponentialWeakening(StaticAndKinetic):
         return stribeck_curve(self.static, self.kinetic, self.velocity, 1.0, 0.0, velocity)
 
     def linearised_at(self, velocity: float) -> Linearised:
-        """Return small changes about steady sliding at `velocity` [m/s], not 0."""
+        """Return the law linearised about steady sliding at `velocity` [m/s], not 0."""
         return Linearised(stribeck_slope(self.static, self.kinetic, self.velocity, 1.0, 0.0, velocity))
 
     def __str__(self) -> str:
@@ -132,17 +132,17 @@ class LinearWeakening(StaticAndKinetic):
 
     @property
     def end(self) -> float:
-        """Slip speed [m/s] at which the fall ends, 0 where there is none."""
+        """Slip speed [m/s] at which the fall ends, 0 if the coefficient does not fall."""
         return (self.static - self.kinetic) / self.slope if self.slope else 0.0
 
     def parameters(self) -> dict[str, float]:
-        """Return the numbers that the march gets."""
+        """Return the parameters of the law in the march."""
         own = {"static": self.static, "slope": self.slope, "kinetic": self.kinetic}
         return {**own, "end": self.end or 1.0}
 
     @property
     def reach(self) -> float:
-        """Slip speed [m/s] up to which it shows all that it does."""
+        """Slip speed [m/s] up to which its curve is characteristic, for plots."""
         return 1.5 * self.end or 1.0
 
     def coefficient_at(self, velocity: Array | float) -> Array:
@@ -150,7 +150,7 @@ class LinearWeakening(StaticAndKinetic):
         return np.maximum(self.static - self.slope * np.abs(velocity), self.kinetic)
 
     def linearised_at(self, velocity: float) -> Linearised:
-        """Return small changes about steady sliding at `velocity` [m/s], not 0."""
+        """Return the law linearised about steady sliding at `velocity` [m/s], not 0."""
         return Linearised(-self.slope if self.static - self.slope * abs(velocity) > self.kinetic else 0.0)
 
     def __str__(self) -> str:

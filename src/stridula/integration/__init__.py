@@ -1,4 +1,4 @@
-"""How time goes on: schemes, the time loop, watchers."""
+"""Time integration: schemes, the time loop, watchers."""
 
 # ruff: noqa: E402
 from .compiled_code import find_a_place

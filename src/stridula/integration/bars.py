@@ -1,4 +1,4 @@
-"""Bars on standard error: how far a computation has come, and how long it will still take."""
+"""Progress bars on standard error, with the time left."""
 
 from __future__ import annotations
 
@@ -14,35 +14,35 @@ from ..doings import told_of_doings
 from .compiled_code import tell_of_compiling
 from .watchers import Progress, Watcher
 
-# Done, in all, and both in words.
+# Arguments: amount done, total, and both in words.
 Show = Callable[[float, float, str], None]
 PREPARING, COMPILING = "preparing", "compiling, once: some ten seconds"
-# Cells of a bar that is written as text, and the least time between two looks of it [s].
+# Cells of a bar written as text, and the least time between two updates [s].
 CELLS, SELDOM = 20, 0.1
-# Shares of what is to be done at which a log gets a line.
+# Number of lines in a log for a whole computation.
 STEPS = 10
 
 
 class Bar(Protocol):
-    """What shows how far something is."""
+    """A progress bar."""
 
     def say(self, words: str) -> None:
-        """Say something beside the bar."""
+        """Show a text beside the bar."""
 
     def show(self, done: float, total: float, words: str) -> None:
-        """Show how much is done, and say so."""
+        """Show how much is done, with a text."""
 
 
 @contextmanager
 def bar(title: str, asked: bool = False) -> Iterator[Show]:
-    """Show a bar, and say so while code is compiled or modes are found.
+    """Show a bar, with a note while code is compiled or modes are computed.
 
     Parameters
     ----------
     title : str
-        What is computed.
+        Name of the computation.
     asked : bool, optional
-        Whether it is also shown where standard error is no terminal: in notebooks as a line that changes, in logs as a
+        Whether it is also shown if standard error is not a terminal: in notebooks as a line that changes, in logs as a
         line for each tenth.
     """
     with _bar(title, asked) as shown:
@@ -56,7 +56,7 @@ def bar(title: str, asked: bool = False) -> Iterator[Show]:
 
 @contextmanager
 def time_shown(progress: bool, title: str) -> Iterator[list[Watcher]]:
-    """Give the watchers of a march that show a bar, none unless it is asked for."""
+    """Yield the watchers of a march that show a bar; none if `progress` is false."""
     instance("progress", progress, bool)
     if not progress:
         yield []
@@ -66,7 +66,7 @@ def time_shown(progress: bool, title: str) -> Iterator[list[Watcher]]:
 
 
 def told_of_time(show: Show) -> Watcher:
-    """Return what tells a bar of the simulated time and of the speed against real time."""
+    """Return a watcher that shows the simulated time and the speed relative to real time."""
 
     def watch(report: Progress) -> None:
         speed = report.time / max(report.wall_time, 1e-9)
@@ -77,7 +77,7 @@ def told_of_time(show: Show) -> Watcher:
 
 
 def _bar(title: str, asked: bool) -> AbstractContextManager[Bar]:
-    """Return the bar of the place where one is: that of rich in terminals, else a line of text."""
+    """Return the bar for the environment: that of rich in terminals, else a line of text."""
     is_notebook = _is_notebook()
     if not is_notebook:
         try:
@@ -97,14 +97,14 @@ def _is_notebook() -> bool:
 
 
 class LineBar:
-    """A bar on standard error as text: a line that changes, or a line for each tenth.
+    """A bar as text on standard error: a line that changes, or a line for each tenth.
 
     Parameters
     ----------
     title : str
-        What is computed.
+        Name of the computation.
     changes : bool
-        Whether lines can be written over.
+        Whether lines can be overwritten.
     """
 
     def __init__(self, title: str, changes: bool) -> None:
@@ -124,13 +124,13 @@ class LineBar:
             sys.stderr.flush()
 
     def say(self, words: str) -> None:
-        """Say something in place of how much is done."""
+        """Show a text in place of the progress."""
         self._words = words
         if self._changes or words != PREPARING:
             self._write()
 
     def show(self, done: float, total: float, words: str) -> None:
-        """Show how much is done, and say so."""
+        """Show how much is done, with a text."""
         share = min(done / total, 1.0) if total > 0.0 else 0.0
         now, tenth = time.perf_counter(), int(STEPS * share + 1e-9)
         is_due = now - self._last >= SELDOM or share == 1.0 if self._changes else tenth > self._tenth
@@ -150,7 +150,7 @@ class LineBar:
     def _write(self) -> None:
         filled = int(CELLS * self._share)
         line = f"{self._title} [{'#' * filled}{'.' * (CELLS - filled)}] {self._words}"
-        # What was longer is wiped out by spaces, which every place knows.
+        # Spaces overwrite a longer line, which works everywhere.
         sys.stderr.write(f"\r{line:<{self._width}}" if self._changes else f"{line}\n")
         sys.stderr.flush()
         self._width = len(line)

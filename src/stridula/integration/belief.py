@@ -1,4 +1,4 @@
-"""Whether a march can be believed, chunk by chunk."""
+"""Plausibility checks of a march, chunk by chunk."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from .marches import Chunk
 
 
 class Belief:
-    """What a march had of energy, against which its next chunk is held.
+    """Energies of a march so far, with which its next chunk is checked.
 
     Parameters
     ----------
     system : System
-        What marches.
+        The system.
     arrays : Assembly
         The same as flat arrays.
     blocks : Blocks
-        The same as the march reads it.
+        The same in the form for the march.
     energies : ndarray, shape (energies,)
-        Its energies now.
+        Present energies.
     initial_energy : float
         Stored energy at the start [J].
     largest_energy : float, optional
-        Largest energy met before [J].
+        Largest energy so far [J].
     """
 
     def __init__(
@@ -49,23 +49,23 @@ class Belief:
         self.damped_alone = not arrays.coupled
 
     def of(self, chunk: Chunk, rows: Array | None = None, first: int = 0) -> tuple[int, int]:
-        """Return how many samples of the next chunk can be believed, and what ended it.
+        """Return the number of valid samples of the next chunk, and the code of its end.
 
         Parameters
         ----------
         chunk : Chunk
             The chunk.
         rows : ndarray, shape (energies, samples), optional
-            Where its energies are kept.
+            Record in which its energies are stored.
         first : int, optional
-            From which sample of these on.
+            First sample of the chunk in the record.
         """
         samples = chunk.completed
         kept = np.empty((at.ENERGIES, samples)) if rows is None else rows
         if chunk.energies.flags.c_contiguous:
             kept[:, first : first + samples] = chunk.energies[:samples].T
         else:
-            # Of another layout, it would be compiled once more.
+            # With another layout, `believed` would be compiled again.
             keep_beside(chunk.energies, samples, kept, first)
         completed, ended, largest = believed(
             kept,

@@ -1,4 +1,4 @@
-"""The motion of bodies that become others of their kind: longer, thicker, leaning more."""
+"""Transfer of motion to a changed body of the same kind, such as a longer or thicker one."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from ..lowering.schemes import Scheme
 from ..records.state import State
 from ..system import System
 
-# Of a body of revolution, what has no share in its modes.
+# Fields of a body of revolution without influence on its modes.
 NO_SHAPE = ("damping", "turning", "turning_history")
 SAME_MESH = ("elements", "root_support", "tip_support")
 
 
 @dataclass(frozen=True)
 class Before:
-    """What marched before a change.
+    """The system before a change.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class Before:
     scheme : Scheme
         Its time scheme.
     spans : dict
-        First mode of each body and the one after its last, by the body's name.
+        First mode of each body and end of its range, by the body's name.
     step : float
         Its time step [s].
     """
@@ -44,7 +44,7 @@ class Before:
     step: float
 
     def goes_on_as(self, system: System) -> bool:
-        """Return whether the motion means something for another system."""
+        """Return whether the motion can be transferred to another system."""
         before = self.system
         return (
             (before.imposed_velocity is None) == (system.imposed_velocity is None)
@@ -56,11 +56,11 @@ class Before:
         )
 
     def has_modes_of(self, system: System) -> bool:
-        """Return whether the bodies of another system have the same modes, however damped and turning."""
+        """Return whether the bodies of another system have the same modes, with any damping and turning."""
         return all(map(_has_same_modes, self.system.bodies, system.bodies))
 
     def motion_as(self, system: System, arrays: Assembly, state: State, time: float) -> tuple[Array, Array]:
-        """Return modal positions and velocities as those of another system."""
+        """Return modal positions and velocities converted to another system."""
         position, velocity = np.zeros((2, arrays.mode_count))
         speed_up = _root_velocity(system, time) - _root_velocity(self.system, time)
         for before, now in zip(self.system.bodies, system.bodies, strict=True):
@@ -69,7 +69,7 @@ class Before:
             position[new] = carried_over(before, now, held, state.modal[at.Q, old])
             velocity[new] = carried_over(before, now, held, state.modal[at.D, old] / self.step)
             if held:
-                # A root that is made to move faster does not take its body along at once.
+                # A change of the root's velocity does not change that of the body at once.
                 velocity[new] -= speed_up * now.modes(held).translation[0]
         return position, velocity
 
@@ -81,7 +81,7 @@ def _root_velocity(system: System, time: float) -> float:
 
 @singledispatch
 def _has_same_modes(before: Any, now: Any) -> bool:
-    """Return whether a body has the modes of another, shapes and frequencies."""
+    """Return whether a body has the same shapes and frequencies as another."""
     return bool(before == now)
 
 
@@ -91,7 +91,7 @@ def _whatever_its_speed(before: AxisymmetricBody, now: AxisymmetricBody) -> bool
 
 
 def _is_like_contact(before: PointContact, now: PointContact) -> bool:
-    """Return whether a contact begins as open as another, in the same direction and on what is of its kind."""
+    """Return whether contacts have the same gap and direction, and tracks of the same kind."""
     return (
         (before.gap, before.inclination) == (now.gap, now.inclination)
         and (before.path_body is None) == (now.path_body is None)
@@ -104,18 +104,18 @@ def _is_like_contact(before: PointContact, now: PointContact) -> bool:
 
 
 def _is_like_point(before: BodyPoint | None, now: BodyPoint | None) -> bool:
-    """Return whether points are the same, or points of bodies that are not."""
+    """Return whether points are the same, or on different bodies."""
     return before == now or (before is not None and now is not None and before.body != now.body)
 
 
 def carries_over(before: Any, now: Any) -> bool:
-    """Return whether the motion of one body means something for another."""
+    """Return whether the motion of one body can be transferred to another."""
     return type(before) is type(now) and _is_like(before, now)
 
 
 @singledispatch
 def _is_like(before: Any, now: Any) -> bool:
-    """Return whether the motion of a body means something for another of its kind."""
+    """Return whether the motion of a body can be transferred to another of its kind."""
     return _has_same_modes(before, now)
 
 
@@ -131,15 +131,15 @@ def _has_its_mesh(before: FiniteElementBeam, now: FiniteElementBeam) -> bool:
 
 
 def carried_over(before: Any, now: Any, held: bool, values: Array) -> Array:
-    """Return modal positions or velocities of a body as those of the one that it becomes.
+    """Return modal positions or velocities of a body converted to the changed body.
 
-    A finite-element beam keeps the travel that its supports leave free, and the deflections of its nodes along and
-    across its axis; a beam or plate of exact modes the amplitude of each of its sines.
+    A finite-element beam keeps its rigid motion, and the deflections of its nodes along and across its axis; a beam or
+    plate of exact modes keeps the amplitude of each sine.
 
     Parameters
     ----------
     before, now : body
-        The body and what it becomes, for which `carries_over` holds.
+        The body before and after the change, for which `carries_over` holds.
     held : bool
         Whether its root follows an imposed velocity.
     values : ndarray, shape (modes before,)
@@ -154,7 +154,7 @@ def carried_over(before: Any, now: Any, held: bool, values: Array) -> Array:
 
 @singledispatch
 def _carried(before: Any, now: Any, held: bool, values: Array) -> Array:
-    """Return the motion of a body that is not the same any more, of exact modes by their sines."""
+    """Return the motion of a changed body; for exact modes, by their sines."""
     found = np.zeros(now.modes().count)
     ratio = before.amplitude / now.amplitude
     places = {key: place for place, key in enumerate(_sines(now))}
@@ -176,14 +176,14 @@ def _of_finite_elements(before: FiniteElementBeam, now: FiniteElementBeam, held:
 
 @singledispatch
 def _sines(track: Any) -> list[Any]:
-    """Return what tells the modes of a track apart, in their order."""
+    """Return keys of the modes of a track, in their order."""
     bending, axial = track.harmonics
     return [("bending", k) for k in range(bending)] + [("axial", k) for k in range(axial)]
 
 
 @_sines.register
 def _of_a_plate(plate: ModalPlate) -> list[Any]:
-    # Of a pair of half-waves in the plane there is a longitudinal mode and one of shear.
+    # Each pair of half-waves in the plane has a longitudinal mode and a shear mode.
     shears = (plate.polarisations[:, 1] < 0.0).tolist()
     in_plane = zip(plate.in_plane_numbers.tolist(), shears, strict=True)
     bends = [("bending", tuple(pair), False) for pair in plate.numbers.tolist()]

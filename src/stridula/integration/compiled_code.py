@@ -1,4 +1,4 @@
-"""Compiled code: where it is kept from one process to the next, and when something is compiled."""
+"""Cache of compiled code between processes, and notification of compilations."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from typing import Any
 import numba
 from numba.core import event
 
-# The file that says which sources the compiled code beside it is of.
+# File with the digest of the sources of the compiled code beside it.
 STAMP = "stridula-kernels"
 
 
 def find_a_place() -> None:
-    """Keep compiled code for this process and its children only where it can be kept nowhere else, and say so once."""
+    """Keep compiled code for this process and its children only, with a warning, if it cannot be kept elsewhere."""
     try:
         numba.njit(cache=True)(_anything)
     except RuntimeError:
@@ -37,21 +37,21 @@ def find_a_place() -> None:
 
 
 def _anything() -> None:
-    """Stand for all that is compiled."""
+    """Function for the test whether compiled code can be kept."""
 
 
 def forget_other_sources(kernel: Any) -> None:
-    """Delete compiled code of other sources than those of the kernels now.
+    """Delete compiled code of sources other than the present ones of the kernels.
 
-    numba looks only at the file of the function that is called: after an update of the package in place it would run
-    old code in silence.
+    numba checks only the file of the called function: after an update of the package in place it would silently run
+    old code.
     """
     folder = Path(kernel._cache.cache_path)
     stamp = folder / STAMP
     sources = hashlib.blake2b(digest_size=16)
     for path in sorted(Path(kernel.py_func.__code__.co_filename).parent.glob("*.py")):
         sources.update(path.read_bytes())
-    # Where the folder cannot be written, numba keeps nothing either.
+    # If the folder cannot be written, numba keeps nothing either.
     with suppress(OSError):
         if not stamp.exists() or stamp.read_text(encoding="ascii") != sources.hexdigest():
             for compiled in folder.glob("*.nb[ic]"):
@@ -62,20 +62,20 @@ def forget_other_sources(kernel: Any) -> None:
 
 @contextmanager
 def tell_of_compiling(begins: Callable[[], None]) -> Iterator[None]:
-    """Call a function whenever a compilation begins, in any thread; code that is loaded from disk is not compiled."""
+    """Call a function whenever a compilation begins, in any thread; loading code from disk does not count."""
     with event.install_listener("numba:compile", _Beginnings(begins)):
         yield
 
 
 class _Beginnings(event.Listener):
-    """Whoever wants to know that a compilation begins."""
+    """Listener that calls a function when a compilation begins."""
 
     def __init__(self, begins: Callable[[], None]) -> None:
         self.begins = begins
 
     def on_start(self, event: event.Event) -> None:
-        """Tell of it."""
+        """Call the function."""
         self.begins()
 
     def on_end(self, event: event.Event) -> None:
-        """Say nothing."""
+        """Do nothing."""

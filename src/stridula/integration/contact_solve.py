@@ -1,4 +1,4 @@
-"""How several contacts are solved together."""
+"""Simultaneous solution of several contacts."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from ..checks import count, within
 
 @dataclass(frozen=True)
 class GaussSeidel:
-    """Block Gauss-Seidel over the exact solve of one contact: each in turn, until no force changes.
+    """Block Gauss-Seidel with the exact solution of each contact in turn, until no force changes.
 
     Parameters
     ----------
     tolerance : float, optional
         Largest change of a force in the last sweep, relative to the largest force [1].
     sweeps : int, optional
-        Largest number of sweeps a step. Steps that need more are counted in ``unsolved_steps``; a run stops where the
+        Largest number of sweeps per step. Steps that need more are counted in ``unsolved_steps``; a run stops if the
         forces still change by more than 1e-3.
     """
 

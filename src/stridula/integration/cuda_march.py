@@ -1,4 +1,4 @@
-"""Any number of runs of the same kind on a graphics card, one in each thread."""
+"""March of any number of runs of the same kind on a GPU, one in each thread."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from ..records.state import State
 from .contact_solve import GaussSeidel
 from .marches import March
 
-# A thread holds some two hundred registers: with more of them in a block, fewer blocks fit a multiprocessor.
+# A thread needs some two hundred registers: with more threads in a block, fewer blocks fit a multiprocessor.
 THREADS_PER_BLOCK = 64
 
 
 def require_cuda() -> None:
-    """Raise a RuntimeError that says in a line what is missing, unless there is a GPU, or numba's simulator of one."""
+    """Raise a RuntimeError that names the missing part, unless there is a GPU or numba's simulator of one."""
     missing = "" if config.ENABLE_CUDASIM else _missing()  # type: ignore[attr-defined]
     if missing:
         raise RuntimeError(f'device="cuda" needs {missing}')
 
 
 def _missing() -> str:
-    """Return what is missing, in words; nothing where a GPU can be used."""
+    """Return the missing part in words; empty if a GPU can be used."""
     if find_spec("numba_cuda") is None:
         return "numba-cuda, which is not installed: pip install .[cuda] in the sources"
     from numba import cuda
@@ -46,7 +46,7 @@ def _missing() -> str:
 class CudaMarch(March):
     """Any number of runs of the same kind, each a thread on a GPU.
 
-    What the march reads and carries stays on the card between chunks.
+    Inputs and state of the march stay on the card between chunks.
     """
 
     def __init__(
@@ -75,25 +75,25 @@ class CudaMarch(March):
 
     @property
     def kernel(self) -> Any:
-        """Nothing that is compiled for the processor."""
+        """None, as nothing is compiled for the CPU."""
         return None
 
     @property
     def states(self) -> list[State]:
-        """Where each run is."""
+        """State of each run."""
         modes, _, _, _, carried, _ = self.there
         self.modes = self.modes._replace(rows=modes.rows.copy_to_host())
         self.carried = type(carried)(*(array.copy_to_host() for array in carried))
         return super().states
 
     def copy(self) -> CudaMarch:
-        """Return another march that is where this one is."""
+        """Return a copy in the same state."""
         twin = copy(self)
         twin.there = [type(part)(*(self._twin_of(array) for array in part)) for part in self.there]
         return twin
 
     def _twin_of(self, array: Array) -> Array:
-        """Return another array on the card with the same values."""
+        """Return a copy of an array on the card."""
         if not array.size:
             return array
         twin = self.cuda.device_array_like(array)

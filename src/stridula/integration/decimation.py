@@ -15,25 +15,25 @@ KAISER = 6.2
 
 
 class Decimator:
-    """A linear-phase low-pass that keeps one value of every `ratio` steps, fed in pieces.
+    """A linear-phase low-pass that keeps one value of every `ratio` steps, with piecewise input.
 
     A Kaiser-windowed sinc over 16 sample intervals: flat to 0.1 % up to a quarter of the sample rate, -6 dB at 0.75 of
-    half of it, more than 60 dB down beyond half of it. The value kept for a sample is centred at the end of its
-    interval, so the last samples wait for `lookahead` steps beyond them.
+    half of it, more than 60 dB attenuation beyond half of it. The value of a sample is centred at the end of its
+    interval, so that the last samples need `lookahead` further steps.
 
     Parameters
     ----------
     ratio : int
-        Steps per sample; nothing is filtered at 1.
+        Steps per sample; no filter at 1.
     before : ndarray, shape (memory, probes), optional
-        Values at the last steps before the first one fed; that one, repeated, if left out.
+        Values at the last steps before the first input; the first value, repeated, if left out.
 
     Attributes
     ----------
     tail : ndarray, shape (memory, probes), or None
-        Values at the last steps fed, from which another decimator can go on.
+        Values at the last steps, from which another decimator can continue.
     last : ndarray, shape (1, probes), or None
-        Values at the last step fed.
+        Values at the last step.
     """
 
     def __init__(self, ratio: int, before: Array | None = None) -> None:
@@ -48,7 +48,7 @@ class Decimator:
         self._skip = max(ratio - self.reach, 0)
 
     def feed(self, raw: Array) -> Array:
-        """Take values at the next steps and return the samples they complete, shape (samples, probes)."""
+        """Take values at the next steps and return the completed samples, shape (samples, probes)."""
         if self.tail is None:
             self.tail = self._pending = np.repeat(raw[:1], self.memory, axis=0)
         if raw.shape[0]:

@@ -1,4 +1,4 @@
-"""A system as flat arrays whose start is the equilibrium that a drive asks for."""
+"""Start of a system, as flat arrays, in the equilibrium of an `InitialEquilibrium`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..system import System
 
 
 def in_equilibrium(system: System, arrays: Assembly) -> Assembly:
-    """Return a system in the equilibrium that an `InitialEquilibrium` asks for, other initial drives added to it.
+    """Return a system in the equilibrium of its `InitialEquilibrium`, with other initial drives added.
 
     Raises
     ------

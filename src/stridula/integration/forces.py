@@ -1,4 +1,4 @@
-"""The forces of closed contacts in one step, solved as the march solves them."""
+"""Forces of closed contacts in one step, solved as in the march."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ def forces_of(
     compliance : ndarray, shape (2 contacts, 2 contacts)
         Displacements along normal and tangent of each contact for unit forces on each [m/N].
     laws : tuple of ndarray
-        Codes of the laws of friction, shape (contacts,), and their parameters, a row a contact.
+        Codes of the friction laws, shape (contacts,), and their parameters, a row for each contact.
     carried : ndarray, shape (contacts, scalars)
-        What the march carries of each contact.
+        Scalars of each contact in the march.
     step : float
         Time step [s].
     solve : GaussSeidel
-        How they are solved together.
+        Settings of the simultaneous solution.
     """
     count = len(gaps)
     per_block = 1 if PLAIN else LANES

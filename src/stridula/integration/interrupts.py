@@ -1,4 +1,4 @@
-"""Ctrl-C that waits for the end of a chunk, so that state and record always belong together."""
+"""Deferral of Ctrl-C to the end of a chunk, so that state and record always match."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A march without end, of a system that may be changed on the way."""
+"""A march without end of a system that may be changed while it runs."""
 
 from __future__ import annotations
 
@@ -33,29 +33,29 @@ from .simulate import choose_timing
 from .start import rows_at, state_at_start, stored_in_contacts
 from .stops import ENDED
 
-# Share of the lowest frequency of vibration below which a mode yields as a free one does.
+# Share of the lowest frequency of vibration below which a mode counts as free when contacts are opened.
 SOFT = 0.3
 ON_THE_TRACK = (at.MATERIAL, at.ANCHOR, at.ABSCISSA, at.ABSCISSA_BEFORE)
 
 
 @dataclass(frozen=True)
 class LiveChunk:
-    """What a part of a live march left.
+    """Record of a part of a live march.
 
     Attributes
     ----------
     time : ndarray, shape (samples,)
         Time since the start of the stroke at the end of every sample interval [s].
     contacts : dict of ndarray, shape (contacts, samples)
-        Record of the contacts, by the names of records; in space along the first tangent.
+        Variables of the contacts, by their names in records; in space along the first tangent.
     status_shares : ndarray, shape (contacts, samples, 3)
         Share of each interval separated, sticking and sliding.
     energies : dict of ndarray, shape (samples,)
-        Energies since the start or the last change, by the names of records.
+        Energies since the start or the last change, by their names in records.
     probes : ndarray, shape (samples, probes)
-        Probes, later than the rest by `LiveMarch.delay` samples.
+        Probes, delayed by `LiveMarch.delay` samples.
     along_tangents : dict of ndarray, shape (contacts, samples, 2)
-        What contacts in space have along both tangents, by the names of records; nothing in the plane.
+        Variables of contacts in space along both tangents, by their names in records; empty in the plane.
     """
 
     time: Array
@@ -67,36 +67,36 @@ class LiveChunk:
 
     @property
     def contact(self) -> dict[str, Array]:
-        """Record of the first contact."""
+        """Variables of the first contact."""
         return {name: values[0] for name, values in self.contacts.items()}
 
     @property
     def status_share(self) -> Array:
-        """Shares of the first contact."""
+        """Status shares of the first contact."""
         found: Array = self.status_shares[0]
         return found
 
 
 class LiveMarch:
-    """A system on the march, sample by sample, for as long as one likes.
+    """A march of a system, sample by sample, without a fixed end.
 
-    What it is may change on the way: its motion goes on from where it is. Friction and forces change at once, and so do
-    the velocities of rigid tracks and of surfaces; bodies that change keep their deflections, contacts their opening
-    and their place on the track. A contact that is moved along the track keeps its opening there.
+    The system may be changed in between, and its motion continues. Friction, forces and the velocities of rigid tracks
+    and of surfaces change at once; changed bodies keep their deflections, contacts their gap and their place on the
+    track. A contact that is moved along the track keeps its gap there.
 
     Parameters
     ----------
     system : System
-        What marches.
+        The system.
     probes : sequence of Displacement, Velocity, Acceleration, Reaction, SupportForce, ModalDisplacement, ModalVelocity
-        What is recorded beside the contact.
+        Quantities to record besides those of the contacts.
     scheme : CentralDifference or ExactModal, optional
-        Time scheme, the exact modal one if left out.
+        Time scheme; the exact modal one if left out.
     sample_rate : float, optional
         Samples per second [Hz].
     """
 
-    # What marches and where it is; set again at every change.
+    # System and state of the march, set anew at every change.
     system: System
     probes: tuple[Probe, ...]
     scheme: Scheme
@@ -128,32 +128,32 @@ class LiveMarch:
 
     @property
     def delay(self) -> int:
-        """Samples by which probes come later than the rest."""
+        """Samples by which probes are delayed."""
         return -(-self._decimator.lookahead // self.ratio)
 
     @property
     def position(self) -> Array:
-        """Modal displacements now, shape (modes,); those of each body lie where `spans` says."""
+        """Present modal displacements, shape (modes,); the range of each body is in `spans`."""
         return self._of_bodies(self._march.states[0].modal[at.Q])
 
     @property
     def motion(self) -> tuple[Array, Array]:
-        """Modal displacements and velocities now, both as `position`."""
+        """Present modal displacements and velocities, both as in `position`."""
         modal = self._march.states[0].modal
         return self._of_bodies(modal[at.Q]), self._of_bodies(modal[at.D] / self.step)
 
     @property
     def spans(self) -> dict[str, tuple[int, int]]:
-        """First mode of each body, and the one after its last."""
+        """First mode of each body, and end of its range."""
         return self._arrays.spans
 
     @property
     def passed(self) -> Array:
-        """How far what each contact slides on has been moved along itself by now, shape (contacts,) [m]."""
+        """Distance by which the track of each contact has been moved along itself so far, shape (contacts,) [m]."""
         return self._imposed_now()[self._arrays.firsts, at.TRACK_MOTION]
 
     def restart(self) -> None:
-        """Put everything back to the start."""
+        """Return to the start."""
         self._sample, self._travel = 0, 0.0
         self._gaps = np.array([contact.gap for contact in self.system.contacts])
         self._lay_out(in_equilibrium(self.system, self._described))
@@ -161,7 +161,7 @@ class LiveMarch:
         self._begin_probes()
 
     def advance(self, samples: int) -> tuple[LiveChunk, str]:
-        """March on and return what was recorded, and how it ended.
+        """Continue the march and return its record, and the reason of its end.
 
         Parameters
         ----------
@@ -171,10 +171,10 @@ class LiveMarch:
         Returns
         -------
         chunk : LiveChunk
-            Fewer samples where the march ended.
+            Record, with fewer samples if the march ended early.
         ended : str
-            ``finished``, ``off the track``, ``not finite``, ``contact unsolved`` or ``energy created``; after all but
-            the first, only `restart` and `begin` help.
+            ``finished``, ``off the track``, ``not finite``, ``contact unsolved`` or ``energy created``; except after
+            the first, the march must be started again with `restart` or `begin`.
         """
         imposed = self._impositions.on(self._sample * self.ratio, samples * self.ratio)
         (chunk,) = self._march.advance([imposed], samples)
@@ -195,23 +195,23 @@ class LiveMarch:
     def begin(
         self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None, step: float | None = None
     ) -> None:
-        """Start anew as another system, whatever became of the march before.
+        """Start again with another system, in any state of the march.
 
         Parameters
         ----------
         system : System
-            What it becomes.
+            New system.
         probes : sequence of probe
-            What is recorded beside the contact from now on.
+            Quantities to record from now on besides those of the contacts.
         scheme : CentralDifference or ExactModal, optional
-            Time scheme, as it was if left out.
+            Time scheme; unchanged if left out.
         step : float, optional
-            Longest time step [s], the scheme's default if left out.
+            Longest time step [s]; the scheme's default if left out.
 
         Raises
         ------
         ValueError
-            As at the start; then all stays as it was.
+            As at the start; then nothing is changed.
         """
         with self._as_it_was_if_refused():
             self._take(system, probes, self.scheme if scheme is None else scheme, step)
@@ -220,29 +220,29 @@ class LiveMarch:
     def change(
         self, system: System, probes: Sequence[Probe], scheme: Scheme | None = None, step: float | None = None
     ) -> bool:
-        """Go on as another system.
+        """Continue with another system.
 
         Parameters
         ----------
         system : System
-            What it becomes.
+            New system.
         probes : sequence of probe
-            What is recorded beside the contact from now on.
+            Quantities to record from now on besides those of the contacts.
         scheme : CentralDifference or ExactModal, optional
-            Time scheme, as it was if left out.
+            Time scheme; unchanged if left out.
         step : float, optional
-            Longest time step [s], the scheme's default if left out.
+            Longest time step [s]; the scheme's default if left out.
 
         Returns
         -------
         bool
-            Whether the motion went on; else it starts anew, for it means nothing for the other system, or its tip would
-            not be on the track.
+            Whether the motion continued; otherwise the march starts again, because the motion cannot be transferred to
+            the other system, or its tip would not be on the track.
 
         Raises
         ------
         ValueError
-            As at the start; then all goes on as it was.
+            As at the start; then the march continues unchanged.
         """
         with self._as_it_was_if_refused():
             return self._change(system, probes, scheme, step)
@@ -277,7 +277,7 @@ class LiveMarch:
             self._go_on(state, places, position, velocity, before.system)
             return True
         if any(type(one.turning.history) is not Constant for one in arrays.turning):
-            # What turns at a speed of its own would begin with that of the start.
+            # A turning velocity with a history would start from its beginning.
             self.restart()
             return False
         yields = np.array([contact.yields is not None for contact in system.contacts])
@@ -298,12 +298,12 @@ class LiveMarch:
         self._decimator, self._waiting = Decimator(self.ratio), np.zeros((0, len(self.probes)))
 
     def _lay_out(self, arrays: Assembly) -> None:
-        """Let a system as flat arrays be what marches."""
+        """Set the system, as flat arrays, that marches."""
         self._arrays, self._blocks = arrays, blocks_of(arrays, self.scheme, self.step)
         self._impositions = Impositions(arrays, self._blocks, self.step)
 
     def _go(self, state: State) -> None:
-        """March on from a state."""
+        """Continue from a state."""
         state.energies[:] = 0.0
         in_contacts = stored_in_contacts(self._arrays, state.carried)
         state.energies[at.STORED] = self._blocks.modes.stored_energy(state.modal) + in_contacts
@@ -312,7 +312,7 @@ class LiveMarch:
         self._march = March([self._blocks], [state], self.step, self.ratio)
 
     def _low_passed(self, raw: Array, samples: int) -> Array:
-        """Return as many samples of the probes as of the rest: while they wait for the low-pass, the first or zero."""
+        """Return as many samples of the probes as of the rest; the first or zero before the low-pass gives any."""
         waiting = np.concatenate([self._waiting, self._decimator.feed(raw[: samples * self.ratio])])
         missing = max(0, samples - len(waiting))
         first = waiting[:1] if len(waiting) else np.zeros((1, len(self.probes)))
@@ -321,19 +321,19 @@ class LiveMarch:
         return waiting[:samples]
 
     def _of_bodies(self, modal: Array) -> Array:
-        """Return numbers of the modes that march as those of the modes of the bodies."""
+        """Return values of the modes of the march as values of the modes of the bodies."""
         blend, found = self._arrays.blend, np.array(modal)
         found[: len(blend)] = blend @ found[: len(blend)]
         return found
 
     def _root_at(self, arrays: Assembly) -> float:
-        """Return how far an imposed velocity has moved the root of a system by now [m]."""
+        """Return the distance by which an imposed velocity has moved the root of a system so far [m]."""
         return float(arrays.signals[-3](np.array([self.time]), self.step)[0])
 
     def _shifted(self, places: Array, position: Array, before: Array) -> Assembly:
-        """Return the system whose tips are at some places now: the sum of start, displacement and what is imposed.
+        """Return the system whose tips are at given places now: the sum of start, displacement and imposed motion.
 
-        What is imposed on contacts besides is where it was `before`, shape (contacts, motions).
+        Other imposed motions of contacts continue from `before`, shape (contacts, motions).
         """
         moved = with_travel(self._described, self.system, self._travel)
         described, now = moved.motion, np.array([self.time])
@@ -348,11 +348,11 @@ class LiveMarch:
         return replace(moved, contacts=contacts, motion=lambda times, step: described(times, step) + offset)
 
     def _imposed_now(self) -> Array:
-        """Return what is imposed on contacts now, shape (contacts, motions)."""
+        """Return the motions imposed on contacts now, shape (contacts, motions)."""
         return np.asarray(self._arrays.motion(np.array([self.time]), self.step)[0])
 
     def _go_on(self, state: State, places: Array, position: Array, velocity: Array, before: System) -> None:
-        """March on in the same modes, under other forces and another friction."""
+        """Continue with the same modes under other forces and other friction."""
         self._lay_out(self._shifted(places, position, self._imposed_now()))
         state.modal[at.D] = velocity * self.step
         firsts, numbers = self._arrays.firsts, self._arrays.contact_numbers
@@ -363,7 +363,7 @@ class LiveMarch:
         self._put(state, places)
 
     def _start_from(self, position: Array, velocity: Array, places: Array, gaps: Array) -> None:
-        """March on in other modes or at other places on the track, contacts opened by their gaps."""
+        """Continue with other modes or at other places on the track, with contacts opened by their gaps."""
         imposed, now = self._imposed_now(), self.time
         shifted = self._shifted(places, position, imposed)
         raised = shifted.motion(np.array([now]), self.step)[0, shifted.firsts, at.GAP_MOTION]
@@ -379,7 +379,7 @@ class LiveMarch:
         self._put(state_at_start(arrays, self.scheme, self.step, self._blocks, GaussSeidel()), places)
 
     def _put(self, state: State, places: Array) -> None:
-        """March on from a state whose tips are at some places on the track."""
+        """Continue from a state with tips at given places on the track."""
         for row, contact, place in zip(np.flatnonzero(self._arrays.firsts), self.system.contacts, places, strict=True):
             own = state.carried[row]
             if contact.path_body is not None:
@@ -388,7 +388,7 @@ class LiveMarch:
 
 
 def _is_on_track(contact: PointContact, place: float) -> bool:
-    """Return whether a tip at an abscissa is on what it slides on; rigid tracks and points have no ends."""
+    """Return whether a tip at an abscissa is on its track; rigid tracks and points have no ends."""
     if contact.path_body is None:
         return True
     low, high = contact.path_body.ends
@@ -396,7 +396,7 @@ def _is_on_track(contact: PointContact, place: float) -> bool:
 
 
 def _opening(arrays: Assembly, places: Array, position: Array, gaps: Array) -> Array:
-    """Return the displacement that opens contacts to gaps as forces on them would, rigid motions first."""
+    """Return the displacement that opens contacts to given gaps, as by contact forces, rigid motions first."""
     firsts = [one for one in arrays.contacts if not one.is_second]
     rows = np.array([rows_at(one, place)[0] for one, place in zip(firsts, places, strict=True)])
     squared = arrays.all_stiffness

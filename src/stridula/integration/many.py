@@ -1,4 +1,4 @@
-"""Many runs at once: side by side in vectors, and on all processors."""
+"""Simulation of many systems: side by side in vectors, and on all processors."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ from .surface_records import ALL_POINTS
 from .together import march_together
 from .watchers import Progress, Watcher
 
-# Modes above which runs side by side leave a processor's first cache, so that one at a time is as fast.
+# Modes above which runs side by side exceed a processor's first-level cache, so that single runs are as fast.
 MOST_MODES = 120
-# Fewer runs of a kind than these march one by one: a vector costs the same, full or not.
+# Least number of runs in a vector, as a vector costs the same whether it is full or not.
 FEWEST_RUNS = 4
-# Runs at a time on a card: their records go through its memory and ours.
+# Most runs at a time on a card, limited by the memory for their records.
 MOST_ON_A_CARD = 16_384
 DEVICES: dict[str, type[March]] = {"cpu": March, "cuda": CudaMarch}
 
@@ -64,70 +64,71 @@ def simulate_many(
 ) -> list[Any]:
     """March many systems in time, several at once on each processor.
 
-    Runs of the same kind march side by side: with the same numbers of modes, contacts and loads, paths of the same
-    waves, laws of friction and kinds of probes, of at most some 120 modes. Coefficients, angles, loads, damping and
+    Runs of the same kind march side by side: runs with the same numbers of modes, contacts and loads, paths of the same
+    waves, friction laws and kinds of probes, and at most some 120 modes. Coefficients, angles, loads, damping and
     lengths may differ. All others march one by one.
 
-    Side by side, sums over modes have another order than alone: records are the same but for round-off, which chaotic
-    runs amplify. Which runs share a vector does not matter.
+    Side by side, sums over modes have another order than in single runs: records differ by round-off, which chaotic
+    runs amplify. The grouping of runs in vectors has no effect.
 
     Parameters
     ----------
     systems : sequence of System
-        What to simulate.
+        Systems to simulate.
     duration : float
         Time to simulate [s].
     reduce : callable, optional
-        Called with each record as soon as it is there, in a thread; what it returns is kept in its place.
+        Called with each record as soon as it is complete, in a thread; its result is kept in place of the record.
     scheme : CentralDifference or ExactModal, optional
-        Time scheme, the exact modal one if left out.
+        Time scheme; the exact modal one if left out.
     step : float, optional
-        Time step [s]; if left out, the shortest of those that the systems take alone.
+        Time step [s]; if left out, the shortest of the default steps of the systems.
     sample_rate : float, optional
         Samples per second to record [Hz].
     probes : sequence of probes, optional
-        What else to record, on bodies of all systems; as for `simulate` if left out.
+        Further quantities to record, on bodies of all systems; as for `simulate` if left out.
     contact_solve : GaussSeidel, optional
-        How several contacts are solved together.
+        Settings of the simultaneous solution of several contacts.
     surface_rate : float or str, optional
-        What is recorded of surfaces, as for `simulate`; plain records have all points as contacts if it is left out.
+        Recording of surfaces, as for `simulate`; if left out, plain records have all points as contacts.
     device : {"cpu", "cuda"}, optional
-        Where runs of the same kind march: on the processors, or all at once on an NVIDIA GPU, one in each thread.
+        Device for runs of the same kind: the processors, or an NVIDIA GPU with all at once, one in each thread.
     workers : int, optional
-        Runs or groups of them at a time; as many as there are processors if left out.
+        Number of runs or groups of them at a time; the number of processors if left out.
     watchers : sequence of callable, optional
-        Called with the `Progress` of all runs, from threads: simulated times are sums over the runs.
+        Called with the `Progress` of all runs, from threads; simulated times are sums over the runs.
     title : str, optional
         Title of the records.
     errors : {"raise", "return"}, optional
-        Whether a system that cannot be simulated, or a record on which `reduce` fails, ends all runs, or leaves its
-        exception in its place while the others go on.
+        Whether a system that cannot be simulated, or a record on which `reduce` fails, ends all runs, or has its
+        exception as result while the others continue.
     provenance : bool, optional
-        Whether each record says in ``attrs["scenario"]`` what it is of; those reduced at once can do without.
+        Whether each record has its scenario in ``attrs["scenario"]``; records that are reduced at once may not need it.
     labelled : bool, optional
-        Whether records are labelled Datasets; else each is a `PlainRecord`, its arrays over time by name, which takes
-        a fraction of the time. `analysis.regime_of` takes both.
+        Whether records are labelled Datasets; else each is a `PlainRecord`, arrays over time by name, which takes a
+        fraction of the time. `analysis.regime_of` accepts both.
     variables : sequence of str, optional
-        Names of the variables that plain records hold; all if left out.
+        Names of the variables in plain records; all if left out.
     progress : bool, optional
-        Whether a bar on standard error shows the simulated time of all runs together, the speed and the time left.
+        Whether to show a bar on standard error with the total simulated time of all runs, the speed and the time left.
 
     Returns
     -------
     list
-        The record of each system, or what `reduce` made of it, in the order of `systems`. A run that diverged has the
-        record before that: ``attrs["ended"]`` says how, ``attrs["message"]`` where and why.
+        The record of each system, or the result of `reduce`, in the order of `systems`. A run that diverged has the
+        record up to that point, with the kind of divergence in ``attrs["ended"]``, place and cause in
+        ``attrs["message"]``.
 
     Raises
     ------
     ValueError
-        If an argument is out of its range, or a system cannot be simulated with it and `errors` says to raise.
+        If an argument is out of its range, or if a system cannot be simulated with it and `errors` is ``"raise"``.
     RuntimeError
-        If a GPU is asked for and cannot be used; the message says what is missing.
+        If a GPU is requested and cannot be used; the message names the missing part.
 
     See Also
     --------
-    simulate : One system; says what a record holds.
+    simulate : Simulate one system; describes the content of a record.
     """
     if not isinstance(systems, Sequence) or isinstance(systems, str):
         raise ArgumentError("systems", "be a list of systems", systems)
@@ -157,7 +158,7 @@ def simulate_many(
 
 
 def _arrays(systems: Sequence[System], asked: Asked, results: _Results) -> dict[int, Arrays]:
-    """Return the systems that can be simulated as flat arrays, and let all have the shortest of their steps."""
+    """Return the systems that can be simulated as flat arrays, and set the shortest of their steps for all."""
     arrays: dict[int, Arrays] = {}
     steps = []
     for number, system in enumerate(systems):
@@ -171,7 +172,7 @@ def _arrays(systems: Sequence[System], asked: Asked, results: _Results) -> dict[
 
 
 def _wanted(variables: Sequence[str] | None, labelled: bool) -> Sequence[str]:
-    """Return the names of the variables that records hold."""
+    """Return the names of the variables in records."""
     if variables is None:
         return RECORDED
     if labelled or isinstance(variables, str) or not isinstance(variables, Sequence):
@@ -182,7 +183,7 @@ def _wanted(variables: Sequence[str] | None, labelled: bool) -> Sequence[str]:
 
 
 class _Results:
-    """What came of each system; exceptions among them where they are not to end all runs."""
+    """Results of the systems, including exceptions if these do not end all runs."""
 
     def __init__(self, keeps_exceptions: bool) -> None:
         self.keeps_exceptions = keeps_exceptions
@@ -190,9 +191,9 @@ class _Results:
 
     @contextmanager
     def failing(self, number: int, where: str = "") -> Iterator[None]:
-        """Keep an exception as the result of a system, or raise it, a ValueError saying which of the systems it is of.
+        """Keep an exception as the result of a system, or raise it; a ValueError names the system.
 
-        Memory that runs out says nothing about the system.
+        A MemoryError is always raised, as it is not due to the system.
         """
         try:
             yield
@@ -222,7 +223,7 @@ def _groups(arrays: Mapping[int, Arrays], device: str = "cpu") -> list[list[int]
 
 
 def _kind(arrays: Arrays, most_modes: int | None) -> Hashable | None:
-    """Return what runs that march side by side share, None for a run that marches alone."""
+    """Return a key that is equal for runs that march side by side, None for a run that marches alone."""
     flat = arrays.flat
     if most_modes and flat.mode_count + flat.coupled**2 > most_modes:
         return None
@@ -232,7 +233,7 @@ def _kind(arrays: Arrays, most_modes: int | None) -> Hashable | None:
 
 
 def _turned(flat: Assembly) -> Hashable:
-    """Return which modes are carried round in pairs, and round which bodies contacts move."""
+    """Return the pairs of modes that are carried round, and the bodies round which contacts move."""
     bodies = tuple((one.span, one.pairs.tobytes(), one.has_circle) for one in flat.turning)
     return bodies, tuple(one.circle and one.circle.span for one in flat.contacts)
 
@@ -242,7 +243,7 @@ def _law(one: ContactRows) -> Hashable:
 
 
 def _waves(one: ContactRows) -> Hashable:
-    """Return which waves the modes of a path are."""
+    """Return a key of the waves of the modes of a path."""
     if one.bending == one.axial:
         return None
     track: Any = one.contact.track
@@ -251,11 +252,11 @@ def _waves(one: ContactRows) -> Hashable:
 
 
 class _Cancelled(Exception):
-    """A run that was stopped because another one failed."""
+    """Raised to stop a run because another one failed."""
 
 
 class _Together:
-    """Groups of runs on their way to results."""
+    """Groups of runs in progress."""
 
     def __init__(
         self,
@@ -275,7 +276,7 @@ class _Together:
         self.stop, self.lock, self.simulated = threading.Event(), threading.Lock(), 0.0
 
     def march_all(self, groups: Sequence[Sequence[int]], workers: int) -> None:
-        """March groups in threads; the first failure ends the others. The march is compiled and lets threads run."""
+        """March groups in threads; the first failure ends the others. The compiled march lets other threads run."""
         if not groups:
             return
         with ThreadPoolExecutor(min(workers, len(groups))) as pool:
@@ -315,14 +316,14 @@ class _Together:
         return self.side_by_side(blocks, states, timing.step, timing.ratio, self.asked.solve)
 
     def _watch(self, runs: Sequence[Run]) -> Watcher:
-        """Return what tells the watchers how far all runs are, and stops a group when another one has failed."""
+        """Return a watcher that reports the progress of all runs, and stops the group if another one has failed."""
         before = 0.0
 
         def watch(progress: Progress) -> None:
             nonlocal before
             if self.stop.is_set():
                 raise _Cancelled
-            # A run that has ended is as far as it will come.
+            # A run that has ended counts as complete.
             over = all(run.ended != FINISHED for run in runs)
             reached = progress.duration if over else progress.time
             with self.lock:

@@ -47,7 +47,7 @@ if not PLAIN:
 
 @dataclass(frozen=True)
 class Imposed:
-    """What is imposed on a chunk of steps, in one row of each where nothing varies.
+    """Imposed signals and motions of a chunk of steps, in one row each if nothing varies.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class Imposed:
 
 
 def imposed_on(arrays: Assembly, used: Sequence[int], first: int, steps: int, step: float) -> Imposed:
-    """Return what is imposed on `steps` steps from number `first` on; signals that are not used stay zero."""
+    """Return the imposed signals and motions of `steps` steps from `first` on; unused signals stay zero."""
     times = np.arange(first - 1, first + steps + 1) * step
     signals = np.zeros((steps, len(arrays.signals)))
     for j in used:
@@ -75,14 +75,14 @@ def imposed_on(arrays: Assembly, used: Sequence[int], first: int, steps: int, st
 
 
 class Impositions:
-    """What is imposed on a system, stretch after stretch of its steps.
+    """Imposed signals and motions of a system for consecutive ranges of steps.
 
     Parameters
     ----------
     arrays : Assembly
         The system as flat arrays.
     blocks : Blocks
-        The same as the march reads it.
+        The same in the form for the march.
     step : float
         Time step [s].
     """
@@ -92,7 +92,7 @@ class Impositions:
         self.is_steady = arrays.prescribed.is_steady
 
     def on(self, first: int, steps: int) -> Imposed:
-        """Return what is imposed on `steps` steps from number `first` on, in one row where nothing varies."""
+        """Return the imposed signals and motions of `steps` steps from `first` on, in one row if nothing varies."""
         return self._steady if self.is_steady else imposed_on(self.arrays, self.used, first, steps, self.step)
 
     @cached_property
@@ -103,18 +103,18 @@ class Impositions:
 
 @dataclass(frozen=True)
 class Chunk:
-    """What a chunk of a march left.
+    """Record of a chunk of a march.
 
     Attributes
     ----------
     energies : ndarray, shape (samples, energies)
         Energies at every sample.
     contacts : ndarray, shape (samples, contacts, columns)
-        Record of the contacts.
+        Variables of the contacts.
     raw : ndarray, shape (steps, probes)
         Probes at every step.
     completed, ended : int
-        Samples completed, and what ended the march.
+        Number of completed samples, and the code of the end of the march.
     """
 
     energies: Array
@@ -125,23 +125,23 @@ class Chunk:
 
 
 class March:
-    """Runs on the march: one, or several of the same kind side by side.
+    """The march of one run, or of several of the same kind side by side.
 
-    Runs of the same kind have the same modes in number, contacts on paths of the same waves, laws of friction, drives
-    and probes.
+    Runs of the same kind have the same number of modes, contacts on paths of the same waves, friction laws, drives and
+    probes.
 
     Parameters
     ----------
     blocks : sequence of Blocks
-        Each system as the march reads it.
+        Each system in the form for the march.
     states : sequence of State
-        Where each is.
+        State of each.
     step : float
         Time step [s].
     ratio : int
-        Steps a sample.
+        Steps per sample.
     solve : GaussSeidel, optional
-        How several contacts are solved together.
+        Settings of the simultaneous solution of several contacts.
     """
 
     def __init__(
@@ -185,9 +185,9 @@ class March:
         self.room: tuple[Array, ...] = (aligned(0, 0),)
 
     def _arrangement(self) -> tuple[int, int, int]:
-        """Return how many runs march, how many modes of each lie in a block, and how wide a block is.
+        """Return the number of runs, the number of modes of each in a block, and the width of a block.
 
-        A vector of runs is filled up with copies of the last.
+        A vector of runs is filled up with copies of the last one.
         """
         if PLAIN:
             return self.given, 1, self.given
@@ -229,14 +229,14 @@ class March:
 
     @property
     def kernel(self) -> Any:
-        """The function that marches: compiled, or anything else where nothing is compiled for the processor."""
+        """The function that marches: a compiled one, or another callable if nothing is compiled for the processor."""
         if PLAIN:
             return partial(march_one_by_one, self.runs)
         return march_run if self.runs == 1 else march_runs
 
     @property
     def states(self) -> list[State]:
-        """Where each run is."""
+        """State of each run."""
         found, where = [], self.layout
         all_carried = self.carried.carried.reshape(-1, self.runs)
         energies = self.carried.energies.reshape(-1, self.runs)
@@ -248,11 +248,11 @@ class March:
         return found
 
     def copy(self) -> March:
-        """Return another march that is where this one is."""
+        """Return a copy in the same state."""
         return deepcopy(self)
 
     def _room(self, samples: int) -> tuple[Array, Array, Array, Array]:
-        """Return where a chunk is written to: the same memory as for the last one if that is enough."""
+        """Return memory for a chunk: that of the last one if it is large enough."""
         if samples > len(self.room[0]):
             columns = at.ENERGIES, at.COLUMNS * self.contact_count
             records = [aligned(samples, count * self.runs) for count in columns]
@@ -261,7 +261,7 @@ class March:
         return energies[:samples], record[:samples], raw[: samples * self.ratio], stops
 
     def advance(self, imposed: Sequence[Imposed], samples: int) -> list[Chunk]:
-        """March `samples` samples on and return what each run left, to be read before the next call."""
+        """March `samples` samples and return the record of each run, to be read before the next call."""
         steps, runs = samples * self.ratio, self.runs
         imposed = [*imposed, *[imposed[-1]] * (runs - self.given)]
         energies, record, raw, stops = self._room(samples)
@@ -290,15 +290,15 @@ class March:
 
 
 def _beside(imposed: Sequence[Array]) -> Array:
-    """Return numbers of runs at every step, shape (steps, numbers) for each, side by side."""
+    """Return arrays of runs over the steps, shape (steps, numbers) each, side by side."""
     first, rows = imposed[0], max(map(len, imposed))
     if any(one is not first for one in imposed):
-        # What does not vary has one row.
+        # Constant values have one row.
         return side_by_side([np.broadcast_to(one, (rows, one.shape[1])) for one in imposed])
     return np.ascontiguousarray(first) if len(imposed) == 1 else np.repeat(first, len(imposed), axis=1)
 
 
 def _each(change: Callable[[Imposed], Array], imposed: Sequence[Imposed]) -> list[Array]:
-    """Return what a function makes of each, made once of one that serves several runs."""
+    """Return the results of a function for each, computed once for an object shared by several runs."""
     made = {id(one): change(one) for one in {id(one): one for one in imposed}.values()}
     return [made[id(one)] for one in imposed]

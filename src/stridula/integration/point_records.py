@@ -1,4 +1,4 @@
-"""Points of surfaces recorded at every sample: what regimes and sound need of them, in few bytes."""
+"""Compact records of the points of surfaces at every sample, for regimes and sound."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..records.variables import STATUS_SHARE, attributes_of
 
 
 def kinds_of(steps: int) -> dict[str, tuple[tuple[int, ...], Any]]:
-    """Return shape and kind of what is recorded of a point in a sample interval of so many steps."""
+    """Return shape and type of the variables of a point for sample intervals of a number of steps."""
     return {
         "normal_force": ((), np.float32),
         "tangential_force": ((2,), np.float32),
@@ -24,12 +24,12 @@ def kinds_of(steps: int) -> dict[str, tuple[tuple[int, ...], Any]]:
 
 
 def bytes_of(steps: int) -> int:
-    """Return how many bytes that takes."""
+    """Return the number of bytes of these variables."""
     return sum(math.prod(after) * np.dtype(kind).itemsize for after, kind in kinds_of(steps).values())
 
 
 class PointRecord:
-    """Forces in single precision, shares of the status and landings of points, chunk by chunk.
+    """Forces in single precision, status shares and landings of points, chunk by chunk.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class PointRecord:
         self._done = 0
 
     def take(self, normal: Array, tangential: Array, share: Array, landings: Array) -> None:
-        """Take a chunk: forces [N], (samples, points) and along both tangents; shares, and landings."""
+        """Record a chunk: forces [N], (samples, points) and along both tangents; shares, and landings."""
         here = slice(self._done, self._done + len(normal))
         for name, values in zip(OF_POINTS, (normal, tangential, counted(share), landings), strict=True):
             self._kept[name][here] = values

@@ -1,4 +1,4 @@
-"""A run that continues the record of another: what it takes over, and what must be the same."""
+"""Continuation of a run from the record of another, with the checks that it is possible."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from ..system import System
 from .decimation import Decimator
 from .timing import Timing
 
-# Laws whose internal state is carried on: another law has no use for it.
+# Laws with an internal state, which cannot be transferred to another law.
 STATEFUL = tuple(law.law for law in LAWS if law.state_units)
 STATE = ("modal", "remainder", "carried", "energies")
 ATTRIBUTES = ("ended", "scenario", "scheme", "step", "steps_per_sample", "last_step", "initial_energy")
-# Beyond it a state overflows in the units of the march.
+# Larger states overflow in the units of the march.
 LARGEST = 1e100
 OTHER_VERSION = "a record of another version runs again, but cannot be continued"
 
@@ -41,8 +41,8 @@ def state_of(
     Raises
     ------
     ValueError
-        If the record does not end as a run that can go on, or is not that of the same system but for drives, friction
-        and duration.
+        If the record does not end in a state that can be continued, or if the system differs in more than drives,
+        friction and duration.
     """
     instance("start", start, xr.Dataset)
     needed = ("time", *(f"state_{name}" for name in STATE), "state_raw")
@@ -55,7 +55,9 @@ def state_of(
     if missing:
         raise ArgumentError("start", "have the attributes of a record", start, got=f"one without {listed(missing)}")
     if attributes["ended"] not in ("finished", "interrupted"):
-        raise ArgumentError("start", "be a run that can go on", start, got=f"one that ended {attributes['ended']!r}")
+        raise ArgumentError(
+            "start", "be a run that can be continued", start, got=f"one that ended {attributes['ended']!r}"
+        )
     if attributes.get("state_layout") != LAYOUT:
         got = attributes.get("state_layout", "none")
         raise ArgumentError(
@@ -85,7 +87,7 @@ def _count(shape: tuple[int, ...]) -> int:
 
 
 def _check_whole(start: xr.Dataset) -> None:
-    """Raise a ValueError where the last sample of a record is not the one its state is of."""
+    """Raise a ValueError if the final state of a record does not belong to its last sample."""
     attributes, times = start.attrs, start["time"].values
     step, last = float(attributes["step"]), int(attributes["last_step"])
     if last and not (times.size and abs(times[-1] - last * step) < 0.5 * step):
@@ -99,9 +101,9 @@ def _check_whole(start: xr.Dataset) -> None:
 
 
 def _check_state(start: xr.Dataset, arrays: Assembly, timing: Timing, probes: int) -> None:
-    """Raise a ValueError where a state is not as the march keeps it."""
+    """Raise a ValueError if a state does not have the layout of the march."""
     modal, contacts = (2, arrays.mode_count), len(arrays.contacts)
-    # Without probes, or of a run that was interrupted at once, there is nothing that the low-pass still needs.
+    # Without probes, or after an immediate interruption, the low-pass needs no values.
     memory = Decimator(timing.ratio).memory if probes and start.sizes["time"] else 0
     shapes = {
         "modal": modal,
@@ -127,7 +129,7 @@ def _check_state(start: xr.Dataset, arrays: Assembly, timing: Timing, probes: in
 
 
 def imposed_at(arrays: Assembly, last_step: int, step: float) -> dict[str, float]:
-    """Return how far [m] and how fast [m/s] an imposed velocity has moved the root after some steps."""
+    """Return distance [m] and velocity [m/s] of the root by an imposed velocity after some steps."""
     time = np.array([last_step * step])
     travel, velocity = (float(signal(time, step)[0]) for signal in arrays.signals[-3:-1])
     return {"root_travel": travel, "root_velocity": velocity}
@@ -136,17 +138,17 @@ def imposed_at(arrays: Assembly, last_step: int, step: float) -> dict[str, float
 def moved_on(
     start: xr.Dataset, system: System, arrays: Assembly, modes: Recurrence, state: State, step: float
 ) -> tuple[Assembly, Array]:
-    """Return a system whose root and rigid tracks continue from where a record left them, perhaps at other velocities.
+    """Return a system whose root and rigid tracks continue from the end of a record, perhaps at other velocities.
 
-    What hangs at a root that is made to move faster does not move faster at once: `state` is changed so, and the energy
-    that this gives it, as the root sees it, is work of the drive. What sticks to a belt has to follow it.
+    A change of the root's velocity does not change that of the body at once: `state` is changed accordingly, and the
+    energy of this change, in the frame of the root, is work of the drive. Bodies that stick to a belt must follow it.
 
     Returns
     -------
     arrays : Assembly
         The system.
     offset : ndarray, shape (contacts, 3)
-        By how much its contacts have been moved beyond what it describes [m].
+        Displacement of its contacts in addition to its description [m].
     """
     described = arrays.motion
     arrays = _root_moved_on(start, system, arrays, modes, state, step)
@@ -155,7 +157,7 @@ def moved_on(
     if "state_motion" not in start:
         return arrays, motion_about(arrays.motion, last, step)[1] - here[1]
     kept = start["state_motion"].values
-    # Exactly as before where nothing has changed: a run then goes on to the last bit.
+    # If nothing has changed, the motion is exactly as before: a run then continues bit by bit.
     was, offset = kept[:2], kept[2] + (kept[1] - here[1])
     turns = not np.array_equal(here, was)
     if turns or offset.any():
@@ -165,7 +167,7 @@ def moved_on(
 
 
 def motion_about(motion: Signal, last_step: int, step: float) -> Array:
-    """Return the motions of the contacts one step before and after some steps [m], shape (2, contacts, 3)."""
+    """Return the motions of the contacts after some steps and one step earlier [m], shape (2, contacts, 3)."""
     return motion(np.array([last_step - 1, last_step]) * step, step)
 
 
@@ -190,9 +192,9 @@ def _root_moved_on(
 
 
 def _frozen(tables: dict[str, Any], knows_motion: bool) -> dict[str, Any]:
-    """Return what a run that continues another must share with it: all but what drives it, friction and timing.
+    """Return the part of a scenario that must be equal in a continued run: all but drives, friction and timing.
 
-    A record that does not say how far its rigid tracks have moved must share their motion, too.
+    If a record lacks the displacement of its rigid tracks, their motion must also be equal.
     """
     kept = {name: value for name, value in tables.items() if name not in ("drives", "simulation")}
     kept["probes"] = tables["simulation"]["probes"]

@@ -1,4 +1,4 @@
-"""Bars of the package rich, which lives here and in the command line."""
+"""Progress bars of the package rich, which is used only here and in the command line."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ class TimeLeft(TimeRemainingColumn):
     """The time left, once it is known."""
 
     def render(self, task: Task) -> Text:
-        """Return it in words."""
+        """Return the time left in words."""
         known = task.total is not None and task.time_remaining is not None and not task.finished
         return super().render(task).append(" left") if known else Text("")
 
 
 class RichBar:
-    """A bar on standard error that does not stay, nothing where that is no terminal.
+    """A transient bar on standard error; nothing if that is not a terminal.
 
     Parameters
     ----------
     title : str
-        What is computed.
+        Name of the computation.
     words : str
-        What is said beside it at first.
+        Initial text beside it.
     """
 
     def __init__(self, title: str, words: str) -> None:
@@ -50,9 +50,9 @@ class RichBar:
         self._progress.stop()
 
     def say(self, words: str) -> None:
-        """Say something beside the bar."""
+        """Show a text beside the bar."""
         self._progress.update(self._task, words=words)
 
     def show(self, done: float, total: float, words: str) -> None:
-        """Show how much is done, and say so."""
+        """Show how much is done, with a text."""
         self._progress.update(self._task, completed=done, total=total, words=words)

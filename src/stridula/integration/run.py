@@ -1,4 +1,4 @@
-"""One run: where it is, and what is recorded of it, chunk by chunk."""
+"""One run: its state and its record, chunk by chunk."""
 
 from __future__ import annotations
 
@@ -55,12 +55,12 @@ ENERGY_COLUMN = {
     "contact_sweeps": at.ITERATIONS,
     "unsolved_steps": at.UNSOLVED,
 }
-# All of them.
+# All columns of the record of contacts.
 ALL_COLUMNS = tuple(range(at.COLUMNS))
 
 
 class Run:
-    """One run: the arrays of a system under a scheme, where it is, and what is recorded."""
+    """One run: the arrays of a system under a time scheme, its state and its record."""
 
     def __init__(
         self,
@@ -88,12 +88,12 @@ class Run:
             self.arrays, self.offset = moved_on(start, system, arrays, self.blocks.modes, self.state, timing.step)
             self.first_step, self.initial_energy = int(start.attrs["last_step"]), float(start.attrs["initial_energy"])
             self.decimator = Decimator(timing.ratio, np.array(start["state_raw"].values, dtype=float))
-        # What rounding has left of large energies is there when they are gone.
+        # Rounding errors of large energies remain when these are gone.
         met = 0.0 if start is None else float(start.attrs.get("largest_energy", 0.0))
         self.belief = Belief(system, arrays, self.blocks, self.state.energies, self.initial_energy, met)
         self.impositions = Impositions(self.arrays, self.blocks, timing.step)
         self.energy_record = np.empty((at.ENERGIES, timing.samples))
-        # What is recorded of the surfaces in short, and which rows of contacts there are then.
+        # Compact record of the surfaces, and the rows of contacts that remain.
         self.surfaces = surfaces
         self.firsts = arrays.firsts if surfaces is None else surfaces.firsts
         self.contact_record = np.empty((at.COLUMNS, len(self.firsts), timing.samples))
@@ -106,29 +106,29 @@ class Run:
         self.compile_time = self.wall_time = 0.0
 
     def keep_only(self, wanted: Collection[str]) -> None:
-        """Keep only some variables, of which the plain record is."""
+        """Restrict the plain record to some variables."""
         shares = range(at.SEPARATED, at.SLIDING + 1) if STATUS_SHARE.name in wanted else ()
         columns = [column for name, column in CONTACT_COLUMN.items() if name in wanted]
         self.wanted, self.columns = wanted, (*columns, *shares)
 
     @property
     def has_diverged(self) -> bool:
-        """Whether the result can no longer be believed."""
+        """Whether the result is no longer valid."""
         return self.ended not in (at.FINISHED, at.OFF_TRACK)
 
     @property
     def samples_ahead(self) -> int:
-        """Samples beyond the end that the low-pass of the probes needs."""
+        """Number of samples beyond the end that the low-pass of the probes needs."""
         waits = bool(self.probes) and self.filled < self.done and self.ended == at.FINISHED
         return -(-self.decimator.lookahead // self.timing.ratio) if waits else 0
 
     def imposed(self, first_sample: int, samples: int) -> Imposed:
-        """Return what is imposed on the steps of some samples."""
+        """Return the imposed signals and motions of the steps of some samples."""
         ratio = self.timing.ratio
         return self.impositions.on(self.first_step + first_sample * ratio, samples * ratio)
 
     def take(self, chunk: Chunk) -> None:
-        """Record a chunk, up to what ends the run."""
+        """Record a chunk, up to the end of the run."""
         if self.ended != at.FINISHED:
             return
         completed, self.ended = self.belief.of(chunk, self.energy_record, self.done)
@@ -143,7 +143,7 @@ class Run:
             self._keep_probes(chunk.raw[: completed * self.timing.ratio])
 
     def finish(self, state: State, ahead: Chunk | None) -> None:
-        """Take the state at the end, and complete the probes from a chunk beyond it, or from the last value."""
+        """Set the final state, and complete the probes from a chunk beyond it, or from the last value."""
         self.state, self.tail = state, self.decimator.tail
         if not self.probes or self.filled >= self.done:
             return
@@ -162,19 +162,19 @@ class Run:
         self.filled += count
 
     def why_diverged(self) -> str:
-        """Return where the contacts were when the run diverged, and whether they can be told apart, in words."""
+        """Return the contacts when the run diverged, and the rank of their compliance if it matters, in words."""
         words = contact_words(self.system.contact_names, self.state.carried[self.arrays.firsts])
         if self.ended != at.CONTACT_UNSOLVED:
             return words
         return f"{words}; {rank_words(self.arrays, self.blocks, self.state)}"
 
     def told_of_divergence(self) -> str:
-        """Return when and why the run diverged, in words."""
+        """Return time and cause of the divergence in words."""
         timing = self.timing
         return divergence_words(ENDED[self.ended], self.done * timing.interval, timing.step, self.why_diverged())
 
     def record(self, interrupted: bool = False, provenance: bool = True) -> xr.Dataset:
-        """Return the record, with the scenario that it is of in its attributes unless `provenance` is false."""
+        """Return the record, with its scenario in the attributes unless `provenance` is false."""
         timing, done = self.timing, self.done
         last_step, surfaces = self._last_step, self.surfaces
         record = to_dataset(
@@ -213,7 +213,7 @@ class Run:
         return np.asarray((first_sample + np.arange(1, self.done + 1)) * self.timing.interval)
 
     def _over_time(self) -> tuple[dict[str, Array], Array, dict[str, Array]]:
-        """Return the columns of the contacts, their shares of time and the energies, up to the end."""
+        """Return the columns of the contacts, their status shares and the energies, up to the end."""
         done = self.done
         pairs, energies = self.contact_record[:, :, :done], self.energy_record[:, :done]
         firsts = self.firsts
@@ -259,7 +259,7 @@ class Run:
         }
 
     def _scenario(self) -> str:
-        """Return the scenario that runs this run again, as TOML."""
+        """Return the scenario that repeats this run, as TOML."""
         timing = self.timing
         simulation: dict[str, Any] = {
             "duration": self.first_step * timing.step + timing.samples * timing.interval,
@@ -278,7 +278,7 @@ class Run:
 
 
 def along_both(pairs: Array, firsts: Array) -> Array:
-    """Return what contacts have along both tangents, (contacts, samples, 2), from pairs of rows; 0 of a missing one."""
+    """Return values along both tangents, (contacts, samples, 2), from pairs of rows; 0 for a missing tangent."""
     found = np.zeros((int(firsts.sum()), pairs.shape[1], 2))
     found[..., 0] = pairs[firsts]
     found[np.cumsum(firsts)[~firsts] - 1, :, 1] = pairs[~firsts]

@@ -1,4 +1,4 @@
-"""Simulate a system: check the arguments, flatten, march, label."""
+"""Simulation of a system: check the arguments, flatten, march, label."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from .watchers import Watcher
 LARGEST_RECORD = 8e9
 LARGEST_RATIO = 1_000_000
 SMALLEST_SHARE = 1e-7
-# Maps a second of surfaces where nobody says otherwise [Hz].
+# Default rate of maps of surfaces [Hz].
 MAP_RATE = 1e3
 
 
@@ -51,65 +51,64 @@ def simulate(
     surface_rate: float | str | None = None,
     progress: bool = False,
 ) -> xr.Dataset:
-    """March a system in time and return its record.
+    """Simulate a system in time and return its record.
 
     Parameters
     ----------
     system : System
-        What to simulate, at rest at the start unless a drive or `start` says otherwise.
+        System to simulate; initially at rest unless a drive or `start` sets another state.
     duration : float
         Time to simulate [s], rounded to whole sample intervals.
     scheme : CentralDifference or ExactModal, optional
-        Time scheme, the exact modal one if left out.
+        Time scheme; the exact modal one if left out.
     step : float, optional
-        Time step [s]; if left out, the scheme's stated fraction of its limit for the modes kept, lowered to a whole
+        Time step [s]; if left out, the scheme's default fraction of its limit for the modes kept, reduced to a whole
         division of the sample interval.
     sample_rate : float, optional
         Samples per second to record [Hz]; with a step given, the nearest rate at which a sample is a whole number
         of steps.
     probes : sequence of probes, optional
-        What else to record: Displacement, Velocity, Acceleration, Reaction, SupportForce, ModalDisplacement or
+        Further quantities to record: Displacement, Velocity, Acceleration, Reaction, SupportForce, ModalDisplacement or
         ModalVelocity; the acceleration of the track's centre along y if left out and the track is a beam.
     contact_solve : GaussSeidel, optional
-        How several contacts are solved together; one contact is solved exactly.
+        Settings of the simultaneous solution of several contacts; a single contact is solved exactly.
     start : xarray.Dataset, optional
-        A record to continue; the new record begins where it ended. Bodies, contact point, gap, probes, scheme, step
-        and sampling must be the same; friction, drives and the motion of rigid tracks may change. A belt continues from
-        where it is.
+        A record to continue; the new record begins at its end. Bodies, contact point, gap, probes, scheme, step and
+        sampling must be the same; friction, drives and the motion of rigid tracks may change. A belt continues from its
+        present position.
     watchers : sequence of callable, optional
-        Called with a `Progress` between chunks of the march.
+        Called with the `Progress` between chunks of the march.
     title : str, optional
         Title of the record.
     surface_rate : float or str, optional
-        Maps a second to record of surfaces [Hz] and nothing else of their points; the nearest rate at which an interval
-        is a whole number of samples. If left out, maps at 1 kHz, and what sound and regimes need of the points of
-        surfaces whose areas are known. With ``"all"`` every point is a contact of the record.
+        Rate of maps of surfaces [Hz], with no other record of their points; the nearest rate at which an interval is a
+        whole number of samples. If left out, maps at 1 kHz, and the variables of points that sound and regimes need,
+        for surfaces with known areas. With ``"all"`` every point is a contact of the record.
     progress : bool, optional
-        Whether a bar on standard error shows the simulated time, the speed and the time left, in terminals, notebooks
-        and logs.
+        Whether to show a bar on standard error with the simulated time, the speed and the time left, in terminals,
+        notebooks and logs.
 
     Returns
     -------
     xarray.Dataset
         Forces (means over each sample interval), contact, energies and probes over ``time`` [s], with units and
         meanings in the attributes. ``attrs["ended"]`` is ``finished`` or ``off the track``; ``attrs["scenario"]`` is
-        TOML that runs it again. The forces follow the convention: normal compressive, tangential on the track
-        along its tangent. Variables of the contact have the dimension ``contact`` where there are several. Each surface
-        is one of them, but for a `surface_rate` of ``"all"``: forces and counts are sums over its points, all else are
-        means; ``surface_force`` and the other resultants of `analysis.surface` are over ``face``, variables that begin
-        with ``map_``, means over the interval, over ``map_time`` [s] and ``point``, and, without a `surface_rate`,
-        those that begin with ``point_`` over ``time`` and ``point``, in fewer digits.
+        TOML that repeats the run. Normal forces are compressive, tangential forces act on the track along its tangent.
+        Variables of the contact have the dimension ``contact`` if there are several. Each surface is one contact,
+        unless `surface_rate` is ``"all"``: forces and counts are sums over its points, all other variables are means;
+        ``surface_force`` and the other resultants of `analysis.surface` are over ``face``; variables that begin with
+        ``map_``, means over the interval, are over ``map_time`` [s] and ``point``; without a `surface_rate`, those that
+        begin with ``point_`` are over ``time`` and ``point``, in reduced precision.
 
     Raises
     ------
     ValueError
-        If an argument is out of its range, among them a step at or beyond the limit of the scheme.
+        If an argument is out of its range, such as a step at or beyond the limit of the scheme.
     Interrupted
         On Ctrl-C, with the record so far.
     Diverged
-        If the result cannot be believed: a state that is not finite, contact forces that were not found, energy that
-        comes from nowhere. The message says when, the last state of the contacts and the likely cause; the exception
-        has the record so far.
+        If the result is not valid: the state is not finite, contact forces were not found, or energy was created. The
+        message has the time, the last state of the contacts and the likely cause; the exception has the record so far.
     """
     if not isinstance(watchers, Sequence):
         raise ArgumentError("watchers", "be a list of callables", watchers)
@@ -135,7 +134,7 @@ class Arrays:
     system : System
         The system.
     probes : tuple of Probe
-        What is recorded beside the contact.
+        Quantities recorded besides those of the contacts.
     flat : Assembly
         Both as flat arrays.
     """
@@ -146,7 +145,7 @@ class Arrays:
 
 
 class Asked:
-    """What is asked of runs: arguments of `simulate`, checked."""
+    """Checked arguments of `simulate`."""
 
     def __init__(
         self,
@@ -197,7 +196,7 @@ class Asked:
         return Run(arrays.system, arrays.flat, self.scheme, timing, arrays.probes, self.solve, start, title, surfaces)
 
     def _check_size(self, arrays: Arrays, timing: Timing, every: int) -> None:
-        """Raise ValueError where a record would be too large."""
+        """Raise ValueError if a record would be too large."""
         system = arrays.system
         rows, more = len(system.contacts), 0
         if every:
@@ -214,7 +213,7 @@ class Asked:
             )
 
     def _every(self, system: System, timing: Timing) -> int:
-        """Return the samples in an interval of maps of surfaces, 0 where all points are contacts of the record."""
+        """Return the samples in an interval of maps of surfaces, 0 if all points are contacts of the record."""
         rate, asked = 1.0 / timing.interval, self.surface_rate
         if isinstance(asked, str) or (asked is None and not system.faces):
             return 0
@@ -237,7 +236,7 @@ def checked_rate(surface_rate: float | str | None) -> float | str | None:
 
 
 def choose_timing(arrays: Assembly, scheme: Scheme, duration: float, step: float | None, sample_rate: float) -> Timing:
-    """Return the step and the sampling that the arguments of `simulate` ask for."""
+    """Return the step and the sampling for the arguments of `simulate`."""
     positive("duration", duration)
     wanted = 1.0 / positive("sample_rate", sample_rate)
     limit = Stepping(arrays, scheme).limit
@@ -269,7 +268,7 @@ def _sampled(step: float, ratio: int, duration: float) -> Timing:
 
 
 def _usual_probes(system: System) -> tuple[Probe, ...]:
-    """Return the probes of a run that asks for none: the acceleration in the middle of its track, along its normal."""
+    """Return the default probes of a run: the acceleration in the middle of its track, along its normal."""
     if not is_track(system.track):
         return ()
     return (Acceleration(system.track.centre, "transverse" if system.track.is_spatial else "y"),)

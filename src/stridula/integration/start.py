@@ -22,17 +22,17 @@ from ..records.state import State
 from .contact_solve import GaussSeidel
 from .forces import forces_of
 
-# Share of the terms of a gap that rounding may make, where each has come out of a sum or a solve of its own.
+# Relative rounding error of a gap whose terms are results of sums or solutions.
 ROUND_OFF = 512.0 * np.finfo(float).eps
-# Relative stiffness of coupled modes that rounding may make.
+# Relative stiffness of coupled modes that is due to rounding.
 STIFFLESS = 1e-13
 
 
 def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks, solve: GaussSeidel) -> State:
     """Return the state at the start.
 
-    The first increment is that of a motion under the loads and the forces of closed contacts, so that the scheme is of
-    second order from the first step on. A contact that is closed and does not slide sticks.
+    The first increment is that of motion under the loads and the forces of closed contacts, so that the scheme is of
+    second order from the first step on. A closed contact that does not slide sticks.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def state_at_start(arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks
 
 
 def stored_in_contacts(arrays: Assembly, carried: Array) -> float:
-    """Return the energy that contacts which yield store half a step before the start [J]."""
+    """Return the energy stored in compliant contacts half a step before the start [J]."""
     energy = 0.0
     for one, own in zip(arrays.contacts, carried, strict=True):
         if one.contact.yields is not None and not one.is_second:
@@ -69,7 +69,7 @@ def stored_in_contacts(arrays: Assembly, carried: Array) -> float:
 
 
 class _Start:
-    """A system about its start: from one step before to one step after."""
+    """A system about its start, from one step before to one step after."""
 
     def __init__(self, arrays: Assembly, scheme: Scheme, step: float, blocks: Blocks) -> None:
         times = np.array([-step, 0.0, step])
@@ -91,21 +91,21 @@ class _Start:
         self.gaps = gaps[self.first]
         self.velocity = arrays.velocity.copy()
         for one in arrays.turning:
-            # Increments are those of pairs that are carried round.
+            # Increments are relative to the pairs as they are carried round.
             rate = float(one.turning.rate(times[1:2])[0]) * np.array(one.turning.drag)
             first, second = one.pairs.T
             self.velocity[first] += rate * arrays.position[second]
             self.velocity[second] -= rate * arrays.position[first]
 
     def _go_together(self, places: list[float]) -> None:
-        """Let both tangents of contacts on circles be at the abscissa along the first."""
+        """Set the place of both tangents of contacts on circles to the abscissa along the first."""
         for i, one in enumerate(self.arrays.contacts):
             if one.circle is not None and one.is_second:
                 places[i] = places[i - 1]
 
     @property
     def is_closed(self) -> Array:
-        """Whether each contact presses: rigid ones without a gap, others where they are indented."""
+        """Whether each contact is closed: rigid ones without a gap, compliant ones if they are indented."""
         rigid = np.array([one.contact.yields is None for one in self.arrays.contacts])
         return (self.gaps < 0.0) | (rigid & (self.gaps == 0.0))
 
@@ -115,7 +115,7 @@ class _Start:
 
     @cached_property
     def speeds(self) -> Array:
-        """Slip velocity of each contact at the start [m/s], exactly zero where it is round-off."""
+        """Slip velocity of each contact at the start [m/s], exactly zero if it is round-off."""
         imposed = (self.before + self.after)[:, :2] * [0.5, -0.5] / self.step
         terms = self.rows[:, 1] * self.arrays.velocity
         scale = np.abs(terms).sum(axis=1) + np.abs(imposed).sum(axis=1)
@@ -124,14 +124,14 @@ class _Start:
 
     @cached_property
     def slip_speeds(self) -> Array:
-        """Speed at which each contact slides at the start [m/s], that of both tangents in space."""
+        """Slip speed of each contact at the start [m/s], of both tangents in space."""
         speeds = np.abs(self.speeds)
         second = np.flatnonzero(~self.arrays.firsts)
         speeds[second - 1] = np.hypot(speeds[second - 1], speeds[second])
         return speeds[self.first]
 
     def _known_ratios(self, carried: Array) -> Array:
-        """Return the ratio of tangential to normal force of contacts whose motion settles it, NaN of others."""
+        """Return the ratio of tangential to normal force of contacts whose motion determines it, NaN for others."""
         ratios, laws = np.full(len(self.speeds), np.nan), self.contacts.laws
         for i, speed in enumerate(self.speeds):
             number, whole = int(self.first[i]), float(self.slip_speeds[i])
@@ -142,7 +142,7 @@ class _Start:
                 states, speeds = tuple(carried[pair, at.FRICTION_STATE]), tuple(self.speeds[pair])
                 ratios[i] = bristles_ratio(laws, number, states, speeds, self.step)[i - number]
             elif not set_valued(law):
-                # Forward in the sense of the slip: bristles may be bent either way.
+                # Signed by the sense of slip, as bristles may be bent either way.
                 sense = -1.0 if share == -1.0 else 1.0
                 found = state_ratio(law, laws, number, carried[number, at.FRICTION_STATE], sense * whole, self.step)
                 ratios[i] = found * (sense * share if whole else float(number == i))
@@ -151,7 +151,7 @@ class _Start:
         return ratios
 
     def carried(self, first: Array) -> Array:
-        """Return what each contact carries, after a first increment."""
+        """Return the scalars of each contact after a first increment."""
         carried = np.zeros((len(self.arrays.contacts), at.CARRIED))
         tip, track = self.before[:, 0], self.before[:, 1]
         for i, one in enumerate(self.arrays.contacts):
@@ -167,28 +167,28 @@ class _Start:
         carried[:, at.EARLIER_GAP] = self.gaps - self.rows[self.first, 0] @ first - self.before[self.first, 2]
         carried[:, at.ABSCISSA_BEFORE] = carried[:, at.ABSCISSA] - self.travels @ first - tip
         carried[:, at.LAST_SLIP] = self.rows[:, 1] @ first + tip - track
-        # One step more back, under the same acceleration.
+        # One step earlier, with the same acceleration.
         carried[:, at.EARLIER_SLIP] = 3.0 * carried[:, at.LAST_SLIP] - 2.0 * self.step * self.speeds
         return carried
 
     def _bristles_before(self, number: int) -> Array:
-        """Return the bristles of a contact in space half a step before the start, as `_state_before`."""
+        """Return the bristles of a contact in space half a step before the start, as in `_state_before`."""
         states, speeds = (tuple(values[number : number + 2]) for values in (self.arrays.friction_state, self.speeds))
         after = next_bristles_of_run(self.contacts.laws, number, float(SLIDING), states, speeds, self.step / 2.0)
         return np.asarray(2.0 * np.array(states) - np.array(after))
 
     def _state_before(self, i: int, law: FrictionLaw, velocity: float) -> float:
-        """Return the internal state of a law half a step before the start: the march keeps it between the steps."""
+        """Return the internal state of a law half a step before the start, as the march has it between the steps."""
         if not law.has_state:
             return 0.0
         state = float(self.arrays.friction_state[i])
         code = int(self.contacts.codes[i])
-        # The mirror image of the half step after it, which does not grow as motion backwards in time does.
+        # The mirror image of the half step after the start: unlike backward integration, it does not grow.
         before = 2.0 * state - float(next_state(code, self.contacts.laws, i, state, velocity, self.step / 2.0))
         return max(before, state / 2.0) if law.state_is_positive else before
 
     def pushes(self, closed: Array) -> Array:
-        """Return the rows of closed contacts, normal and tangent in turn."""
+        """Return the rows of closed contacts, normal and tangent alternately."""
         return self.rows[closed].reshape(-1, self.arrays.mode_count)
 
     def forces(self, closed: Array, first: Array, carried: Array, solve: GaussSeidel) -> Array:
@@ -207,7 +207,7 @@ class _Start:
         codes, laws = self.contacts.codes[closed], self.contacts.laws[closed]
         ratios = self._known_ratios(carried)[closed]
         for i in np.flatnonzero(np.isfinite(ratios)):
-            # Where the ratio is known, the contact is one without friction whose push is inclined.
+            # With a known ratio, the contact is equivalent to one without friction and with an inclined force.
             if codes[i] == at.SECOND_TANGENT:
                 continue
             inclined = compliance[:, 2 * i] - ratios[i] * compliance[:, 2 * i + 1]
@@ -222,7 +222,7 @@ class _Start:
         return forces
 
     def _turned(self, modal: Array) -> tuple[Array, Array]:
-        """Return what turning adds to numbers of the modes in the first step, and what of it the material does not."""
+        """Return the change of modal values by turning in the first step, and the same relative to the material."""
         around, passed = np.zeros((2, modal.size))
         for one in self.arrays.turning:
             angle = float(one.turning.angles(np.array([0.0, self.step]), self.step)[0])
@@ -231,24 +231,24 @@ class _Start:
         return around, around - passed
 
     def _at_first_step(self, increments: Array) -> tuple[Array, Array]:
-        """Return gaps and slips after the first step, without contact force, where the tips are then."""
+        """Return gaps and slips after the first step without contact force, at the places of the tips then."""
         places = [
             one.at + travel @ (self.arrays.position + increments) + moved
             for one, travel, moved in zip(self.arrays.contacts, self.travels, self.after[:, 0], strict=True)
         ]
         self._go_together(places)
         there = np.array([rows_at(one, place) for one, place in zip(self.arrays.contacts, places, strict=True)])
-        # What the rows gain on the way is small: a difference of its own keeps its digits.
+        # The change of the rows is small: a separate difference keeps its digits.
         travelled = (there - self.rows) @ (self.arrays.position + increments)
         for i, one in enumerate(self.arrays.contacts):
             if one.circle is not None:
-                # The slip is that of the material, which is seen with the same rows before and after.
+                # The slip is relative to the material, which has the same rows before and after.
                 travelled[i, 1] = (there[i, 1] - self.rows[i, 1]) @ increments
         gaps = self.gaps + self.rows[:, 0] @ increments + travelled[:, 0] + self.after[:, 2]
         return gaps, self.rows[:, 1] @ increments + travelled[:, 1] + self.after[:, 0] - self.after[:, 1]
 
     def _compliance(self, pushes: Array) -> Array:
-        """Return how far rows have moved after the first step under unit forces on them since before the start."""
+        """Return the displacements of rows after the first step for constant unit forces on them."""
         still = np.zeros(self.arrays.mode_count)
         increments = [self.stepping.first_increment(self.step, still, still, push) for push in pushes]
         answers = [
@@ -259,7 +259,7 @@ class _Start:
 
 
 def rows_at(one: ContactRows, place: float) -> Array:
-    """Return the rows of a contact along normal and tangent, those of a track's modes at an abscissa [m]."""
+    """Return the rows of a contact along normal and tangent, with the tip at an abscissa [m] of its track."""
     if one.circle is not None:
         return one.round_at(place)
     track = one.contact.path_body
@@ -271,7 +271,7 @@ def rows_at(one: ContactRows, place: float) -> Array:
 
 
 def _terms(arrays: Assembly, force: Array) -> Array:
-    """Return the size of what modal positions are made of: themselves, and what the loads alone would deflect."""
+    """Return the size of the terms of modal positions: their values, and the deflections by the loads alone."""
     size, stiffness = arrays.coupled, np.where(arrays.massless, 1.0, arrays.angular_frequency) ** 2
     free = stiffness == 0.0
     deflected = np.where(free, 0.0, force / np.where(free, 1.0, stiffness))
@@ -282,9 +282,9 @@ def _terms(arrays: Assembly, force: Array) -> Array:
 
 
 def _gap(one: ContactRows, rows: Array, arrays: Assembly, terms: Array) -> float:
-    """Return the gap of a contact at the start, exactly zero where it is closed.
+    """Return the gap of a contact at the start, exactly zero if it is closed.
 
-    A displacement comes with the rounding of the largest term of its body, whichever way the contact looks at it.
+    A displacement has the rounding error of the largest term of its body, in any direction of the contact.
     """
     gap = float(one.gap + rows[0] @ arrays.position)
     spans = [slice(*span) for span in arrays.spans.values()] if terms.any() else []

@@ -1,4 +1,4 @@
-"""Why a run stops before its end, in words."""
+"""Reasons why a run stops before its end, in words."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ ENDED = {
 WHAT = {
     "not finite": "the state is no longer finite",
     "contact unsolved": "the contact forces were not found",
-    "energy created": "energy came from nowhere",
+    "energy created": "energy was created",
 }
 CAUSE = {
     "not finite": "an instability that grows without bound, or drives far too large",
     "contact unsolved": "bodies squeezed between others, too much friction in several contacts, or too few sweeps",
     "energy created": "a step too long for the contact, numbers at the limits of arithmetic, or a fault of the model",
 }
-# Longest list of contacts in a message, but for one that is longer.
+# Longest list of contacts in a message, unless the first one alone is longer.
 LONGEST_WORDS = 150
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a run; what was recorded so far is in `record`, when it was in words in `reason`."""
+    """Ctrl-C during a run; `record` has the record so far, `reason` the time in words."""
 
     def __init__(self, record: xr.Dataset) -> None:
         self.record, self.reason = record, f"interrupted at t = {_end(record):.6g} s"
@@ -45,7 +45,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 class Diverged(RuntimeError):
-    """A run whose result can no longer be believed; what was recorded before is in `record`, why in `reason`."""
+    """A run whose result is not valid; `record` has the record up to then, `reason` the cause in words."""
 
     def __init__(self, record: xr.Dataset, contacts: str) -> None:
         self.record = record
@@ -58,12 +58,12 @@ def _end(record: xr.Dataset) -> float:
 
 
 def divergence_words(ended: str, time: float, step: float, contacts: str) -> str:
-    """Return after which time [s] and why a result can no longer be believed, in words."""
+    """Return the time [s] up to which a result is valid, and the cause, in words."""
     return f"{WHAT[ended]} after t = {time:.6g} s (step {step:.3g} s); {contacts}; likely cause: {CAUSE[ended]}"
 
 
 def contact_words(names: tuple[str, ...], carried: Array) -> str:
-    """Return the last state of the contacts, in words; of many, those that press hardest."""
+    """Return the last state of the contacts in words; of many, those with the largest normal forces."""
     lines = [
         f"{name} {STATUS_WORDS[int(one[at.STATUS])]} at {one[at.ABSCISSA]:.6g} m with {one[at.LAST_NORMAL]:.4g} N "
         f"normal, {one[at.LAST_TANGENTIAL]:.4g} N tangential"
@@ -74,11 +74,11 @@ def contact_words(names: tuple[str, ...], carried: Array) -> str:
 
 
 def rank_words(arrays: Assembly, blocks: Blocks, state: State) -> str:
-    """Return how well the modes tell the closed contacts apart: rank and condition of their compliance, in words."""
+    """Return rank and condition of the compliance of the closed contacts, in words."""
     places = state.carried[:, at.ABSCISSA]
     closed = np.flatnonzero(state.carried[:, at.STATUS] > 0)
     rows = [rows_at(arrays.contacts[i], float(places[i])) for i in closed]
-    # The pair of a second tangent has no normal.
+    # The rows of a second tangent have no normal.
     rows = [pair[1:] if arrays.contacts[i].is_second else pair for i, pair in zip(closed, rows, strict=True)]
     if not rows or not np.isfinite(places[closed]).all():
         return "no contact is closed"
@@ -88,7 +88,7 @@ def rank_words(arrays: Assembly, blocks: Blocks, state: State) -> str:
     condition = f"{sizes[0] / sizes[-1]:.1e}" if rank == len(sizes) else "infinite"
     found = f"their compliance has rank {rank} of {len(sizes)} and condition {condition}"
     rigid = any(one.contact.surface and one.contact.yields is None for one in (arrays.contacts[i] for i in closed))
-    return f"{found}; a rigid surface of so many points wants a stiffness of its own" if rigid else found
+    return f"{found}; a rigid surface of so many points needs a contact stiffness" if rigid else found
 
 
 def energy_created(
@@ -100,27 +100,27 @@ def energy_created(
     dissipative: bool,
     damped_alone: bool,
 ) -> int | None:
-    """Return the first sample at which energy came from nowhere, or None.
+    """Return the first sample at which energy was created, or None.
 
-    The ledger must close, the stored energy stay above zero, the contacts take energy on the whole, friction under laws
-    without internal state and the damping of uncoupled modes at every step.
+    The ledger must close, the stored energy must stay above zero, and the contacts must dissipate energy in total;
+    friction without internal state and the damping of uncoupled modes must do so at every step.
 
     Parameters
     ----------
     energies : ndarray, shape (energies, samples)
-        The record of a chunk.
+        Energies of a chunk.
     before : ndarray, shape (energies,)
-        The sample before it.
+        Energies at the sample before it.
     initial : float
         Stored energy at the start [J].
     largest : float
-        Largest energy met before the chunk [J].
+        Largest energy before the chunk [J].
     of_loads : float
-        What the loads give to modes at rest in one step [J]: less is nothing.
+        Energy that the loads give to modes at rest in one step [J]: less is negligible.
     dissipative : bool
-        Whether friction must take energy at every step.
+        Whether friction must dissipate energy at every step.
     damped_alone : bool
-        Whether each mode is damped on its own, so that damping must take energy at every step, too.
+        Whether damping is uncoupled, so that it must also dissipate energy at every step.
     """
     rows = np.ascontiguousarray(energies, dtype=float)
     wrong, ended, _ = believed(rows, 0, rows.shape[1], before, initial, largest, of_loads, dissipative, damped_alone)

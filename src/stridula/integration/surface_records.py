@@ -1,4 +1,4 @@
-"""Surfaces recorded in short: sums over their points at every sample, maps of the points at a lower rate."""
+"""Compact records of surfaces: sums over their points at every sample, maps of the points at a lower rate."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ from ..records.variables import STATUS, STATUS_SHARE, attributes_of, described, 
 from ..system import System
 from .point_records import PointRecord
 
-# Of the points of a surface, and of the samples of an interval of maps, these add up; of all else there is a mean.
+# Columns that are summed over the points of a surface; all others are averaged.
 SUMMED = (at.NORMAL_FORCE, at.TANGENTIAL_FORCE, at.JAMMED, at.LANDINGS)
 SHARES = slice(at.SEPARATED, at.SLIDING + 1)
-# What maps are of, means over an interval.
+# Variables of maps, means over an interval.
 MAPPED = ("normal_force", "tangential_force", "slip_velocity", STATUS_SHARE.name, STATUS.name)
 MAP = "map_"
-# What asks for all points of surfaces as contacts, in the place of a rate of maps.
+# Value in place of a rate of maps to record all points of surfaces as contacts.
 ALL_POINTS = "all"
 
 
 class SurfaceRecord:
-    """What is recorded of the surfaces of a run, chunk by chunk.
+    """The compact record of the surfaces of a run, chunk by chunk.
 
     Parameters
     ----------
     system : System
         The system.
     firsts : ndarray, shape (pairs,)
-        Which pairs of rows are the first of a contact.
+        Mask of the pairs of rows that are the first of a contact.
     every : int
         Samples in an interval of maps.
     points : PointRecord, optional
-        What keeps the points at every sample, if that is asked for.
+        Record of the points at every sample, if wanted.
     """
 
     def __init__(self, system: System, firsts: Array, every: int, points: PointRecord | None = None) -> None:
@@ -69,7 +69,7 @@ class SurfaceRecord:
         self.take(self._waiting)
 
     def take(self, contacts: Array) -> Array:
-        """Take what a chunk has of all pairs, (samples, pairs, columns); return it with a surface as one contact."""
+        """Record a chunk of all pairs, (samples, pairs, columns), and return it with each surface as one contact."""
         for face, numbers, kept in zip(self._faces, self._of_face, self._resultants, strict=True):
             normal, tangential, slip, share = self._of_points(contacts, np.array(numbers))
             kept.append(resultants(face, normal, tangential, share, slip))
@@ -85,7 +85,7 @@ class SurfaceRecord:
         return found
 
     def _of_points(self, contacts: Array, numbers: Array) -> tuple[Array, Array, Array, Array]:
-        """Return normal and tangential forces, slip velocities and shares of some contacts."""
+        """Return normal and tangential forces, slip velocities and status shares of some contacts."""
         first = self._first_rows[numbers]
         second = np.where(self._has_second[numbers], first + 1, first)
         along = np.stack([contacts[:, first], contacts[:, second] * self._has_second[numbers, None]], axis=2)
@@ -104,7 +104,7 @@ class SurfaceRecord:
     def add_to(self, record: xr.Dataset, start: float, interval: float) -> xr.Dataset:
         """Return a record with the maps, over ``map_time``, and the resultants of surfaces, over ``face``.
 
-        `start` is when the run begins and `interval` its sample interval [s].
+        `start` is the time at which the run begins and `interval` its sample interval [s].
         """
         times = start + interval * self.every * np.arange(1, len(self._maps) + 1)
         beyond = {"tangential_force": "tangent", "slip_velocity": "tangent", STATUS_SHARE.name: "contact_status"}

@@ -1,4 +1,4 @@
-"""Runs on the march together, in chunks, to their ends."""
+"""March of runs together, in chunks, to their ends."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ STEPS_PER_CHUNK, SAMPLES_PER_CHUNK = 20_000, 1000
 
 
 def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher] = ()) -> bool:
-    """March runs of the same timing to their ends, or to a Ctrl-C between two chunks; return whether there was one."""
+    """March runs of the same timing to their ends, or to a Ctrl-C between chunks; return whether there was one."""
     timing, done = runs[0].timing, 0
     vectors = -(-len(runs) // LANES)
     samples_per_chunk = max(1, STEPS_PER_CHUNK // (timing.ratio * vectors))
     if all(run.impositions.is_steady and not run.probes for run in runs):
-        # Nothing has a row for each step: chunks may be longer.
+        # No array has a row for each step, so that chunks may be longer.
         samples_per_chunk = max(
             samples_per_chunk, min(SAMPLES_PER_CHUNK // vectors, 10 * STEPS_PER_CHUNK // timing.ratio)
         )
@@ -52,7 +52,7 @@ def march_together(runs: Sequence[Run], march: March, watchers: Sequence[Watcher
 
 
 def _compiled(runs: Sequence[Run], march: March) -> float:
-    """Have the kernel compiled, or loaded from disk, before the clock starts; return how long compiling took [s]."""
+    """Compile the kernel, or load it from disk, before the clock starts; return the time of compilation [s]."""
     kernel = march.kernel
     if not isinstance(kernel, Dispatcher) or kernel.signatures:
         return 0.0
@@ -62,7 +62,7 @@ def _compiled(runs: Sequence[Run], march: March) -> float:
 
 
 def _imposed(runs: Sequence[Run], first_sample: int, samples: int) -> list[Imposed]:
-    """Return what is imposed on each run, one and the same for runs that share it."""
+    """Return the imposed signals and motions of each run, the same object for runs that share them."""
     keys: list[Hashable] = [(run.arrays.prescribed, run.blocks.used, run.first_step) for run in runs]
     found: dict[Hashable, Imposed] = {}
     for run, key in zip(runs, keys, strict=True):

@@ -1,4 +1,4 @@
-"""What happens between chunks of a march: progress."""
+"""Progress of a march, reported between its chunks."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a march has come.
+    """Progress of a march.
 
     Attributes
     ----------
     time : float
-        Simulated time done in this run [s].
+        Simulated time so far in this run [s].
     duration : float
-        Simulated time asked for [s].
+        Total time to simulate [s].
     wall_time : float
-        Time it took so far [s].
+        Elapsed time [s].
     """
 
     time: float

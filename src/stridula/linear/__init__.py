@@ -1,1 +1,1 @@
-"""Linear theory of sliding: where a system is when nothing vibrates, and its small motions about that."""
+"""Linear theory of sliding: the equilibrium of a system and its small motions about that."""

@@ -1,4 +1,4 @@
-"""Equilibrium of contacts that slide steadily, or in the accelerating frame of a slider that a force drives."""
+"""Equilibrium in steady sliding, or in the accelerating frame of a slider that a force drives."""
 
 from __future__ import annotations
 
@@ -16,38 +16,38 @@ from .structure import SEPARATED, SLIDING, STICKING, UNMOVED, Structure
 
 # Relative size below which a force or an acceleration is round-off.
 ROUND_OFF = 1e-9
-# Passes in which contacts come to yield as their forces want, and the relative change of these that is round-off.
+# Most iterations of the indentation of compliant contacts, and the relative change of forces that is round-off.
 YIELDING, SETTLED = 60, 1e-13
-# Contacts up to which all minors are looked at.
+# Largest number of contacts with which all minors are checked.
 MOST_CONTACTS = 10
 HELD, LIFTED_OFF, JAMMED = "held", "lifted off", "jammed"
 
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """Where a system is when nothing vibrates.
+    """Equilibrium of a system.
 
     Attributes
     ----------
     kind : str
-        ``sliding``; ``held``: friction stops a contact; ``lifted off``: a contact, or a surface as a whole, is not
-        closed; ``jammed``: a contact neither slides on nor opens.
+        ``sliding``; ``held``: friction stops a contact; ``lifted off``: a contact, or a surface as a whole, is open;
+        ``jammed``: a contact can neither slide nor open.
     status : tuple of str
         Status of each contact.
     sense : ndarray, shape (contacts,)
-        Sense in which each slides, +1 or -1; 0 where nothing moves it.
+        Sense of sliding of each, +1 or -1; 0 where nothing moves it.
     ratio : ndarray, shape (contacts,)
-        Tangential over normal force of each in sliding, without its sense [1].
+        Tangential over normal force of each in sliding, unsigned [1].
     normal_force, tangential_force : ndarray, shape (contacts,)
         Contact forces [N], the tangential ones on the track along the slip.
     lateral_force : ndarray, shape (contacts,)
-        Forces that hold sticking contacts across their tangent in space [N].
+        Forces on sticking contacts in space across their tangent [N].
     slip_velocity : ndarray, shape (contacts,)
-        Velocities [m/s] at which contacts slide, as drives and tracks prescribe or as given; 0 where not known.
+        Slip velocities [m/s], prescribed by drives and tracks or given; 0 where unknown.
     slip_acceleration : ndarray, shape (contacts,)
-        Accelerations of the slip [m/s²] by rigid motions that nothing holds.
+        Accelerations of the slip [m/s²] by free rigid motions.
     displacement : ndarray, shape (modes,)
-        Modal displacements, less those motions.
+        Modal displacements, without those motions.
     """
 
     kind: str
@@ -63,26 +63,25 @@ class Equilibrium:
 
 
 def find_equilibrium(structure: Structure, velocity: Array, status: Sequence[str] | None = None) -> Equilibrium:
-    """Return the equilibrium of a system, or that of given statuses of its contacts.
+    """Return the equilibrium of a system, for given statuses of its contacts if there are any.
 
-    All contacts slide at first. One that does not press is opened, one that comes to a stop is held, until all are as
-    they should be. Where nothing prescribes the slip and none is given, its sense is that of the motion without
-    friction. A held contact sticks where it would come to rest without friction: what friction had stored before is
-    not known.
+    All contacts slide at first. Contacts with a tensile force are opened and contacts that stop are held, until all are
+    consistent. Where the slip is neither prescribed nor given, its sense is that of the motion without friction. A held
+    contact sticks where it would come to rest without friction: its previous history is unknown.
 
     Parameters
     ----------
     structure : Structure
         The system.
     velocity : ndarray, shape (contacts,)
-        Slip velocity [m/s] of each contact for which nothing prescribes it, 0 where none is given.
+        Slip velocity [m/s] of each contact where it is not prescribed; 0 where none is given.
     status : sequence of str, optional
-        Statuses of the contacts, taken as given.
+        Statuses of the contacts, used unchanged.
 
     Raises
     ------
     ValueError
-        If a slip speed that a law depends on is not known, or contacts hold the same motion twice.
+        If a law depends on a slip speed that is unknown, or if contacts constrain the same motion twice.
     """
     tried = [SLIDING] * len(structure.lines) if status is None else list(status)
     while True:
@@ -98,7 +97,7 @@ def find_equilibrium(structure: Structure, velocity: Array, status: Sequence[str
 
 
 def _lifted(structure: Structure, status: Sequence[str]) -> bool:
-    """Return whether a contact is open that should not be: one by itself, or a surface as a whole."""
+    """Return whether a single contact, or a surface as a whole, is open."""
     surfaces = [contact.surface for contact in structure.system.contacts]
     closed = {name for name, one in zip(surfaces, status, strict=True) if name and one != SEPARATED}
     return any(one == SEPARATED and name not in closed for name, one in zip(surfaces, status, strict=True))
@@ -106,7 +105,7 @@ def _lifted(structure: Structure, status: Sequence[str]) -> bool:
 
 @dataclass(frozen=True)
 class _Balance:
-    """Forces in balance: attributes as those of `Equilibrium`; sign of the determinant of the equations."""
+    """Balance of forces: attributes as in `Equilibrium`, and the sign of the determinant of the equations."""
 
     status: Sequence[str]
     sense: Array
@@ -137,7 +136,7 @@ def _equilibrium(kind: str, status: Sequence[str], found: tuple[_Balance, _Balan
 
 
 def _at(structure: Structure, velocity: Array, status: Sequence[str]) -> tuple[_Balance, _Balance]:
-    """Return the balance of forces without and with friction in sliding."""
+    """Return the balance of forces without and with friction of sliding contacts."""
     nothing = np.zeros(len(status))
     anchors = nothing
     if STICKING in status:
@@ -158,7 +157,7 @@ def _at(structure: Structure, velocity: Array, status: Sequence[str]) -> tuple[_
 
 
 def _slip_velocities(structure: Structure, velocity: Array, status: Sequence[str]) -> Array:
-    """Return the slip velocities [m/s] that are prescribed, or else given for contacts that nothing else holds."""
+    """Return the slip velocities [m/s]: prescribed ones, else given ones of contacts that are not held otherwise."""
     slip = np.where([one == SLIDING for one in status], structure.prescribed(status), 0.0)
     for k, given in enumerate(velocity):
         if given and not slip[k] and status[k] == SLIDING and not _is_held(structure, status, k):
@@ -167,7 +166,7 @@ def _slip_velocities(structure: Structure, velocity: Array, status: Sequence[str
 
 
 def _ratio_at(speed: float, law: FrictionLaw, contact: str) -> float:
-    """Return the ratio of a law in sliding at a speed [m/s], which one that does not depend on it need not know."""
+    """Return the ratio of a law in sliding at a speed [m/s], which must be known if the law depends on it."""
     if law.depends_on_speed and not speed:
         raise ArgumentError(
             "velocity",
@@ -177,7 +176,7 @@ def _ratio_at(speed: float, law: FrictionLaw, contact: str) -> float:
 
 
 def _acceleration(structure: Structure) -> float:
-    """Return the largest acceleration that the loads could give a contact [m/s²]."""
+    """Return an upper bound of the acceleration of a contact by the loads [m/s²]."""
     return structure.once("acceleration", lambda: _largest_acceleration(structure))
 
 
@@ -187,7 +186,7 @@ def _largest_acceleration(structure: Structure) -> float:
 
 
 def _force(structure: Structure) -> float:
-    """Return the largest force that the loads could give a contact [N]."""
+    """Return an upper bound of the force of the loads on a contact [N]."""
     return structure.once("force", lambda: _largest_force(structure))
 
 
@@ -199,9 +198,9 @@ def _largest_force(structure: Structure) -> float:
 def _balance(
     structure: Structure, status: Sequence[str], sense: Array, ratio: Array, anchors: Array, slip: Array
 ) -> _Balance:
-    """Solve for displacement, accelerations of free rigid motions and contact forces, all at once.
+    """Solve for displacement, accelerations of free rigid motions and contact forces simultaneously.
 
-    Sticking contacts are held at their anchors, displacements along their tangents.
+    Sticking contacts are held at their anchors, which are displacements along their tangents.
     """
     load = structure.load - structure.damping @ structure.following(status)
     equations, (displacement, acceleration, forces) = _solved(structure, status, sense * ratio, load, anchors)
@@ -219,7 +218,7 @@ def _balance(
 def _solved(
     structure: Structure, status: Sequence[str], share: Array, load: Array, anchors: Array
 ) -> tuple[_Equations, list[Array]]:
-    """Solve the equations under a load, again where contacts yield otherwise than they were thought to."""
+    """Solve the equations under a load, iteratively for compliant contacts."""
     yields = not all(structure.is_rigid(k) for k in range(len(status)))
     normal = np.full(len(status), (_force(structure) if yields else 0.0) or 1.0)
     for _ in range(YIELDING if yields else 1):
@@ -236,7 +235,7 @@ def _solved(
 
 
 class _Equations:
-    """Balance of forces and what contacts hold, as equations for displacement, accelerations and contact forces."""
+    """Balance of forces and constraints of contacts as equations for displacement, accelerations and forces."""
 
     def __init__(self, structure: Structure, status: Sequence[str], share: Array, give: Array | None = None) -> None:
         held, pushes, self.closed, self.stuck = held_rows(structure, status, share)
@@ -258,7 +257,7 @@ class _Equations:
         self.determinant = float(np.linalg.slogdet(self.matrix)[0])
 
     def solved(self, load: Array, closed: Array, stuck: Array) -> list[Array]:
-        """Return displacement, accelerations of free motions and forces under a load; what contacts hold is given."""
+        """Return displacement, accelerations of free motions and forces for a load and given values of constraints."""
         free, lateral = np.zeros(self.parts[1] - self.parts[0]), np.zeros(len(self.lateral))
         right = np.concatenate([load, free, closed, stuck, lateral])
         if self.determinant:
@@ -291,7 +290,7 @@ def travelling(structure: Structure, at: Equilibrium, speed: Array) -> Array:
 
 
 def yielding_at(structure: Structure, normal: Array) -> tuple[Array, Array]:
-    """Return by how much more contacts yield for a unit of force about normal forces, and beyond that, (contacts,)."""
+    """Return slope and intercept of the indentation of contacts over the force, about normal forces, (contacts,)."""
     give, beyond = np.zeros((2, len(normal)))
     for k, contact in enumerate(structure.system.contacts):
         if contact.yields is not None:
@@ -302,7 +301,7 @@ def yielding_at(structure: Structure, normal: Array) -> tuple[Array, Array]:
 
 
 def held_rows(structure: Structure, status: Sequence[str], share: Array) -> tuple[Array, Array, list[int], list[int]]:
-    """Return what closed contacts hold and how their forces act.
+    """Return the constraints of closed contacts and the action of their forces.
 
     Parameters
     ----------
@@ -311,15 +310,15 @@ def held_rows(structure: Structure, status: Sequence[str], share: Array) -> tupl
     status : sequence of str
         Status of each contact.
     share : ndarray, shape (contacts,)
-        Tangential over normal force of those that slide, with its sense [1].
+        Signed tangential over normal force of sliding contacts [1].
 
     Returns
     -------
     held, pushes : ndarray, shape (held, modes)
-        Rows that closed contacts hold along their normals, then those that sticking ones hold along their tangents,
-        then across them in space; modal forces of a unit of the force that holds each.
+        Constraints of closed contacts along their normals, then of sticking ones along their tangents, then across them
+        in space; modal forces of unit forces of each constraint.
     closed, stuck : list of int
-        Numbers of the contacts that both kinds of rows belong to.
+        Numbers of the contacts of both kinds of rows.
     """
     closed = [k for k, one in enumerate(status) if one != SEPARATED]
     stuck = [k for k in closed if status[k] == STICKING]
@@ -333,17 +332,17 @@ def held_rows(structure: Structure, status: Sequence[str], share: Array) -> tupl
 
 
 def rigid_rows(structure: Structure, closed: Sequence[int], count: int) -> list[int]:
-    """Return which of the rows of `held_rows`, `count` in all, hold for good: all but the normals of what yields."""
+    """Return the rows of `held_rows`, `count` in all, that are rigid: all but the normals of compliant contacts."""
     return [row for row in range(count) if row >= len(closed) or structure.is_rigid(closed[row])]
 
 
 def held_across(structure: Structure, stuck: Sequence[int]) -> list[int]:
-    """Return the sticking contacts that are held across their tangent, too: those in space that can move so."""
+    """Return the sticking contacts that are also held across their tangent: those in space that can move so."""
     return [k for k in stuck if np.abs(structure.lines[k].across).any()]
 
 
 def _check_held(structure: Structure, held: Array, contacts: Sequence[int]) -> None:
-    """Raise unless contacts hold motions that there are, each once."""
+    """Raise unless contacts constrain possible motions, each once."""
     sizes = np.linalg.norm(held, axis=1)
     for size, contact in zip(sizes, contacts, strict=True):
         if size == 0.0:
@@ -366,13 +365,12 @@ def _check_unbraked(structure: Structure, free: Array) -> None:
     if braked.size and np.abs(braked).max() > ROUND_OFF * max(float(np.abs(structure.damping).max()), 1e-300):
         raise ArgumentError(
             "connections",
-            "not brake a rigid motion that nothing else holds, which has no steady state to vibrate about: "
-            "impose a velocity instead",
+            "not brake a rigid motion that is otherwise free, which has no steady state: impose a velocity instead",
         )
 
 
 def _wrong(structure: Structure, found: tuple[_Balance, _Balance]) -> tuple[int, str] | None:
-    """Return the first contact that is not as it should be, and what it does instead; None if all are."""
+    """Return the first contact with an inconsistent status, and the kind of its error; None if all are consistent."""
     plain, it = found
     closed = [k for k, one in enumerate(it.status) if one != SEPARATED]
     scale = ROUND_OFF * max(float(np.abs(plain.normal_force).max()), _force(structure))
@@ -395,14 +393,14 @@ def _wrong(structure: Structure, found: tuple[_Balance, _Balance]) -> tuple[int,
 
 
 def _is_held(structure: Structure, status: Sequence[str], contact: int) -> bool:
-    """Return whether what other contacts hold keeps a contact from slipping, too."""
+    """Return whether the constraints of other contacts also keep a contact from slipping."""
     held, _, closed, _ = held_rows(structure, status, np.zeros(len(status)))
     rigid = rigid_rows(structure, closed, len(held))
     return _rank_is_short(np.vstack([held[rigid], structure.lines[contact].tangent]))
 
 
 def _rank_is_short(rows: Array) -> bool:
-    """Return whether rows are not independent."""
+    """Return whether rows are linearly dependent."""
     sizes = np.linalg.norm(rows, axis=1, keepdims=True)
     if not sizes.all() or len(rows) > rows.shape[1]:
         return True
@@ -412,20 +410,20 @@ def _rank_is_short(rows: Array) -> bool:
 
 
 def slides_on(structure: Structure, status: Sequence[str], share: Array) -> bool:
-    """Return whether contact forces answer to every motion: no impulse on a sliding contact would jam it (Painlevé).
+    """Return whether contact forces exist for every motion: no impulse on a sliding contact jams it (Painlevé).
 
-    With the compliance W of the contacts at once, ``W_NN - share W_NT`` must have positive principal minors. Where
-    residual shapes yield at once, modes move by nothing against them.
+    With the instantaneous compliance W of the contacts, ``W_NN - share W_NT`` must have positive principal minors. If
+    residual shapes respond instantaneously, the response of modes is negligible.
     """
     held, pushes, closed, _ = held_rows(structure, status, share)
-    # What yields answers to any impulse.
+    # Compliant contacts respond to any impulse.
     rigid = rigid_rows(structure, closed, len(held))
     held, pushes, size = held[rigid], pushes[rigid], sum(structure.is_rigid(k) for k in closed)
     whole = held * structure.promptness @ pushes.T
     compliance = whole[:size, :size]
     if len(held) > size:
         compliance = compliance - whole[:size, size:] @ np.linalg.solve(whole[size:, size:], whole[size:, :size])
-    # Of very many contacts only the smallest and the whole are looked at: minors double in number with each.
+    # With many contacts only the smallest minors and the determinant are checked, as their number doubles with each.
     sizes = range(1, size + 1) if size <= MOST_CONTACTS else (1, size)
     chosen = [list(some) for count in sizes for some in combinations(range(size), count)]
     return all(np.linalg.det(compliance[np.ix_(some, some)]) > 0.0 for some in chosen)

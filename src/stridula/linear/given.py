@@ -1,4 +1,4 @@
-"""Statuses and slip velocities of contacts as they are given: one for all, or one for each."""
+"""Given statuses and slip velocities of contacts: one for all, or one for each."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ def given_status(status: Status | None, system: System) -> tuple[str, ...] | Non
 
 
 def given_velocity(velocity: Velocity | None, structure: Structure, status: Sequence[str] | None = None) -> Array:
-    """Return the slip velocity [m/s] given for each contact, 0 where drives and tracks prescribe it.
+    """Return the given slip velocity [m/s] of each contact, 0 where drives and tracks prescribe it.
 
     Parameters
     ----------
     velocity : float or sequence of float, optional
-        Slip velocity [m/s] of the contacts for which nothing prescribes it, or one for each contact, 0 for the others.
+        Slip velocity [m/s] of the contacts where it is not prescribed, or one for each contact, 0 for the others.
     structure : Structure
         The system.
     status : sequence of str, optional
@@ -53,7 +53,7 @@ def given_velocity(velocity: Velocity | None, structure: Structure, status: Sequ
     Raises
     ------
     ValueError
-        If there is not one for each, or no contact takes it.
+        If there is not one for each, or it does not apply to any contact.
     """
     count = len(structure.lines)
     if velocity is None:

@@ -1,7 +1,7 @@
 """Small vibration of systems with residual shapes, which have stiffness and no mass.
 
-Motions that contacts allow split into those with mass, a, and those without, b. Where no damping sees these they follow
-at once, else they creep::
+Motions that contacts allow are split into those with mass, a, and those without, b. Without damping of b these follow
+instantaneously, else they creep::
 
     M a'' + D_a a' + D_b b' + K_a a + K_b b + B z = 0    in rows with mass, without M in the others
 """
@@ -17,26 +17,26 @@ import scipy.linalg
 from ..arrays import Array
 from .vibration import Exponents, Vibration
 
-# Relative mass below which a motion has none.
+# Relative mass below which a motion counts as massless.
 MASSLESS = 1e-9
-# Damping of motions without mass over their stiffness, at the highest frequency, that rounding leaves.
+# Damping of massless motions relative to their stiffness, at the highest frequency, that is due to rounding.
 UNDAMPED = 1e-9
-# About which exponents are found, over the highest angular frequency.
+# Shift of the eigenvalue problem over the highest angular frequency.
 BESIDE = 0.3
-# Relative inverse of an exponent that rounding gives to endless ones.
+# Relative inverse of infinite exponents due to rounding.
 ENDLESS = 1e-13
 
 
 @dataclass(frozen=True)
 class _Split:
-    """Motions with mass, free rigid ones first, and without; equations with mass and without.
+    """Motions with mass, free rigid ones first, and without; likewise equations.
 
     Attributes
     ----------
     heavy, light : ndarray, shape (modes, motions)
         Bases of the motions.
     with_mass, without : ndarray, shape (modes, equations)
-        What the forces are projected on: nothing that the contacts hold has a share.
+        Projections of the forces, free of the contact constraints.
     rigid : int
         Number of free rigid motions.
     """
@@ -65,7 +65,7 @@ def massless_exponents(motion: Vibration) -> Exponents:
 
 
 def _split(motion: Vibration, scale: Array) -> _Split:
-    """Return motions and equations split by mass; with `scale` the coordinates are of one size."""
+    """Return motions and equations split by mass; `scale` makes the coordinates comparable."""
     free, held, pushes = motion.free, motion.held * scale, motion.pushes * scale
     allowed = _null(held) if len(held) else np.eye(len(scale))
     balanced = _null(pushes) if len(pushes) else np.eye(len(scale))
@@ -80,23 +80,23 @@ def _split(motion: Vibration, scale: Array) -> _Split:
 
 
 def _is_damped(motion: Vibration, split: _Split) -> bool:
-    """Return whether any damping sees motions without mass."""
+    """Return whether damping acts on motions without mass."""
     seen = np.abs(motion.damping @ split.light).max(initial=0.0) * np.abs(split.light).max(initial=0.0)
     stiff = np.abs(motion.stiffness @ split.light).max(initial=0.0) * np.abs(split.light).max(initial=0.0)
     return bool(seen * float(np.sqrt(np.abs(np.diag(motion.stiffness)).max(initial=0.0))) > UNDAMPED * stiff)
 
 
 def _creeping(motion: Vibration, split: _Split) -> Exponents:
-    """Return the exponents where damping sees motions without mass, which then have velocities of their own.
+    """Return the exponents if damping acts on motions without mass, whose velocities then matter.
 
-    Of displacements along all motions with mass but the free rigid ones, velocities along all, states, and motions
-    without mass: ``left s' = right s``, singular where nothing brakes a motion without mass.
+    The vector s has displacements along all motions with mass except free rigid ones, velocities along all, states, and
+    motions without mass: ``left s' = right s``, singular if a motion without mass is undamped.
     """
     heavy, light, rigid = split.heavy, split.light, split.rigid
     bent, states = heavy[:, rigid:], len(motion.state)
     sizes = np.cumsum([0, bent.shape[1], heavy.shape[1], states, light.shape[1]])
     x, v, z, y = (slice(*pair) for pair in pairwise(sizes.tolist()))
-    # In units of time in which the fastest mode turns by one: numbers of one size.
+    # In units of the inverse of the highest angular frequency, so that numbers are comparable.
     rate = float(np.sqrt(np.diag(motion.stiffness)[motion.mass > 0.0].max(initial=1.0)))
     stiffness, damping = motion.stiffness / rate**2, motion.damping / rate
     left, right = np.zeros((2, sizes[-1], sizes[-1]))
@@ -109,7 +109,7 @@ def _creeping(motion: Vibration, split: _Split) -> Exponents:
     left[z, z], left[z, y] = np.eye(states), -motion.from_velocity @ light
     right[z, x], right[z, y] = motion.from_displacement @ bent / rate, motion.from_displacement @ light / rate
     right[z, v], right[z, z] = motion.from_velocity @ heavy, np.diag(motion.state) / rate
-    # The inverse about a place beside the imaginary axis: exponents without end are zeros of it.
+    # Inverse about a shift off the imaginary axis: infinite exponents are its zeros.
     inverse, vectors = scipy.linalg.eig(np.linalg.solve(right - BESIDE * left, left), check_finite=False)
     finite = np.abs(inverse) > ENDLESS * np.abs(inverse).max(initial=0.0)
     values, vectors = rate * (BESIDE + 1.0 / inverse[finite]), vectors[:, finite]
@@ -120,14 +120,14 @@ def _creeping(motion: Vibration, split: _Split) -> Exponents:
 
 
 def _null(rows: Array) -> Array:
-    """Return a basis of what independent rows do not feel, orthonormal."""
+    """Return an orthonormal basis of the null space of independent rows."""
     return np.asarray(scipy.linalg.qr(rows.T)[0][:, len(rows) :])
 
 
 def _first_order(motion: Vibration, split: _Split) -> tuple[Array, Array]:
-    """Return the matrix of first order, and how motions without mass follow what it moves.
+    """Return the first-order matrix, and the matrix from its vector to motions without mass.
 
-    It moves displacements along all motions with mass but the free rigid ones, velocities along all, and states.
+    Its vector has displacements along all motions with mass except free rigid ones, velocities along all, and states.
     """
     heavy, rigid = split.heavy, split.rigid
     elastic, speeds, states = heavy.shape[1] - rigid, heavy.shape[1], len(motion.state)

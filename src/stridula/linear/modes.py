@@ -1,4 +1,4 @@
-"""The modes of small vibration about an equilibrium, in the order in which they are counted."""
+"""Numbered modes of small vibration about an equilibrium."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from .massless import massless_exponents
 from .structure import Structure
 from .vibration import Exponents, Vibration, all_exponents, nearest_exponents
 
-# Modes up to which all exponents are found; beyond, the lowest COUNT.
+# Number of modes up to which all exponents are computed; beyond it the lowest COUNT.
 LARGEST_DENSE = 600
 COUNT = 100
-# Exponents found beyond those that are wanted.
+# Exponents computed in addition to the wanted ones.
 SPARE = 8
-# Growth, relative to the highest angular frequency, that rounding may make.
+# Growth, relative to the highest angular frequency, that is due to rounding.
 ROUND_OFF = 1e-9
 
 
@@ -29,9 +29,9 @@ def modes_of(structure: Structure, motion: Vibration, modes: int | None = None, 
     motion : Vibration
         Its small motions.
     modes : int, optional
-        How many; all if left out, or the lowest 100 of more than 600 modes.
+        Number of modes; all if left out, or the lowest 100 of more than 600 modes.
     near : float, optional
-        Frequency [Hz] about which a limited number is found.
+        Frequency [Hz] about which a limited number is computed.
     """
     found = _chosen(structure, motion, modes, near)
     order = np.lexsort((-found.values.real, np.round(found.values.imag, 6)))
@@ -39,24 +39,24 @@ def modes_of(structure: Structure, motion: Vibration, modes: int | None = None, 
 
 
 def exponents_alone(structure: Structure, motion: Vibration) -> Array:
-    """Return the exponents [1/s] of the same modes without their shapes, in any order."""
+    """Return the exponents [1/s] of the same modes without shapes, in any order."""
     if _moving(structure) > LARGEST_DENSE:
         return _nearest(structure, motion, COUNT, 0.0).values
     return _all(motion, shapes=False).values
 
 
 def round_off(structure: Structure) -> float:
-    """Return the growth that rounding may make [1/s]."""
+    """Return the growth that may be due to rounding [1/s]."""
     return ROUND_OFF * float(np.sqrt(_moving_stiffness(structure).max(initial=0.0)))
 
 
 def _moving(structure: Structure) -> int:
-    """Return the number of modes that have a mass: only these have exponents for sure."""
+    """Return the number of modes with mass: only these are certain to have exponents."""
     return int(np.count_nonzero(structure.mass))
 
 
 def _moving_stiffness(structure: Structure) -> Array:
-    """Return the stiffness of each mode that has a mass [1/s²]."""
+    """Return the stiffness of each mode with mass [1/s²]."""
     return np.maximum(np.diag(structure.stiffness)[structure.mass > 0.0], 0.0)
 
 
@@ -73,17 +73,17 @@ def _chosen(structure: Structure, motion: Vibration, modes: int | None, near: fl
 
 
 def _all(motion: Vibration, shapes: bool = True) -> Exponents:
-    # Threads hardly help matrices of this size, and wait for each other where other work has the processors.
+    # Threads hardly help for matrices of this size, and wait for each other if the processors are busy.
     with threadpool_limits(1):
         return all_exponents(motion, shapes) if motion.mass.all() else massless_exponents(motion)
 
 
 def _nearest(structure: Structure, motion: Vibration, wanted: int, near: float) -> Exponents:
-    """Return the exponents nearest to a frequency [Hz], found about a place off the imaginary axis, where none is."""
+    """Return the exponents nearest to a frequency [Hz], with a shift off the imaginary axis, away from exponents."""
     elastic = np.sqrt(_moving_stiffness(structure))
     lowest = float(elastic[elastic > 0.0].min(initial=np.inf))
     centre = 2.0 * np.pi * near
-    # Both of each pair may be found, and in another order than about the frequency itself.
+    # Both of each pair may be found, and in another order than by distance from the frequency itself.
     sought = min(2 * wanted + SPARE, 2 * _moving(structure) - 2)
     found = nearest_exponents(motion, sought, complex(0.1 * lowest, centre))
     order = np.argsort(np.abs(found.values - 1.0j * centre), kind="stable")[:wanted]
@@ -95,7 +95,7 @@ def _normalised(shapes: Array) -> Array:
     if not shapes.size:
         return shapes
     largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=0)[None], axis=0)
-    # A state that forces do not depend on decays without moving anything.
+    # A state without influence on forces decays without any motion.
     largest = np.where(largest == 0.0, 1.0, largest)
     turned = shapes * (np.abs(largest) / largest)
     size = np.linalg.norm(turned, axis=0)

@@ -1,4 +1,4 @@
-"""Modes about the equilibrium that a run starts in, and how far each may swing within linear theory."""
+"""Modes about the initial equilibrium of a run, and the amplitude of each up to which linear theory holds."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ROUND_OFF = 1e-9
 
 @dataclass(frozen=True)
 class ModesAtRest:
-    """Modes of vibration about the equilibrium that a run starts in, by rising frequency.
+    """Modes of vibration about the initial equilibrium of a run, by rising frequency.
 
     Attributes
     ----------
@@ -34,11 +34,11 @@ class ModesAtRest:
     round_off : float
         Growth up to which a mode does not count as unstable [1/s].
     reach : dict
-        Of each mode that grows, by its number, the displacement of the contact point that moves most [m] at which a
-        contact opens, lands, sticks or slips by linear theory; 0 where the least motion is enough, NaN of modes that
-        move no contact point.
+        For each growing mode, by its number, the largest displacement of a contact point [m] at which a contact opens,
+        lands, sticks or slips by linear theory; 0 if the least motion is enough, NaN for modes that move no contact
+        point.
     normal_force, slip_velocity : ndarray, shape (contacts,)
-        Normal forces [N] and slip velocities [m/s] at rest.
+        Normal forces [N] and slip velocities [m/s] in equilibrium.
     """
 
     exponents: Array
@@ -49,19 +49,19 @@ class ModesAtRest:
 
 
 def equilibrium_at_start(system: System, asked: InitialEquilibrium) -> tuple[str, tuple[str, ...]]:
-    """Return the kind of the equilibrium under the drives as they are at the start, and the status of each contact.
+    """Return the kind of the equilibrium under the drives at the start, and the status of each contact.
 
     Parameters
     ----------
     system : System
         The system.
     asked : InitialEquilibrium
-        Statuses and slip velocities that are given; the kind says what would come of these statuses.
+        Given statuses and slip velocities; the kind is the result of these statuses.
 
     Raises
     ------
     ValueError
-        If a slip velocity is needed, or contacts hold the same motion twice.
+        If a slip velocity is needed, or contacts constrain the same motion twice.
     """
     structure = Structure(system, 0.0)
     pressed = any(drive.push is not None for drive in system.drives) or any(map(pushes, system.connections))
@@ -75,7 +75,7 @@ def equilibrium_at_start(system: System, asked: InitialEquilibrium) -> tuple[str
 
 
 def modes_at_rest(system: System, asked: InitialEquilibrium) -> ModesAtRest:
-    """Return the modes about the equilibrium that a run starts in, numbered as `InitialEquilibrium` counts them.
+    """Return the modes about the initial equilibrium of a run, numbered as in `InitialEquilibrium`.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def modes_at_rest(system: System, asked: InitialEquilibrium) -> ModesAtRest:
 def _reach(
     whole: Structure, structure: Structure, at: Equilibrium, motion: Vibration, found: Exponents, number: int
 ) -> float:
-    """Return how far a mode may swing [m]."""
+    """Return the amplitude of a mode up to which linear theory holds [m]."""
     exponent, shape = complex(found.values[number]), found.shapes[:, number]
     largest = abs(largest_displacement(structure, shape))
     if not largest:
@@ -122,14 +122,14 @@ def _reach(
 
 
 def _room(room: float, change: float, least: float = 0.0) -> float:
-    """Return how many times a change fits into a room."""
+    """Return the ratio of a margin to a change, infinite for a change of at most `least`."""
     return max(room, 0.0) / change if change > least else float("inf")
 
 
 def _forces(
     structure: Structure, motion: Vibration, at: Equilibrium, exponent: complex, shape: Array
 ) -> tuple[Array, Array]:
-    """Return normal forces of all contacts, and forces that hold those that stick, in a mode [N]."""
+    """Return the normal forces of all contacts, and the tangential forces of sticking ones, in a mode [N]."""
     states = motion.from_velocity @ (exponent * shape) / (exponent - motion.state)
     moving = motion.mass * exponent**2 * shape + exponent * (motion.damping @ shape) + motion.stiffness @ shape
     forces = np.linalg.lstsq(motion.pushes.T, moving + motion.by_state @ states, rcond=None)[0]
@@ -149,7 +149,7 @@ def _forces(
 
 
 def _slides(structure: Structure, at: Equilibrium, exponent: complex, shape: Array) -> list[tuple[float, float]]:
-    """Return slip velocity and its change in a mode [m/s] of the contacts that slide and whose slip changes."""
+    """Return slip velocity and its change in a mode [m/s] for sliding contacts whose slip changes."""
     found = []
     for k, line in enumerate(structure.lines):
         slip = line.tangent - (line.slip_slope @ at.displacement) * line.along

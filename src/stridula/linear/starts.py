@@ -1,4 +1,4 @@
-"""Starts in equilibrium, as it is or with a mode of vibration about it on top."""
+"""Starts in equilibrium, alone or with a mode of vibration on top."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from .modes import modes_of, round_off
 from .structure import SEPARATED, STICKING, UNMOVED, Structure
 from .vibration import vibration
 
-# Passes in which contact points come to lie where the deflected system has them.
+# Most iterations of the places of contact points in the deflected system.
 PASSES = 30
-# Shift of a contact point, relative to its abscissa and its shift, that is round-off.
+# Change of the shift of a contact point, relative to its abscissa and its shift, that is round-off.
 SETTLED = 1e-13
 # Relative force below zero, or beyond friction, that is round-off.
 ROUND_OFF = 1e-9
@@ -33,14 +33,14 @@ WAYS_OUT = {
 
 @dataclass(frozen=True)
 class Start:
-    """Where and how fast a system starts.
+    """Initial positions, velocities and friction states of a system.
 
     Attributes
     ----------
     position, velocity : ndarray, shape (modes,)
         Modal positions and velocities.
     friction_state : ndarray, shape (contacts, 2)
-        Internal states of the laws of friction along both tangents; of bristles in space alone is there a second one.
+        Internal states of the friction laws along both tangents; only bristles in space have a second one.
     """
 
     position: Array
@@ -49,10 +49,10 @@ class Start:
 
 
 def start_of(system: System, asked: InitialEquilibrium) -> Start:
-    """Return the start that a system is asked for.
+    """Return the start of a system in the equilibrium of `asked`.
 
-    The equilibrium is that under the drives as they are at the start. Contact points on beams and plates lie where the
-    deflected system has them, and what they travel along bends steadily with them.
+    The equilibrium is that under the drives at the start. Contact points on beams and plates are those of the deflected
+    system, and the deflection of their tracks travels steadily with them.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def start_of(system: System, asked: InitialEquilibrium) -> Start:
     moves = structure.sliding(at.status, at.slip_velocity)
     along = np.array([line.along for line in structure.lines])
     slides = np.array([one != STICKING for one in at.status])
-    # Under a tip on a circle what is prescribed is how the body turns.
+    # On a circle the prescribed slip is due to the turning of the body, which does not carry the tip.
     carried = [
         0.0 if contact.circle else rate for contact, rate in zip(system.contacts, structure.rates[0], strict=True)
     ]
@@ -81,7 +81,7 @@ def start_of(system: System, asked: InitialEquilibrium) -> Start:
 
 
 def at_rest(system: System, asked: InitialEquilibrium) -> tuple[Structure, Structure, Equilibrium]:
-    """Return a system about its start, the same with its contact points where it comes to rest, and how it rests.
+    """Return a system about its start, the same with its contact points in equilibrium, and the equilibrium.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def at_rest(system: System, asked: InitialEquilibrium) -> tuple[Structure, Struc
 
 
 def _settled(whole: Structure, velocity: Array, status: Sequence[str] | None) -> tuple[Structure, Equilibrium]:
-    """Return a system in equilibrium with its contact points where that puts them."""
+    """Return a system with its contact points shifted to the equilibrium, and the equilibrium."""
     along = np.array([line.along for line in whole.lines])
     places = np.array([contact.at for contact in whole.system.contacts])
     shift, structure = np.zeros(len(along)), whole
@@ -110,7 +110,7 @@ def _settled(whole: Structure, velocity: Array, status: Sequence[str] | None) ->
 
 
 def _check(structure: Structure, at: Equilibrium, status: Sequence[str] | None) -> None:
-    """Raise unless a system can start in an equilibrium."""
+    """Raise unless a system can start in this equilibrium."""
     names = structure.system.contact_names
     if at.kind == JAMMED or (status is None and at.kind in WAYS_OUT):
         wrong = {HELD: STICKING, LIFTED_OFF: SEPARATED}.get(at.kind)
@@ -136,9 +136,9 @@ def _check(structure: Structure, at: Equilibrium, status: Sequence[str] | None) 
 
 
 def _mode(structure: Structure, at: Equilibrium, asked: InitialEquilibrium) -> tuple[Array, complex, Array]:
-    """Return the displacements of a mode as large as asked for, its exponent, and changes of the states of friction.
+    """Return the displacements of a mode with the given amplitude, its exponent, and changes of friction states.
 
-    These have the shape (contacts, 2), along the slip and across it.
+    The latter have the shape (contacts, 2), along the slip and across it.
     """
     motion = vibration(structure, at)
     found = modes_of(structure, motion)
@@ -156,7 +156,7 @@ def _mode(structure: Structure, at: Equilibrium, asked: InitialEquilibrium) -> t
 
 
 def largest_displacement(structure: Structure, shape: Array) -> complex:
-    """Return the displacement of the contact point that moves most in a mode [m], 0 if none moves."""
+    """Return the largest displacement of a contact point in a mode [m], 0 if none moves."""
     points = np.array([line.points for line in structure.lines])
     moved = (points @ shape).ravel()
     largest = complex(moved[np.abs(moved).argmax()])
@@ -164,7 +164,7 @@ def largest_displacement(structure: Structure, shape: Array) -> complex:
 
 
 def _number(exponents: Array, mode: int | str | None, least: float) -> int:
-    """Return the number of a mode: of the most unstable one that of the largest growth among those that vibrate."""
+    """Return the number of a mode; most unstable is the one with the largest growth among those that vibrate."""
     if mode != MOST_UNSTABLE:
         if not isinstance(mode, int) or mode >= exponents.size:
             raise ArgumentError("mode", f"be below {exponents.size}, the number of modes", mode)
@@ -176,7 +176,7 @@ def _number(exponents: Array, mode: int | str | None, least: float) -> int:
 
 
 def _closed(whole: Structure, status: Sequence[str], position: Array) -> Array:
-    """Return positions with rigid contacts exactly closed, where contact points have shifted along bent tracks, too."""
+    """Return positions with rigid contacts exactly closed, also with contact points shifted along bent tracks."""
     closed = np.array([one != SEPARATED and whole.is_rigid(k) for k, one in enumerate(status)])
     if not closed.any():
         return position
@@ -192,9 +192,9 @@ def _closed(whole: Structure, status: Sequence[str], position: Array) -> Array:
 
 
 def _states(law: FrictionLaw, slip: float, way: Sequence[float], change: Sequence[float]) -> tuple[float, float]:
-    """Return the internal states of a law in steady sliding at a slip velocity [m/s] along a way among the tangents.
+    """Return the internal states of a law in steady sliding at a slip velocity [m/s] along a direction of the tangents.
 
-    They are moved by changes in its sense and across the way.
+    Changes along and across this direction are added.
     """
     if not slip:
         return law.states_at_start

@@ -1,4 +1,4 @@
-"""A system about its start as matrices: what its equilibrium and its vibration are found from."""
+"""A system about its start as matrices, from which equilibrium and vibration are computed."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ SEPARATED, STICKING, SLIDING = STATUS_WORDS
 CLOSED = (STICKING, SLIDING)
 # Relative size below which a motion does not move a row.
 UNMOVED = 1e-9
-# Time in which residual shapes yield, modes hardly do, times the highest angular frequency.
+# Short time in which residual shapes respond and modes hardly do, times the highest angular frequency.
 SHORT = 1e-3
-# Relative square of an angular frequency below which rigid motions of the bodies strain no connection.
+# Relative squared angular frequency below which rigid motions of the bodies do not strain connections.
 UNSTRAINED = 1e-13
 
 
@@ -36,15 +36,15 @@ class ContactLine:
     Attributes
     ----------
     normal, tangent, across : ndarray
-        Displacement of the tip less that of the track, along the normal, along the slip and across it, which is zero in
-        the plane; also how contact forces act.
+        Displacement of the tip minus that of the track, along the normal, along the slip and across it, which is zero
+        in the plane; also the modal forces of contact forces.
     along : ndarray
-        Shift of the contact point along a beam, a plate or a circle; zero on other tracks, which look the same
-        everywhere.
+        Shift of the contact point along a beam, a plate or a circle; zero on other tracks, which are uniform.
     normal_slope, tangent_slope : ndarray
-        Displacement of the track along normal and tangent, derived along the track [1/m].
+        Derivative along the track of its displacement along normal and tangent [1/m].
     slip_slope : ndarray
-        What of `tangent_slope` the slip has: none on a circle, where it is that of the material under the tip.
+        Share of `tangent_slope` in the slip: zero on a circle, where the slip is relative to the material under the
+        tip.
     points : ndarray, shape (2, 2, modes) or (2, 3, modes)
         Displacement of the tip, then of the point of the track that it touches, each along world x, y and, in space, z.
     """
@@ -67,7 +67,7 @@ class Structure:
     system : System
         The system.
     time : float, optional
-        When drives are taken [s]; once they no longer vary if left out.
+        Time at which drives are evaluated [s]; if left out, after they have become constant.
 
     Attributes
     ----------
@@ -76,26 +76,26 @@ class Structure:
     lines : list of ContactLine
         One for each contact.
     stiffness, damping : ndarray, shape (modes, modes)
-        Stiffness [1/s²] and damping matrix [1/s]; of bodies that turn with what is carried round and Coriolis forces.
+        Stiffness [1/s²] and damping matrix [1/s]; for bodies that turn, with convection and Coriolis forces.
     passing : ndarray, shape (modes, modes)
-        Velocities of the material for unit displacements where bodies turn [1/s], beyond those of the modes.
+        Velocities of the material of turning bodies for unit displacements [1/s], in addition to those of the modes.
     mass : ndarray, shape (modes,)
-        Modal masses: 1, but 0 of residual shapes.
+        Modal masses: 1, and 0 for residual shapes.
     rigid : ndarray, shape (modes, motions)
-        Motions that strain nothing, orthonormal.
+        Motions without strain, orthonormal.
     load : ndarray, shape (modes,)
         Modal forces of the drives.
     gaps : ndarray, shape (contacts,)
         Gaps of the undeformed system [m].
     rates : ndarray, shape (2, contacts)
-        Velocities of the tip against the track that drives and tracks prescribe, along slip and normal [m/s].
+        Velocities of the tip relative to the track prescribed by drives and tracks, along slip and normal [m/s].
     ways : ndarray, shape (contacts, 2)
-        Directions of the slip among both tangents: that of what is prescribed in space, else the first tangent.
+        Directions of the slip in both tangents: that of the prescribed slip in space, else the first tangent.
 
     Raises
     ------
     ValueError
-        If no time is given and something never stops varying.
+        If no time is given and a history never becomes constant.
     """
 
     def __init__(self, system: System, time: float | None = None) -> None:
@@ -103,7 +103,7 @@ class Structure:
         self.system, self.arrays = system, assemble(system)
         self._known: dict[Any, Any] = {}
         settled = settled_time(system) if time is None else time
-        # Later it is all the same, and no rate meets the kink of a history that settles.
+        # Later times are equivalent, and avoid the kink at which a history becomes constant.
         now = np.array([2.0 * settled + 1.0 if time is None else settled])
         arrays, size = self.arrays, self.arrays.coupled
         rates = [_prescribed_rates(contact, system, now) for contact in system.contacts]
@@ -122,7 +122,7 @@ class Structure:
             self._check_steady()
 
     def _turn(self, now: Array) -> Array:
-        """Let bodies turn at the velocities of a time, and return how fast their material passes.
+        """Add the turning of bodies at a given time, and return the velocities of their material.
 
         With a momentum ``p = q' + G q`` of each pair, ``p' + G p + damping p + stiffness q = f``.
         """
@@ -143,14 +143,14 @@ class Structure:
 
     @property
     def promptness(self) -> Array:
-        """Displacement of each mode for a unit force that acts for a short time, in a common unit, shape (modes,)."""
+        """Displacement of each mode for a unit force of short duration, in a common unit, shape (modes,)."""
         if self.mass.all():
             return self.mass
         highest = float(np.diag(self.stiffness)[self.mass > 0.0].max(initial=1.0))
         return np.where(self.mass > 0.0, SHORT**2 / highest, 1.0)
 
     def is_rigid(self, contact: int) -> bool:
-        """Return whether a contact does not yield itself."""
+        """Return whether a contact is rigid."""
         return self.system.contacts[contact].yields is None
 
     def shifted(self, shifts: Array) -> Structure:
@@ -171,7 +171,7 @@ class Structure:
         return lines
 
     def prescribed(self, status: Sequence[str]) -> Array:
-        """Return the slip velocities [m/s] that drives and tracks prescribe; rigid motions follow what contacts hold.
+        """Return the slip velocities [m/s] prescribed by drives and tracks; rigid motions follow closed contacts.
 
         Parameters
         ----------
@@ -184,16 +184,16 @@ class Structure:
         return np.where(stuck | (np.abs(slips) <= UNMOVED * np.abs(self.rates).max()), 0.0, slips)
 
     def following(self, status: Sequence[str]) -> Array:
-        """Return the modal velocities of rigid motions that follow what contacts hold, shape (modes,)."""
+        """Return the modal velocities of rigid motions that follow closed contacts, shape (modes,)."""
         return np.asarray(self.rigid @ self._following(status))
 
     def sliding(self, status: Sequence[str], slip_velocity: Array) -> Array:
-        """Return the modal velocities of the least rigid motion in which closed contacts slide as given, (modes,).
+        """Return the modal velocities of the least rigid motion with given slips of closed contacts, shape (modes,).
 
         Raises
         ------
         ValueError
-            If no rigid motion lets a contact slide so, or follows the track of one that sticks or that rises.
+            If no rigid motion has the slip of a contact, or follows the track of a sticking contact or a rising track.
         """
         tangents, normals, acrosses = self._rigid_rows()
         slips, openings = self.rates
@@ -206,7 +206,7 @@ class Structure:
             contact = int(np.flatnonzero(closed)[int(missed.argmax()) % int(closed.sum())])
             name = self.system.contact_names[contact]
             if int(missed.argmax()) < int(closed.sum()):
-                raise ArgumentError("drives", f"let bodies follow what is moved along the normal of {name}")
+                raise ArgumentError("drives", f"let bodies follow the motion along the normal of {name}")
             if status[contact] == STICKING:
                 raise ArgumentError("status", f"let {name} slide, whose track nothing can follow", STICKING)
             raise ArgumentError(
@@ -214,21 +214,21 @@ class Structure:
                 "be one at which bodies move as a whole",
                 float(slip_velocity[contact]),
                 got=(
-                    f"{float(slip_velocity[contact])!r} m/s for {name}, which nothing lets slide on: move its "
+                    f"{float(slip_velocity[contact])!r} m/s for {name}, which cannot keep sliding: move its "
                     "track or its root"
                 ),
             )
         return np.asarray(self.rigid @ found)
 
     def once(self, key: Hashable, find: Callable[[], Found]) -> Found:
-        """Return what is found once about the contacts where they are, by what it is.
+        """Return a cached result for the present places of the contacts.
 
         Parameters
         ----------
         key : hashable
-            What it is.
+            Key of the result.
         find : callable
-            What finds it.
+            Computes the result.
         """
         if key not in self._known:
             self._known[key] = find()
@@ -249,7 +249,7 @@ class Structure:
         return -np.linalg.pinv(rows, rcond=UNMOVED) @ wanted
 
     def _rigid_rows(self) -> tuple[Array, Array, Array]:
-        """Return how rigid motions move contacts along slips, along normals and across slips, (contacts, motions)."""
+        """Return contact rows on rigid motions, along slips, along normals and across slips, (contacts, motions)."""
         return self.once("rigid rows", self._find_rigid_rows)
 
     def _find_rigid_rows(self) -> tuple[Array, Array, Array]:
@@ -268,10 +268,10 @@ class Structure:
         left = np.abs(openings - normals @ (np.linalg.pinv(normals, rcond=UNMOVED) @ openings))
         if left.max() > UNMOVED * np.abs(openings).max():
             name = self.system.contact_names[int(left.argmax())]
-            raise ArgumentError("time", f"be given: nothing follows what is moved along the normal of {name}", None)
+            raise ArgumentError("time", f"be given: no body can follow the motion along the normal of {name}", None)
 
     def free_motions(self, rows: Array) -> Array:
-        """Return the rigid motions that some rows do not feel, orthonormal, shape (modes, motions)."""
+        """Return the rigid motions in the null space of some rows, orthonormal, shape (modes, motions)."""
         return self.once(("free", rows.tobytes()), partial(self._find_free_motions, rows))
 
     def _find_free_motions(self, rows: Array) -> Array:
@@ -283,12 +283,12 @@ class Structure:
 
 
 def settled_time(system: System) -> float:
-    """Return when drives and tracks no longer vary [s].
+    """Return the time from which drives and tracks are constant [s].
 
     Raises
     ------
     ValueError
-        If one always does.
+        If one always varies.
     """
     histories: list[tuple[str, History]] = []
     for number, drive in enumerate(system.drives):
@@ -317,7 +317,7 @@ def _varying(track: RigidTrack, name: str) -> list[History]:
     )
     for _, acceleration, history in moved:
         if acceleration and history.settled is not None and history.factor(np.array([history.settled + 1.0]))[0]:
-            raise ArgumentError("time", f"be given for the track of {name}, which goes on gathering speed")
+            raise ArgumentError("time", f"be given for the track of {name}, which keeps accelerating")
     return [history for velocity, acceleration, history in moved if velocity or acceleration]
 
 
@@ -350,7 +350,7 @@ def _line(one: ContactRows, system: System, arrays: Assembly, shift: float = 0.0
 
 
 def _check_circles(system: System) -> None:
-    """Raise where something is carried along a circle: its body then turns under it."""
+    """Raise if a tip is carried along a circle: its body would then turn under it."""
     for name, contact in zip(system.contact_names, system.contacts, strict=True):
         if contact.circle is not None and (contact.circle.velocity or system.is_held(contact.tip.body)):
             words = (
@@ -360,7 +360,7 @@ def _check_circles(system: System) -> None:
 
 
 def _second(one: ContactRows, shift: float) -> tuple[Array, Array]:
-    """Return the row of the second tangent of a contact in space, and how the track's share of it goes along it."""
+    """Return the row of the second tangent of a contact in space, and the derivative of its track's part along it."""
     if one.circle is None:
         return one.fixed[1], np.zeros_like(one.fixed[1])
     place = one.contact.at + shift
@@ -379,7 +379,7 @@ def _turned(line: ContactLine, way: Array, second: Array, second_slope: Array) -
 
 
 def _along_the_slip(rates: Array) -> tuple[Array, Array]:
-    """Return directions of slip among both tangents, (contacts, 2), and velocities along slip and normal."""
+    """Return directions of slip in both tangents, (contacts, 2), and velocities along slip and normal."""
     slips, openings = rates[:, :2], rates[:, 2]
     ways = np.zeros_like(slips)
     ways[:, 0] = 1.0
@@ -397,13 +397,13 @@ def _rigid_motions(structure: Structure) -> Array:
     motions = np.eye(structure.mode_count)[:, rigid]
     if not rigid.any():
         return motions
-    # Among rigid motions of the bodies a soft connection is told from none, whatever their fastest mode.
+    # Restricted to rigid motions of the bodies, a soft connection is distinguished from none for any fastest mode.
     squared, shapes = np.linalg.eigh(structure.stiffness[np.ix_(rigid, rigid)])
     return np.asarray(motions @ shapes[:, squared <= UNSTRAINED * squared[-1]])
 
 
 def _prescribed_rates(contact: PointContact, system: System, now: Array) -> tuple[float, float, float]:
-    """Return the velocities of the tip against the track that are prescribed, along both tangents and the normal."""
+    """Return the prescribed velocities of the tip relative to the track, along both tangents and the normal."""
     imposed, (normal, *tangents) = system.imposed_velocity, contact.frame
     root = imposed.velocity * float(imposed.history.factor(now)[0]) if imposed else 0.0
     held = float(system.is_held(contact.tip.body))

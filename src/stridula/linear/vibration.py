@@ -1,4 +1,4 @@
-"""Small vibration about an equilibrium under exact constraints, as a matrix of first order."""
+"""Small vibration about an equilibrium under exact constraints, as a first-order matrix."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from ..contact.stiffness import slopes_at
 from .equilibrium import Equilibrium, held_rows, rigid_rows
 from .structure import SLIDING, STICKING, Structure
 
-# Relative imaginary part that rounding gives to a real exponent.
+# Relative imaginary part of a real exponent due to rounding.
 ROUND_OFF = 1e-9
-# Share of the entries of stiffness and damping from which they are not worth keeping as sparse.
+# Share of nonzero entries of stiffness and damping above which dense matrices are used.
 DENSE = 0.1
 
 
 @dataclass(frozen=True)
 class Vibration:
-    """Small motions q about an equilibrium, with multipliers m of the constraints and states z of the laws of friction.
+    """Small motions q about an equilibrium, with multipliers m of the constraints and states z of the friction laws.
 
     ::
 
@@ -37,20 +37,19 @@ class Vibration:
     Attributes
     ----------
     mass : ndarray, shape (modes,)
-        Modal masses: 1, but 0 of residual shapes.
+        Modal masses: 1, and 0 for residual shapes.
     stiffness, damping : ndarray, shape (modes, modes)
-        With what friction and the shift of contact points add.
+        Including the terms of friction and of the shift of contact points.
     held, pushes : ndarray, shape (constraints, modes)
-        Rows that contacts hold, and how the forces that hold them act.
+        Constraints of contacts, and modal forces of their multipliers.
     by_state, from_velocity, from_displacement : ndarray, shape (modes, states), (states, modes) twice
-        How states act, and how motion moves them.
+        Modal forces of states, and rates of states by motion.
     state : ndarray, shape (states,)
-        How each moves itself [1/s].
+        Rate of each state by itself [1/s].
     owners : tuple of (int, bool)
-        The contact that each state is of, and whether it is the one across the slip.
+        Contact of each state, and whether the state is the one across the slip.
     free : ndarray, shape (modes, motions)
-        Rigid motions that nothing holds, orthonormal: only their velocity counts, since the contact point is taken
-        where it is.
+        Free rigid motions, orthonormal: only their velocity matters, since the contact point is considered fixed.
     """
 
     mass: Array
@@ -69,8 +68,8 @@ class Vibration:
 def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
     """Return the small motions of a system about an equilibrium.
 
-    To what holds without load, a load adds what the deflected track does to a contact point that shifts along it: the
-    gap changes with its slope, and the contact forces act on other points of it.
+    In addition to the terms without load, a contact point shifts along a deflected track: the gap changes with its
+    slope, and the contact forces act on other points of it.
     """
     stiffness, damping = structure.stiffness.copy(), structure.damping.copy()
     share, passing = equilibrium.sense * equilibrium.ratio, structure.passing
@@ -110,18 +109,18 @@ def vibration(structure: Structure, equilibrium: Equilibrium) -> Vibration:
 
 @dataclass(frozen=True)
 class _Answer:
-    """What friction does in small motions along the slip of a contact, or across it.
+    """Linearised friction along the slip of a contact, or across it.
 
     Attributes
     ----------
     owner : tuple of (int, bool)
-        The contact, and whether across.
+        Number of the contact, and whether across.
     near : Linearised
-        Small changes of the ratio and of the state, in the sense of sliding.
+        Linearised law, in the sense of sliding.
     sense, normal : float
-        That sense, and the normal force [N].
+        Sense of sliding, and normal force [N].
     pull, slip : ndarray, shape (modes,)
-        How the tangential force acts, and what slips.
+        Modal force of the tangential force, and row of the slip.
     """
 
     owner: tuple[int, bool]
@@ -133,7 +132,7 @@ class _Answer:
 
 
 def _answers(structure: Structure, equilibrium: Equilibrium, k: int, slip: Array) -> list[_Answer]:
-    """Return what friction does across the slip of contact `k`, where it can move so, and along it."""
+    """Return the linearised friction of contact `k` across its slip, where it can move so, and along it."""
     line, law = structure.lines[k], structure.system.contacts[k].friction
     speed, normal = abs(float(equilibrium.slip_velocity[k])), float(equilibrium.normal_force[k])
     found = []
@@ -146,7 +145,7 @@ def _answers(structure: Structure, equilibrium: Equilibrium, k: int, slip: Array
 
 
 def _states(answers: list[_Answer], structure: Structure) -> tuple[Array, Array, Array]:
-    """Return how the internal states of laws act, how motion moves them, and how they move themselves."""
+    """Return the modal forces of internal states, their rates by motion, and their rates by themselves."""
     size = structure.mode_count, len(answers)
     by_state = np.array([one.sense * one.normal * one.near.by_state * one.pull for one in answers])
     moved = np.array([one.sense * one.near.state_by_velocity * one.slip for one in answers])
@@ -156,7 +155,7 @@ def _states(answers: list[_Answer], structure: Structure) -> tuple[Array, Array,
 
 @dataclass(frozen=True)
 class Exponents:
-    """Exponents s of small motions ``exp(s t)``, one of each conjugate pair.
+    """Exponents s of small motions ``exp(s t)``, one from each conjugate pair.
 
     Attributes
     ----------
@@ -171,7 +170,7 @@ class Exponents:
 
 
 def all_exponents(motion: Vibration, shapes: bool = True) -> Exponents:
-    """Return all exponents, by a dense solver; shapes are empty if they are not asked for."""
+    """Return all exponents by a dense solver; shapes are empty if not wanted."""
     basis, first = _first_order(motion)
     if not shapes:
         values = scipy.linalg.eigvals(first, check_finite=False, overwrite_a=True)
@@ -187,9 +186,9 @@ def all_exponents(motion: Vibration, shapes: bool = True) -> Exponents:
 
 
 def _first_order(motion: Vibration) -> tuple[Array, Array]:
-    """Return a basis of the motions that the contacts allow, free rigid ones first, and the matrix of first order.
+    """Return a basis of the motions that the contacts allow, free rigid ones first, and the first-order matrix.
 
-    It moves displacements along all but the free ones, velocities along all, and states.
+    Its vector has displacements along all but the free ones, velocities along all, and states.
     """
     free, states = motion.free, len(motion.state)
     rigid, fixed = free.shape[1], np.vstack([free.T, motion.held])
@@ -197,7 +196,7 @@ def _first_order(motion: Vibration) -> tuple[Array, Array]:
     basis = np.hstack([free, basis[:, len(fixed) :]])
     motions = basis.shape[1]
     elastic = motions - rigid
-    # Forces, less what the constraints take of them: projected along the pushes, onto what is allowed.
+    # Forces without the part balanced by the constraints: projected along the pushes onto allowed motions.
     answer = basis.T - (basis.T @ motion.pushes.T) @ np.linalg.solve(motion.held @ motion.pushes.T, motion.held)
     first = np.zeros((elastic + motions + states,) * 2)
     velocities, own = slice(elastic, elastic + motions), slice(elastic + motions, None)
@@ -212,12 +211,12 @@ def _first_order(motion: Vibration) -> tuple[Array, Array]:
 
 
 def nearest_exponents(motion: Vibration, count: int, shift: complex) -> Exponents:
-    """Return the exponents nearest to a shift, by Arnoldi's method on the inverse about it.
+    """Return the exponents nearest to a shift, by Arnoldi's method with the inverse about it.
 
-    The constraints stay in the equations, bordered, so that nothing sparse is filled.
+    The constraints stay in the equations as borders, so that sparse matrices stay sparse.
     """
     modes, states = len(motion.stiffness), len(motion.state)
-    # The displacement along a free rigid motion does nothing, see `Vibration`.
+    # The displacement along a free rigid motion has no effect, see `Vibration`.
     stiffness = motion.stiffness - (motion.stiffness @ motion.free) @ motion.free.T
     inner = 1.0 / (motion.state - shift)
     moving = motion.damping - motion.by_state @ (inner[:, None] * motion.from_velocity)
@@ -248,7 +247,7 @@ def nearest_exponents(motion: Vibration, count: int, shift: complex) -> Exponent
 
 
 def _bordered(dynamic: Array, motion: Vibration) -> Callable[[Array], Array]:
-    """Return what solves ``dynamic q - pushes^T m = f, held q = 0`` for q."""
+    """Return a function that solves ``dynamic q - pushes^T m = f, held q = 0`` for q."""
     modes, count = len(dynamic), len(motion.held)
     corner = np.zeros((count, count))
     if np.count_nonzero(dynamic) < DENSE * dynamic.size:

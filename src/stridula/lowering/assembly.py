@@ -21,21 +21,21 @@ from .turning_modes import TurningModes, turning_modes
 
 @dataclass(frozen=True)
 class Assembly:
-    """A system as flat arrays, body by body, those whose modes are coupled first.
+    """A system as flat arrays, body by body, bodies with coupled modes first.
 
     Attributes
     ----------
     angular_frequency, damping_rate : ndarray, shape (modes,)
         Undamped angular frequencies w [rad/s] and ``2 zeta w`` [1/s]; zero for coupled modes.
     massless : ndarray of bool, shape (modes,)
-        Which are residual shapes, of unit stiffness and no mass.
+        Mask of the residual shapes, of unit stiffness and no mass.
     stiffness, dissipation : ndarray, shape (coupled, coupled)
         Stiffness [1/s²] and damping matrix [1/s] of the coupled modes, which come first.
     contacts : list of ContactRows
-        One for each contact, and another one after it for its second tangent in space: pairs of rows.
+        Pairs of rows: one for each contact, followed by another one for its second tangent in space.
     motion : callable
-        Motions imposed on the contacts [m] over time and step: of the tip and of the track along the tangent, of the
-        gap; shape (times, pairs, 3).
+        Motions imposed on the contacts [m] as a function of time and step: of the tip and of the track along the
+        tangent, of the gap; shape (times, pairs, 3).
     loads : ndarray, shape (loads, modes)
         Modal forces of the drives for a unit signal.
     signals : list of callable
@@ -44,17 +44,17 @@ class Assembly:
     position, velocity : ndarray, shape (modes,)
         Modal positions and velocities at the start.
     friction_state : ndarray, shape (pairs,)
-        Internal states of the laws of friction at the start.
+        Internal states of the friction laws at the start.
     probes : list of ProbeRows
         One for each probe.
     prescribed : Prescribed
-        What decides how signals and motion go in time.
+        Descriptions that determine signals and motion over time.
     spans : dict
-        First mode of each body and the one after its last, by the body's name.
+        First mode of each body and end of its range, by the body's name.
     blend : ndarray, shape (joined, joined)
-        How the first coordinates make those of joined bodies, whose residual shapes connections hold; empty without.
+        Matrix from the first coordinates to those of joined bodies with residual shapes at connections; else empty.
     turning : tuple of TurningModes
-        The bodies that turn, or round which contacts move.
+        Bodies that turn, or round which contacts move.
     """
 
     angular_frequency: Array
@@ -84,7 +84,7 @@ class Assembly:
 
     @property
     def firsts(self) -> Array:
-        """Which pairs of rows are the first of their contact, shape (pairs,)."""
+        """Mask of the pairs of rows that are the first of their contact, shape (pairs,)."""
         return np.array([not one.is_second for one in self.contacts])
 
     @property
@@ -105,7 +105,7 @@ class Assembly:
 
 @of_ordinary_size("system")
 def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
-    """Turn a system and its probes into flat arrays; those of the system are made once, and not to be changed."""
+    """Return a system and its probes as flat arrays; those of the system are cached and must not be changed."""
     if "assembly" not in system.kept:
         system.kept["assembly"] = _assembled(system)
     flat, coordinates, loads = system.kept["assembly"]
@@ -113,7 +113,7 @@ def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
 
 
 def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
-    """Return a system as flat arrays without probes, and what these are made of."""
+    """Return a system as flat arrays without probes, with the coordinates and loads for those of probes."""
     coordinates = Coordinates(system)
     stiffness, dissipation = coordinates.matrices
     modes = [coordinates.modes(body) for body in coordinates.order]
@@ -124,7 +124,7 @@ def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
         angular[:size] = np.where(massless[:size], np.inf, np.sqrt(np.diag(stiffness)))
         rate[:size] = np.diag(dissipation)
         size = 0
-    # Coupled modes march by matrices; alone they would not.
+    # Coupled modes march with matrices; their own coefficients are zero.
     angular[:size] = rate[:size] = 0.0
     loads, signals, histories = loads_of(system, coordinates)
     position, velocity = _start(system, coordinates)
@@ -154,7 +154,7 @@ def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
 
 
 def with_travel(arrays: Assembly, system: System, travel: float) -> Assembly:
-    """Return a system whose root has already been moved by a distance [m] beyond what its imposed velocity says."""
+    """Return a system whose root has already moved by a distance [m] in addition to its imposed velocity."""
     described = arrays.signals[-3]
 
     def displacement(time: Array, step: float) -> Array:
@@ -165,18 +165,18 @@ def with_travel(arrays: Assembly, system: System, travel: float) -> Assembly:
 
 
 def going_on(arrays: Assembly, offset: Array, start: float, before: Array | None = None) -> Assembly:
-    """Return a system whose contacts have already been moved beyond what is imposed on them.
+    """Return a system whose contacts have already moved in addition to their imposed motion.
 
     Parameters
     ----------
     arrays : Assembly
         The system.
     offset : ndarray, shape (contacts, 3)
-        By how much [m].
+        Additional displacement [m].
     start : float
-        Time from which that holds [s].
+        Time from which it applies [s].
     before : ndarray, shape (contacts, 3), optional
-        Where they were before [m], if that was other motion.
+        Imposed displacements before that time [m], if they differ.
     """
     described = arrays.motion
 
@@ -194,7 +194,7 @@ def _start(system: System, coordinates: Coordinates) -> tuple[Array, Array]:
     position, velocity = np.zeros(coordinates.size), np.zeros(coordinates.size)
     for drive in system.drives:
         if drive.uniform_velocity is not None:
-            # Residual shapes follow forces alone.
+            # Residual shapes have no velocity: they depend on forces alone.
             modes = coordinates.modes(drive.acted_on)
             speeds = drive.uniform_velocity[: len(modes.translation)]
             moved = np.where(modes.massless, 0.0, speeds @ modes.translation)

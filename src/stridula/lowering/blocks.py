@@ -1,4 +1,4 @@
-"""A system under a scheme as the arrays that the march reads."""
+"""A system under a time scheme as arrays for the march."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .contact_rows import ContactRows
 from .schemes import Scheme
 from .stepping import Stepping
 
-# Phase by which waves may turn in a step [rad].
+# Largest phase by which waves may turn in a step [rad].
 MOST_TURNED = 0.5
 
 
@@ -56,7 +56,7 @@ class Recurrence:
         return np.asarray(moved)
 
     def free(self, position: Array, increment: Array) -> Array:
-        """Return the next increments of motion without any force."""
+        """Return the next increments of free motion."""
         size = self.matrices.shape[1]
         moved = self.block[at.B] * increment - self.block[at.R] * position
         moved[:size] = self.matrices[at.KEPT] @ increment[:size] - self.matrices[at.STIFFNESS] @ position[:size]
@@ -65,10 +65,10 @@ class Recurrence:
     def stored_energy(self, modal: Array) -> float:
         """Return the energy [J] half a step ago of positions and increments, shape (2, modes).
 
-        It is ``[(1+b)/2 d² + r q[n] q[n-1]] / (2 l)`` of every mode that is not coupled.
+        It is ``[(1+b)/2 d² + r q[n] q[n-1]] / (2 l)`` for every uncoupled mode.
         """
         (q, d), block, size = modal, self.block, self.coupled
-        # What overflows ends the run.
+        # Overflow ends the run later.
         with np.errstate(over="ignore", invalid="ignore"):
             alone = ((1.0 - block[at.HALF_LOSS]) * d * d + block[at.R] * q * (q - d)) * block[at.HALF_OVER_LOAD]
             q, d = q[:size], d[:size]
@@ -90,7 +90,7 @@ def recurrence(arrays: Assembly, scheme: Scheme, step: float) -> Recurrence:
     Raises
     ------
     ValueError
-        If the step is too long for coupled modes to answer an impulse in its own sense.
+        If the step is so long that coupled modes would move against an impulse.
     """
     stepping = Stepping(arrays, scheme)
     k = stepping.coefficients(step)
@@ -122,14 +122,14 @@ def _symmetric(matrix: Array) -> Array:
 
 @dataclass(frozen=True)
 class PathModes:
-    """The modes of a body along whose path a contact moves.
+    """The modes of a body on whose path a contact moves.
 
     Attributes
     ----------
     path : Path
-        What they look like along it.
+        Their traces along it.
     normal, tangential : slice
-        Those that move it along its normal and along its tangent.
+        Ranges of the modes along its normal and along its tangent.
     """
 
     path: Path
@@ -146,9 +146,9 @@ class TurningBlocks:
     pairs : ndarray of int, shape (pairs, 2)
         Numbers of the modes of each pair.
     turns : ndarray, shape (2, pairs)
-        Radians by which each pair, and the material, turns for one of the body.
+        Phase by which each pair turns, and that of the material, for one radian of the body.
     others : ndarray of int, shape (others,)
-        Numbers of its modes that are the same all round, where a contact moves round it; none where none does.
+        Numbers of its modes without waves round the axis if a contact moves round it; else empty.
     """
 
     pairs: Array
@@ -158,22 +158,22 @@ class TurningBlocks:
 
 @dataclass(frozen=True)
 class ContactBlocks:
-    """The contacts as the march reads them.
+    """The contacts as arrays for the march.
 
     Attributes
     ----------
     constants : ndarray, shape (contacts, constants)
-        Numbers of each contact.
+        Constants of each contact.
     codes : ndarray of int, shape (contacts,)
-        Its law of friction.
+        Code of its friction law.
     laws : ndarray, shape (contacts, parameters)
-        Parameters of its law of friction.
+        Parameters of its friction law.
     rows : ndarray, shape (contacts, 2, modes)
         Constant rows along normal and tangent.
     compliance : ndarray, shape (2 contacts, 2 contacts)
         Relative displacements [m] of the constant rows for unit forces on each.
     paths : tuple of PathModes or None
-        What each contact moves along.
+        Path of each contact.
     circles : ndarray of int, shape (contacts,)
         The turning body that each contact moves round, -1 for none.
     """
@@ -188,7 +188,7 @@ class ContactBlocks:
 
 
 def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
-    """Return the contacts as the march reads them."""
+    """Return the contacts as arrays for the march."""
     count = len(arrays.contacts)
     constants, laws = np.zeros((count, at.CONTACT_CONSTANTS)), np.zeros((count, at.LAW_PARAMETERS))
     codes = np.zeros(count, dtype=np.int64)
@@ -233,7 +233,7 @@ def _path_modes(one: ContactRows) -> PathModes | None:
 
 
 def _law(law: FrictionLaw) -> tuple[int, Array]:
-    """Return the code of a law of friction and its parameters, the state of a new contact last."""
+    """Return the code of a friction law and its parameters, with the state of a new contact last."""
     found, own = np.zeros(at.LAW_PARAMETERS), list(law.parameters().values())
     found[: len(own)], found[-1] = own, law.state_at_landing
     return getattr(at, law.kernel_code), found
@@ -241,12 +241,12 @@ def _law(law: FrictionLaw) -> tuple[int, Array]:
 
 @dataclass(frozen=True)
 class ProbeBlocks:
-    """The probes as the march reads them.
+    """The probes as arrays for the march.
 
     Attributes
     ----------
     kinds : ndarray, shape (probes,)
-        Whether each sees positions, centred velocities or second differences.
+        Whether each records positions, centred velocities or second differences.
     rows : ndarray, shape (probes, modes)
         Rows on positions, sums or differences of increments.
     direct : ndarray, shape (probes, signals)
@@ -262,7 +262,7 @@ class ProbeBlocks:
 
 
 def probe_blocks(arrays: Assembly, step: float) -> ProbeBlocks:
-    """Return the probes as the march reads them."""
+    """Return the probes as arrays for the march."""
     count = len(arrays.probes)
     rows, kinds = np.zeros((count, arrays.mode_count)), np.zeros(count, dtype=np.int64)
     direct, contact = np.zeros((count, len(arrays.signals))), np.zeros((count, len(arrays.contacts), 2))
@@ -276,7 +276,7 @@ def probe_blocks(arrays: Assembly, step: float) -> ProbeBlocks:
 
 @dataclass(frozen=True)
 class Blocks:
-    """A system under a scheme as the march reads it.
+    """A system under a time scheme as arrays for the march.
 
     Attributes
     ----------
@@ -303,14 +303,14 @@ class Blocks:
 
 
 def _check_turned(rate: float, step: float, words: str) -> None:
-    """Raise where waves turn at a rate [rad/s] by too much in a step."""
+    """Raise if waves at a rate [rad/s] turn by too much in a step."""
     if rate * step > MOST_TURNED:
         limit = f"be at most {at_most(MOST_TURNED / rate)} s: {words} at most {MOST_TURNED} rad"
         raise ArgumentError("step", limit, step)
 
 
 def blocks_of(arrays: Assembly, scheme: Scheme, step: float) -> Blocks:
-    """Return a system under a scheme as the march reads it."""
+    """Return a system under a time scheme as arrays for the march."""
     modes = recurrence(arrays, scheme, step)
     for one in arrays.turning:
         _check_turned(abs(one.turning.velocity) * max(one.turning.order), step, "the waves of a body turn by")

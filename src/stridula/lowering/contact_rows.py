@@ -14,20 +14,20 @@ from .turning_modes import TurningModes
 
 @dataclass(frozen=True)
 class ContactRows:
-    """One contact as rows on the modes; in space two pairs of rows in a row.
+    """One contact as rows on the modes; in space two consecutive pairs of rows.
 
     Attributes
     ----------
     contact : PointContact
         The contact.
     fixed : ndarray, shape (2, modes)
-        Displacement of the tip, less that of a frozen track, along normal and tangent.
+        Displacement of the tip, minus that of a touched point, along normal and tangent.
     bending, axial : tuple of int
-        First mode and the one after the last of each kind of a track that the tip moves along.
+        Ranges of the modes of each kind of a track along which the tip moves.
     is_second : bool
         Whether the tangent is the second of a contact in space; the normal is zero then.
     circle : TurningModes or None
-        The modes of the body round which the tip moves; its rows in `fixed` are those where the tip is at the start.
+        Modes of the body round which the tip moves; its rows in `fixed` are those at the start.
     """
 
     contact: PointContact
@@ -39,7 +39,7 @@ class ContactRows:
 
     @property
     def travel(self) -> Array:
-        """Row of what moves the contact point along the tangent, shape (modes,): on a circle that of the tip alone."""
+        """Row of the travel of the contact point along the tangent, shape (modes,); on a circle, of the tip alone."""
         if self.circle is None:
             return self.fixed[1]
         row = self.fixed[1].copy()
@@ -47,7 +47,7 @@ class ContactRows:
         return row
 
     def round_at(self, place: float) -> Array:
-        """Return the rows where the tip is at an abscissa [m] of its circle."""
+        """Return the rows with the tip at an abscissa [m] of its circle."""
         assert self.circle is not None
         angle = (place - self.contact.at) * self.rate
         return self.fixed + [self.circle.turned(row, angle * self.circle.orders) for row in self.fixed]
@@ -63,7 +63,7 @@ class ContactRows:
 
     @property
     def rate(self) -> float:
-        """Angle about the axis for a distance along the circle [rad/m]."""
+        """Angle about the axis per distance along the circle [rad/m]."""
         assert self.contact.circle is not None
         return 1.0 / self.contact.circle.radius
 
@@ -86,7 +86,7 @@ def contact_rows(
     if contact.touched_point is not None:
         fixed = fixed - frame @ coordinates.trace(contact.touched_point)[: len(frame)]
     if contact.friction.depends_on_speed:
-        # Without mass nothing holds the slip against friction that falls with its speed.
+        # Without mass nothing balances friction that falls with the slip speed.
         fixed[1:, coordinates.massless] = 0.0
     if contact.is_spatial:
         second = np.stack([np.zeros_like(fixed[0]), fixed[2]])
@@ -102,7 +102,7 @@ def contact_rows(
 
 
 def _path_spans(contact: PointContact, coordinates: Coordinates) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Return the spans of modes that move a path along its normal and along its tangent, none without a path."""
+    """Return the ranges of modes that move a path along its normal and along its tangent, empty without a path."""
     if contact.path_body is None:
         return (0, 0), (0, 0)
     first, end = coordinates.spans[contact.path_body]

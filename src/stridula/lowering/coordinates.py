@@ -1,4 +1,4 @@
-"""The place of the modes of each body among those of all, and the coupling of joined bodies."""
+"""Ranges of the modes of each body among all modes, and the coupling of joined bodies."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from ..connections import ends, unit
 from ..contact import PointContact
 from ..system import System
 
-# Off-diagonal terms, relative to the diagonal ones, below which modes are not coupled.
+# Relative size of off-diagonal terms below which modes are not coupled.
 UNCOUPLED = 1e-13
 
 
 @dataclass(frozen=True)
 class Coordinates:
-    """The place of the modes of each body, and full-width rows of its points.
+    """Ranges of the modes of each body, and full-width rows of its points.
 
     Attributes
     ----------
     system : System
         The system.
     known : dict
-        Modes of each body asked for so far, by its identity.
+        Modes of each body used so far, by its identity.
     """
 
     system: System
-    # By the body itself: comparing bodies takes longer than anything that is asked of them here.
+    # By identity, as comparing bodies would take longer than all other work here.
     known: dict[int, Modes] = field(default_factory=dict)
 
     @cached_property
@@ -50,7 +50,7 @@ class Coordinates:
 
     @cached_property
     def spans(self) -> dict[Any, tuple[int, int]]:
-        """First mode of each body, and the one after its last."""
+        """First mode of each body, and end of its range."""
         found, start = {}, 0
         for body in self.order:
             found[body] = (start, start + self.modes(body).count)
@@ -74,7 +74,7 @@ class Coordinates:
         return self.known[id(body)]
 
     def full(self, body: Any, numbers: Array) -> Array:
-        """Return numbers of a body's modes among those of all."""
+        """Return values of a body's modes as values of all modes, zero for others."""
         first, end = self.spans[body]
         out = np.zeros((*numbers.shape[:-1], self.size))
         out[..., first:end] = numbers
@@ -89,7 +89,7 @@ class Coordinates:
         return _in_space(self.full(body, body.trace(point.position, self.system.is_held(body))))
 
     def blended(self, rows: Array) -> Array:
-        """Return rows on the coordinates of the bodies as rows on those that march."""
+        """Return rows on the coordinates of the bodies as rows on those of the march."""
         size = len(self.blend)
         rows[..., :size] = rows[..., :size] @ self.blend
         return rows
@@ -99,12 +99,12 @@ class Coordinates:
         return self.blended(self.body_trace(point))
 
     def translation(self, body: Any) -> Array:
-        """Return what a uniform acceleration of a body along x, y and z drives, shape (3, modes)."""
+        """Return the drive of the modes by a uniform acceleration of a body along x, y and z, shape (3, modes)."""
         return self.blended(_in_space(self.full(body, self.modes(body).translation)))
 
     @cached_property
     def massless(self) -> Array:
-        """Which modes are residual shapes."""
+        """Mask of the residual shapes."""
         return np.concatenate([self.modes(body).massless for body in self.order])
 
     @property
@@ -114,7 +114,7 @@ class Coordinates:
 
     @property
     def blend(self) -> Array:
-        """How the coordinates that march make those of joined bodies."""
+        """Matrix from the coordinates of the march to those of joined bodies."""
         return self._coupling[2]
 
     @cached_property
@@ -144,10 +144,10 @@ def _matrices(coordinates: Coordinates) -> tuple[Array, Array]:
 
 
 def without_massless_coupling(stiffness: Array, dissipation: Array, massless: Array) -> tuple[Array, Array, Array]:
-    """Return stiffness and damping matrix in coordinates in which residual shapes stand alone, and their blend.
+    """Return stiffness and damping matrix in coordinates with uncoupled residual shapes, and the transformation.
 
-    Connections hold residual shapes, too: what follows the modes statically becomes part of these, what is left has
-    unit stiffness. Damping acts on the modes and on what follows them.
+    Connections also act on residual shapes: their static response to the modes becomes part of these, the rest has
+    unit stiffness. Damping acts on the modes including that response.
     """
     if not massless.any():
         return stiffness, dissipation, np.eye(0)
@@ -165,7 +165,7 @@ def without_massless_coupling(stiffness: Array, dissipation: Array, massless: Ar
 
 
 def are_uncoupled(stiffness: Array, dissipation: Array) -> bool:
-    """Return whether the modes are oscillators on their own after all."""
+    """Return whether the modes are uncoupled oscillators after all."""
     return _is_diagonal(stiffness) and _is_diagonal(dissipation)
 
 
@@ -176,10 +176,10 @@ def _is_diagonal(matrix: Array) -> bool:
 
 
 def _in_space(rows: Array) -> Array:
-    """Return rows along x, y and z of a body, which is rigid along z in the plane."""
+    """Return rows of a body along x, y and z; a body in the plane is rigid along z."""
     return rows if len(rows) == 3 else np.concatenate([rows, np.zeros((1, rows.shape[1]))])
 
 
 def pairs_of(contact: PointContact) -> int:
-    """Return how many pairs of rows a contact has."""
+    """Return the number of pairs of rows of a contact."""
     return len(contact.frame) - 1

@@ -1,4 +1,4 @@
-"""Drives and moved connections as modal forces and signals."""
+"""Drives and connections with offsets as modal forces and signals."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Load:
     modal : ndarray, shape (modes,)
         Modal forces for a unit signal.
     root : ndarray, shape (3,)
-        Its balance about the slider's root: along x and y [N], moment [N m].
+        Its resultant about the slider's root: along x and y [N], moment [N m].
     """
 
     modal: Array
@@ -36,7 +36,7 @@ def _factor(history: History) -> Signal:
 
 
 def loads_of(system: System, coordinates: Coordinates) -> tuple[list[Load], list[Signal], tuple[History, ...]]:
-    """Return the loads, drives of the same history together, the signals, and the histories."""
+    """Return the loads, merged by their histories, the signals, and the histories."""
     by_history: dict[History, Load] = {}
 
     def add(history: History, modal: Array, root: Array) -> None:
@@ -70,7 +70,7 @@ def loads_of(system: System, coordinates: Coordinates) -> tuple[list[Load], list
         return velocity * history.factor(time)
 
     def acceleration(time: Array, step: float) -> Array:
-        # A difference, not the rate: its impulses add up to the change of velocity, kinks or not.
+        # A difference, not the derivative: its impulses add up to the change of velocity even at kinks.
         return velocity * (history.factor(time + step / 2.0) - history.factor(time - step / 2.0)) / step
 
     if imposed and history.settled != 0.0:
@@ -80,7 +80,7 @@ def loads_of(system: System, coordinates: Coordinates) -> tuple[list[Load], list
 
 
 def _inertia(system: System) -> Array:
-    """Return the slider's inertia as its root feels it, zero for bodies without a root."""
+    """Return the slider's inertia with respect to its root, zero for bodies without a root."""
     slider = system.slider
     if not has_root(slider):
         return np.zeros((3, 2))

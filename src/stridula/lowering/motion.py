@@ -1,4 +1,4 @@
-"""Motions imposed on contacts, and the descriptions that decide how they vary in time."""
+"""Motions imposed on contacts, and the descriptions that determine them over time."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Signal = Callable[[Array, float], Array]
 
 @dataclass(frozen=True)
 class Prescribed:
-    """Descriptions that decide how signals and motions vary in time: systems that share them have the same.
+    """Descriptions that determine signals and motions over time: systems with equal ones have the same.
 
     Attributes
     ----------
@@ -30,11 +30,11 @@ class Prescribed:
         The imposed velocity.
     contacts : tuple
         For each contact its frame, whether its tip and its track are held, its rigid track, and velocities of the
-        surface that it touches.
+        touched surface.
     turning : tuple of Turning
-        How bodies turn.
+        Turning of bodies.
     turns : bool
-        Whether it goes on from other motions.
+        Whether it continues other motions.
     """
 
     histories: tuple[History, ...]
@@ -57,7 +57,7 @@ class Prescribed:
 
 
 def prescribed_of(system: System, histories: tuple[History, ...]) -> Prescribed:
-    """Return the descriptions that decide how signals and motions of a system vary in time."""
+    """Return the descriptions that determine signals and motions of a system over time."""
     contacts = []
     for contact in system.contacts:
         held = system.is_held(contact.tip.body), touches_held(contact, system)
@@ -73,7 +73,7 @@ def prescribed_of(system: System, histories: tuple[History, ...]) -> Prescribed:
 
 
 def touches_held(contact: PointContact, system: System) -> bool:
-    """Return whether a contact is against a point of a body whose root follows an imposed velocity."""
+    """Return whether a contact touches a point of a body whose root follows an imposed velocity."""
     return contact.touched_point is not None and system.is_held(contact.touched_point.body)
 
 
@@ -83,7 +83,7 @@ def motion_of(system: System, imposed: Signal) -> Signal:
     alongs = [contact.frame[:, 0].tolist() for contact in system.contacts]
     pairs = [pairs_of(contact) for contact in system.contacts]
     firsts = (np.cumsum(pairs) - pairs).tolist()
-    # Asked for once: where a point is on a body takes long to find.
+    # Computed once: to locate a point on a body takes long.
     turnings = [contact.turning_velocities for contact in system.contacts]
 
     def motion(time: Array, step: float) -> Array:

@@ -1,4 +1,4 @@
-"""Runs as the march lays them out: eight numbers of one run in a block, or one number of eight runs."""
+"""Memory layout of runs in the march: eight numbers of one run in a block, or one number of eight runs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ..bodies.paths import Waves
 from ..records.state import State
 from .blocks import Blocks, ContactBlocks, PathModes, Recurrence, TurningBlocks
 
-# Whether numba has been told to compile nothing.
+# Whether numba's compilation is disabled.
 PLAIN = bool(config.DISABLE_JIT)  # type: ignore[attr-defined]
 # Kinds of the spans of a path.
 PATH_KINDS = (at.PATH_NORMAL, at.PATH_TANGENTIAL)
@@ -28,24 +28,24 @@ PATH_KINDS = (at.PATH_NORMAL, at.PATH_TANGENTIAL)
 
 @dataclass(frozen=True)
 class Layout:
-    """Where the numbers of a run lie.
+    """Memory layout of the numbers of a run.
 
     Attributes
     ----------
     sizes : Sizes
-        How many blocks there are of what.
+        Numbers of blocks of each kind.
     block, lane : ndarray of int, shape (modes,)
-        Block of each mode, and its place in it, of the first of runs side by side.
+        Block of each mode, and its place in it for the first of the runs side by side.
     wave_of : ndarray of int, shape (blocks,)
         Wave of each block of a path.
     spans, first_span : ndarray of int
-        Spans of blocks that each contact sees.
+        Spans of blocks that act on each contact.
     path_of : ndarray of int, shape (contacts,)
         First block of the path of each contact, -1 for none.
     sets, pairs, numbers : ndarray
-        Waves of each contact; sums and differences among them; multiples of the angles, a row a block of waves.
+        Waves of each contact; sums and differences among them; multiples of the angles, a row for each block of waves.
     turning : ndarray of int, shape (bodies, 2)
-        First block of the pairs of each body that turns, and the one after the last.
+        First block of the pairs of each body that turns, and end of their range.
     circles : ndarray of int, shape (contacts,)
         The turning body that each contact moves round, -1 for none.
     """
@@ -65,13 +65,13 @@ class Layout:
 
     @property
     def coupled_places(self) -> Array:
-        """Where the coupled modes lie among those of their blocks."""
+        """Places of the coupled modes in their blocks."""
         inside = self.block < self.sizes.coupled
         return np.asarray(self.block[inside] * self.sizes.per_block + self.lane[inside])
 
 
 def layout_of(runs: Sequence[Blocks], per_block: int) -> Layout:
-    """Return where the numbers of runs of the same kind lie, `per_block` of each in a block."""
+    """Return the layout of runs of the same kind, with `per_block` numbers of each in a block."""
     contacts, modes = runs[0].contacts, runs[0].modes
     places = _Places(contacts, modes.coupled, modes.block.shape[1], per_block, runs[0].turning)
     seen = np.any([one.contacts.rows.any(axis=1) for one in runs], axis=0)
@@ -135,8 +135,8 @@ def _runs_of(numbers: Array) -> Iterator[tuple[int, int]]:
 
 
 class _Places:
-    """Blocks filled one after the other: coupled modes, then the others; then pairs that turn, in two blocks in turns;
-    those of a path last, wave by wave."""
+    """Blocks in the order in which they are filled: coupled modes, then others; then pairs that turn, in alternate
+    blocks; modes of a path last, wave by wave."""
 
     def __init__(
         self, contacts: ContactBlocks, coupled: int, count: int, per_block: int, bodies: Sequence[TurningBlocks]
@@ -194,7 +194,7 @@ class _Places:
         return self.blocks
 
     def _take_pairs(self, modes: Array) -> int:
-        """Put pairs of modes, shape (pairs, 2), into blocks in turns and return the block after the last."""
+        """Put pairs of modes, shape (pairs, 2), into alternate blocks and return the block after the last."""
         first, number = self.blocks, np.arange(len(modes))
         for side in (0, 1):
             self.block[modes[:, side]] = first + 2 * (number // self.per_block) + side
@@ -205,7 +205,7 @@ class _Places:
     def _take_group(
         self, modes: Array, multiples: Array, first: int, simple: int, pairs: dict[tuple[int, int], int]
     ) -> None:
-        """Put modes whose second multiple is the same where the first says."""
+        """Put modes with the same second multiple at places given by the first."""
         wave, lane = np.divmod(multiples[:, 0] - first, self.per_block)
         across = int(multiples[0, 1])
         for number in np.unique(wave).tolist():
@@ -217,7 +217,7 @@ class _Places:
 
 
 def _groups(waves: Waves) -> list[Array]:
-    """Return numbers of modes that may share blocks: of the same second multiple, no first one twice."""
+    """Return groups of modes that may share blocks: same second multiple, no first multiple twice."""
     if not waves.multiples[:, 1].any() and np.unique(waves.multiples[:, 0]).size == len(waves.multiples):
         return [np.arange(len(waves.multiples))] if len(waves.multiples) else []
     seen: dict[tuple[int, int], int] = {}
@@ -238,12 +238,12 @@ def first_multiple(along: PathModes) -> int:
 
 
 def along_blocks(along: PathModes, per_block: int) -> int:
-    """Return how many blocks the waves along a path take."""
+    """Return the number of blocks for the waves along a path."""
     return int(-(-(_both(along)[:, 0].max() + 1 - first_multiple(along)) // per_block))
 
 
 def across_blocks(along: PathModes, per_block: int) -> int:
-    """Return how many blocks the waves across it take."""
+    """Return the number of blocks for the waves across it."""
     return int(-(-_both(along)[:, 1].max() // per_block))
 
 
@@ -283,7 +283,7 @@ def pack(where: Layout, rows: Sequence[Array], width: int) -> Array:
 
 
 def side_by_side(rows: Sequence[Array]) -> Array:
-    """Return what belongs to runs, shape (rows, ...) for each, with a column for each run, in groups where needed."""
+    """Return arrays of runs, shape (rows, ...) each, as one array with a column for each run."""
     stacked = np.stack(rows, axis=-1)
     out = aligned(len(stacked), int(np.prod(stacked.shape[1:])))
     out[:] = stacked.reshape(out.shape)
@@ -291,19 +291,19 @@ def side_by_side(rows: Sequence[Array]) -> Array:
 
 
 def columns(array: Array) -> Array:
-    """Return what belongs to runs as the march takes it: that of one run, where it is compiled, without columns."""
+    """Return an array of runs in the form for the march: without columns for one run if compiled."""
     return array if PLAIN or array.shape[1] > 1 else array[:, 0]
 
 
 def aligned(rows: int, columns: int) -> Array:
-    """Return zeros whose first vector lies in a line of the cache."""
+    """Return zeros aligned to the lines of the cache."""
     memory = np.zeros(rows * columns + LANES)
     skipped = (-memory.ctypes.data // 8) % LANES
     return memory[skipped : skipped + rows * columns].reshape(rows, columns)
 
 
 def scale_of(modes: Recurrence) -> Array:
-    """Return the scale of the state of each mode in the march: the root of its mobility, one for coupled modes."""
+    """Return the scale of the state of each mode in the march: square root of its mobility, 1 for coupled modes."""
     scale = np.sqrt(modes.block[at.LOAD])
     scale[: modes.coupled] = 1.0
     return np.asarray(scale)
@@ -314,7 +314,7 @@ def rows_of(blocks: Blocks, state: State, scale: Array) -> Array:
     contacts, modes = blocks.contacts, blocks.modes
     count, size = len(contacts.paths), scale.size
     used = CONTACTS + 2 * count + 2 * len(modes.loads) + len(blocks.probes.rows)
-    # An odd number of vectors: the same row of all blocks would else crowd a part of the cache.
+    # An odd number of vectors, so that the same row of all blocks does not compete for a part of the cache.
     rows = np.zeros((used + 1 - used % 2, size))
     rows[:2] = state.modal / scale + state.remainder
     rows[2:4] = modes.block[[at.B, at.R]]
@@ -341,20 +341,20 @@ def _put_waves(rows: Array, along: PathModes) -> None:
 
 
 def matrices_of(where: Layout, runs: Sequence[Recurrence], width: int) -> Array:
-    """Return the matrices of coupled modes in blocks, shape (blocks, kinds places, width)."""
+    """Return the matrices of coupled modes in blocks, shape (blocks, kinds times places, width)."""
     coupled, per_block = where.sizes.coupled, where.sizes.per_block
     places = coupled * per_block
     out = aligned(coupled, at.MATRICES * places * width).reshape(coupled, at.MATRICES, places, width)
     here = where.coupled_places
     block, lane = np.divmod(here, per_block)
     for run, modes in enumerate(runs):
-        # Rows of a matrix go over blocks and lanes, columns over places.
+        # Rows of a matrix are spread over blocks and lanes, columns over places.
         out[block[:, None], :, here[None, :], (lane + run)[:, None]] = modes.matrices.transpose(1, 2, 0)
     return out.reshape(coupled, at.MATRICES * places, width)
 
 
 def reach_of(where: Layout, runs: Sequence[Recurrence]) -> Array:
-    """Return the first place of a coupled mode that acts on each block of them, and the one after the last."""
+    """Return the first place of a coupled mode that acts on each block, and the end of the range."""
     here, found = where.coupled_places, np.zeros((where.sizes.coupled, 2), dtype=np.int64)
     acts = np.any([(modes.matrices != 0.0).any(axis=0) for modes in runs], axis=0)
     for block in range(where.sizes.coupled):
@@ -365,7 +365,7 @@ def reach_of(where: Layout, runs: Sequence[Recurrence]) -> Array:
 
 
 def compliance_in_blocks(compliances: Sequence[Array], sizes: Sizes, width: int) -> Array:
-    """Return room for the displacements of the contacts of runs, and their compliances, shape (rows, blocks, width)."""
+    """Return the compliances of runs with space for displacements of their contacts, shape (rows, blocks, width)."""
     size = 2 * sizes.contacts
     rows = COMPLIANCE + 2 * size
     out = aligned(rows, sizes.faces * width).reshape(rows, sizes.faces, width)
@@ -377,7 +377,7 @@ def compliance_in_blocks(compliances: Sequence[Array], sizes: Sizes, width: int)
 
 
 def room_to_solve(sizes: Sizes, width: int) -> tuple[Array, Array]:
-    """Return room for the system of the forces of all contacts, shape (rows, blocks, width), and for places in it."""
+    """Return space for the equations of all contact forces, shape (rows, blocks, width), and for places in them."""
     rows = 2 * sizes.contacts + FURTHER_ROWS + sizes.per_block
     out = aligned(rows, sizes.faces * width).reshape(rows, sizes.faces, width)
     if sizes.faces and sizes.per_block > 1:
@@ -386,7 +386,7 @@ def room_to_solve(sizes: Sizes, width: int) -> tuple[Array, Array]:
 
 
 def turns_of(where: Layout, bodies: Sequence[Sequence[TurningBlocks]], width: int) -> Array:
-    """Return how far the pairs of bodies of each run turn, and room for the turns, shape (blocks, rows, width)."""
+    """Return the phases of the pairs of turning bodies of each run with space for turns, (blocks, rows, width)."""
     blocks = where.sizes.blocks if len(where.turning) else 0
     out = aligned(blocks, TURN_ROWS * width).reshape(blocks, TURN_ROWS, width)
     for run, own in enumerate(bodies):
@@ -396,7 +396,7 @@ def turns_of(where: Layout, bodies: Sequence[Sequence[TurningBlocks]], width: in
 
 
 def at_start(where: Layout, rows: Array) -> Array:
-    """Return the rows of the contacts where they start, shape (blocks, rows, width); none where none moves round."""
+    """Return the rows of the contacts at the start, shape (blocks, rows, width); none if none moves round."""
     count = 2 * where.sizes.contacts if where.sizes.circles else 0
     kept = rows[:, CONTACTS : CONTACTS + count]
     out = aligned(len(rows), kept.shape[1] * rows.shape[2]).reshape(kept.shape)
@@ -405,7 +405,7 @@ def at_start(where: Layout, rows: Array) -> Array:
 
 
 def waves_of(where: Layout, width: int) -> Array:
-    """Return room for the waves of all contacts, shape (blocks, rows, width)."""
+    """Return space for the waves of all contacts, shape (blocks, rows, width)."""
     blocks = len(where.numbers)
     out = aligned(blocks, WAVE_ROWS * width).reshape(blocks, WAVE_ROWS, width)
     out[:, NUMBER] = where.numbers[:, : out.shape[2]] if width <= LANES else 0.0

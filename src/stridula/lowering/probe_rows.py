@@ -18,7 +18,7 @@ from .loads import Load
 
 @dataclass(frozen=True)
 class ProbeRows:
-    """What gives one probe: rows on modal motion, and shares of the signals and of the contact forces.
+    """Coefficients of one probe: rows on modal motion, and shares of the signals and of the contact forces.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ def _reaction_rows(
     matrix[2] = coordinates.blended(coordinates.full(beam, reaction.mass[component]))
     direct[: len(loads)] = [-reaction.held[component] * load.root[component] for load in loads]
     for number, point in enumerate(system.contacts):
-        # The contact pushes the tip with the normal force along the normal, less the tangential along the tangent.
+        # The force on the tip is the normal force along the normal minus the tangential force along the tangent.
         signs = np.array([-1.0, 1.0])
         if point.tip.body == beam:
             lever = beam.root_lever(point.tip.position)[component]  # type: ignore[arg-type]

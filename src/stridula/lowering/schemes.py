@@ -1,11 +1,11 @@
-"""Time schemes: each is a choice of three coefficients per mode.
+"""Time schemes, each a choice of three coefficients per mode.
 
-March of increments d and positions q, for a modal force f at step n, of loads and contacts alike::
+Recurrence of increments d and positions q, for a modal force f of loads and contacts at step n::
 
     d[n+1] = b d[n] - r q[n] + l f[n],    q[n+1] = q[n] + d[n+1]
 
-Modes that springs, dashpots or a general damping matrix couple, ``q'' + D q' + K q = f``, march in the same way with
-matrices in the place of b, r and l.
+Modes coupled by springs, dashpots or a general damping matrix, ``q'' + D q' + K q = f``, have the same recurrence with
+matrices in place of b, r and l.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from scipy.special import exprel, hyp1f1
 
 from ..arrays import Array
 
-# Damping times step, up to which a start is followed back in time.
+# Damping times step up to which a start is integrated back in time.
 FOLLOWED_BACK = 2.0
 
 
 @dataclass(frozen=True)
 class Coefficients:
-    """Coefficients of the march of increments, each of shape (modes,), or (modes, modes) for coupled modes.
+    """Coefficients of the recurrence, each of shape (modes,), or (modes, modes) for coupled modes.
 
     Attributes
     ----------
     b, r : ndarray
         Share of the last increment kept, and stiffness of the step [1].
     load : ndarray
-        Increment for a unit force [s²]; ``r = load w²``, so that the rest point under a constant force is exact.
+        Increment for a unit force [s²]; ``r = load w²``, so that the equilibrium under a constant force is exact.
     """
 
     b: Array
@@ -45,12 +45,12 @@ class Scheme(Protocol):
 
     @property
     def name(self) -> str:
-        """Its name in scenarios and records."""
+        """Name in scenarios and records."""
         ...
 
     @property
     def default_fraction(self) -> float:
-        """Share of the limit that the step defaults to."""
+        """Default step as a share of the limit."""
         ...
 
     def coefficients(self, angular: Array, rate: Array, step: float) -> Coefficients:
@@ -58,7 +58,7 @@ class Scheme(Protocol):
         ...
 
     def limit(self, angular: Array, rate: Array) -> float:
-        """Return the step [s] that must not be reached."""
+        """Return the step [s] below which it is stable."""
         ...
 
     def first_increment(
@@ -72,7 +72,7 @@ class Scheme(Protocol):
         ...
 
     def coupled_limit(self, stiffness: Array, damping: Array) -> float:
-        """Return the step [s] that coupled modes must not reach."""
+        """Return the step [s] below which it is stable for coupled modes."""
         ...
 
     def coupled_first_increment(
@@ -84,16 +84,16 @@ class Scheme(Protocol):
 
 @dataclass(frozen=True)
 class CentralDifference:
-    """Central differences, explicit, of second order (Carpenter, Taylor & Katona 1991 with the contact's multipliers).
+    """Explicit central differences of second order (Carpenter, Taylor & Katona 1991, with contact multipliers).
 
-    Stable below ``2 / w_max``; the step defaults to half of that.
+    Stable below ``2 / w_max``; the default step is half of that.
     """
 
     name: ClassVar[str] = "central difference"
     default_fraction: ClassVar[float] = 0.5
 
     def coefficients(self, angular: Array, rate: Array, step: float) -> Coefficients:
-        """Return the coefficients of ``q'' + d q' + w² q = f`` with all derivatives centred."""
+        """Return the coefficients of ``q'' + d q' + w² q = f`` with centred derivatives."""
         divisor = 1.0 + 0.5 * rate * step
         return Coefficients(
             b=(1.0 - 0.5 * rate * step) / divisor,
@@ -113,7 +113,7 @@ class CentralDifference:
         return _centred(self.coefficients(angular, rate, step), step, position, velocity, force)
 
     def coupled_coefficients(self, stiffness: Array, damping: Array, step: float) -> Coefficients:
-        """Return the matrices of the same differences: ``(1 + h D / 2)`` divides."""
+        """Return the matrices of the same differences, divided by ``(1 + h D / 2)``."""
         one, half = np.eye(len(stiffness)), 0.5 * step * damping
         inverse = np.linalg.inv(one + half)
         return Coefficients(b=inverse @ (one - half), r=step**2 * inverse @ stiffness, load=step**2 * inverse)
@@ -133,9 +133,9 @@ class CentralDifference:
 
 @dataclass(frozen=True)
 class ExactModal:
-    """Free motion of every damped mode exact at any step (Issanchou, Acary, Perignon, Touze & Le Carrou 2018).
+    """Exact free motion of every damped mode at any step (Issanchou, Acary, Perignon, Touze & Le Carrou 2018).
 
-    The step stays below half the period of the highest mode; it defaults to a fifth of that.
+    The step must be below half the period of the highest mode; the default is a fifth of that.
     """
 
     name: ClassVar[str] = "exact modal"
@@ -165,9 +165,9 @@ class ExactModal:
     def first_increment(
         self, angular: Array, rate: Array, step: float, position: Array, velocity: Array, force: Array
     ) -> Array:
-        """Return ``q(0) - q(-h)`` of the exact motion, followed back, or of a centred velocity.
+        """Return ``q(0) - q(-h)`` of the exact motion, integrated back, or of a centred velocity.
 
-        Strongly damped motion grows without bound when it is followed back: see `coupled_first_increment`.
+        Strongly damped motion grows without bound when it is integrated back: see `coupled_first_increment`.
         """
         rigid = angular == 0.0
         decay = np.minimum(rate * step, FOLLOWED_BACK)
@@ -189,8 +189,8 @@ class ExactModal:
         """Return the matrices of exact free motion.
 
         With the blocks ``[[E, F], [H, G]]`` of the exponential of the state matrix over a step and ``J``, the integral
-        of ``F``, the rest point moves by ``load = J + F (F - G F^-1 J)``, ``r = load K`` without cancellation, and
-        ``b = F (G F^-1 E - H)`` from two steps of free motion. `load` is symmetric where K and D commute.
+        of ``F``: ``load = J + F (F - G F^-1 J)``, ``r = load K`` without cancellation, and ``b = F (G F^-1 E - H)``
+        from two steps of free motion. `load` is symmetric if K and D commute.
         """
         size = len(stiffness)
         passed = _transition(stiffness, damping, step)
@@ -211,10 +211,10 @@ class ExactModal:
     def coupled_first_increment(
         self, stiffness: Array, damping: Array, step: float, position: Array, velocity: Array, force: Array
     ) -> Array:
-        """Return ``q(0) - q(-h)`` of the exact motion, followed back, or of a centred velocity.
+        """Return ``q(0) - q(-h)`` of the exact motion, integrated back, or of a centred velocity.
 
-        Strongly damped motion grows without bound when it is followed back. Where damping takes more than
-        ``1 - exp(-2)`` of a velocity in a step, that at the start is taken as ``(q(h) - q(-h)) / 2h``.
+        Strongly damped motion grows without bound when it is integrated back. If damping reduces a velocity by more
+        than ``1 - exp(-2)`` in a step, the initial velocity is taken as ``(q(h) - q(-h)) / 2h``.
         """
         if step * float(np.max(np.abs(damping).sum(axis=1), initial=0.0)) > FOLLOWED_BACK:
             k = self.coupled_coefficients(stiffness, damping, step)
@@ -225,18 +225,18 @@ class ExactModal:
 
 
 def _damped(angular: Array, rate: Array) -> Array:
-    """Return the damped angular frequencies [rad/s], imaginary where a mode is overdamped or rigid."""
+    """Return the damped angular frequencies [rad/s], imaginary for overdamped or rigid modes."""
     half = 0.5 * rate
     return np.asarray(np.sqrt((angular - half) * (angular + half) + 0j))
 
 
 def _centred(k: Coefficients, step: float, position: Array, velocity: Array, force: Array) -> Array:
-    """Return the increment before the start whose centred velocity there is `velocity`."""
+    """Return the increment before the start for a centred velocity of `velocity` there."""
     return np.asarray((2.0 * step * velocity + k.r * position - k.load * force) / (1.0 + k.b))
 
 
 def _centred_start(k: Coefficients, step: float, position: Array, velocity: Array, force: Array) -> Array:
-    """Return the increment before the start whose centred velocity there is `velocity`, of coupled modes."""
+    """Return the increment before the start for a centred velocity of `velocity` there, for coupled modes."""
     return np.linalg.solve(np.eye(len(k.b)) + k.b, 2.0 * step * velocity + k.r @ position - k.load @ force)
 
 
@@ -245,7 +245,7 @@ def _angular(stiffness: Array) -> Array:
 
 
 def _transition(stiffness: Array, damping: Array, step: float) -> Array:
-    """Return what takes (position, velocity, constant force) over a step, shape (3 modes, 3 modes)."""
+    """Return the transition matrix of (position, velocity, constant force) over a step, shape (3 modes, 3 modes)."""
     zero, one = np.zeros_like(stiffness), np.eye(len(stiffness))
     # Scaled by the step, all entries are displacements.
     rate = np.block([[zero, one, zero], [-stiffness * step**2, -damping * step, one], [zero, zero, zero]])

@@ -1,4 +1,4 @@
-"""A time scheme on the modes of a system: alone, coupled, and residual shapes, which have no mass."""
+"""A time scheme applied to the modes of a system: uncoupled, coupled, and residual shapes, which have no mass."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from ..arrays import Array
 from .assembly import Assembly
 from .schemes import Coefficients, Scheme
 
-# Recurrence of residual shapes: share of an increment kept, stiffness of a step. They answer without a lag that would
-# damp contacts, as shapes of a mass that vanishes with the step: a quarter of a turn in each, dying out in twenty.
+# Recurrence of residual shapes: share of an increment kept, stiffness of a step. They respond without a lag that would
+# damp contacts, like shapes with a mass that vanishes with the step: a quarter of a period per step, decayed in twenty.
 KEPT, STIFFNESS = 0.8, 1.8
 
 
 @dataclass(frozen=True)
 class Stepping:
-    """A time scheme on the modes of a system.
+    """A time scheme applied to the modes of a system.
 
-    Residual shapes follow forces within a few steps: ``b = 0.9``, ``r = l = 2``, in units of their stiffness.
+    Residual shapes follow forces within a few steps: ``b = 0.8``, ``r = l = 1.8``, in units of their stiffness.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Stepping:
 
     @property
     def limit(self) -> float:
-        """Step [s] that must not be reached."""
+        """Step [s] below which it is stable."""
         arrays, coupled = self.arrays, self._moving[: self.arrays.coupled]
         return min(
             self.scheme.limit(*self._alone),
@@ -42,7 +42,7 @@ class Stepping:
         )
 
     def coefficients(self, step: float) -> Coefficients:
-        """Return the coefficients of modes alone, each of shape (modes,)."""
+        """Return the coefficients of uncoupled modes, each of shape (modes,)."""
         found, moving = self.scheme.coefficients(*self._alone, step), self._moving
         rows = np.zeros((3, moving.size)) + np.array([[KEPT], [STIFFNESS], [STIFFNESS]])
         rows[:, moving] = found.b, found.r, found.load

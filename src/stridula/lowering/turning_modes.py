@@ -1,4 +1,4 @@
-"""Bodies that turn, or round which contacts move, as pairs of modes."""
+"""Pairs of modes of bodies that turn, or round which contacts move."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class TurningModes:
     Attributes
     ----------
     turning : Turning
-        How it turns.
+        Its turning.
     pairs : ndarray of int, shape (pairs, 2)
         Numbers of the modes of each pair.
     span : tuple of int
-        First mode of the body and the one after its last.
+        First mode of the body and end of its range.
     has_circle : bool
         Whether a contact moves round it.
     """
@@ -41,11 +41,11 @@ class TurningModes:
 
     @property
     def others(self) -> Array:
-        """Numbers of the modes of the body that are the same all round."""
+        """Numbers of the modes of the body without waves round the axis."""
         return np.setdiff1d(np.arange(*self.span), self.pairs)
 
     def turned(self, modal: Array, by: Array) -> Array:
-        """Return what turning pairs by angles [rad], shape (pairs,), adds to numbers of the modes, shape (modes,)."""
+        """Return the change of modal values, shape (modes,), when pairs turn by angles [rad], shape (pairs,)."""
         (first, second), added = self.pairs.T, np.zeros_like(modal)
         sine, versine = np.sin(by), 2.0 * np.sin(0.5 * by) ** 2
         added[first] = -versine * modal[first] - sine * modal[second]
@@ -68,7 +68,7 @@ def turning_modes(coordinates: Coordinates) -> tuple[TurningModes, ...]:
 
 
 def _check_round(coordinates: Coordinates, body: Any, turning: Any) -> None:
-    """Raise unless a body is the same all round."""
+    """Raise unless a body is the same all round its axis."""
     name, modes = coordinates.system.body_name(body), coordinates.modes(body)
     if not turning.pairs:
         raise ArgumentError("track", f"have waves round its axis: {name} has none below its cutoff", got="a circle")

@@ -1,4 +1,4 @@
-"""What we keep: the table of recorded variables, probes, and their Dataset."""
+"""Records: the table of recorded variables, probes, and their Dataset."""
 
 from .probes import (
     Acceleration,

@@ -1,4 +1,4 @@
-"""Records in which each point of a surface counts as a contact, whichever way its surface was recorded."""
+"""Records in which each point of a surface counts as a contact, however its surface was recorded."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import xarray as xr
 from ..arrays import Array
 from .variables import CONTACT, FRICTION_STATE, STATUS, STATUS_SHARE
 
-# What is recorded of the points of surfaces at every sample, beside the surfaces themselves.
+# Variables of the points of surfaces recorded at every sample, besides those of the surfaces themselves.
 OF_POINTS = ("normal_force", "tangential_force", STATUS_SHARE.name, "landings")
 POINT = "point_"
-# The whole of a sample interval, in the numbers that shares of points are recorded in.
+# Integer that represents a share of 1 in the records of points.
 WHOLE = 255
-# Share that rounding leaves of none, or takes from all.
+# Shares that differ from 0 or 1 by less are due to rounding.
 ROUND_OFF = 1e-9
 OF_CONTACTS = (*(variable.name for variable in CONTACT), STATUS.name, STATUS_SHARE.name, FRICTION_STATE.name)
 
 
 def counted(share: Array) -> Array:
-    """Return shares as whole numbers up to `WHOLE`: 0 is none of the interval, `WHOLE` is all of it."""
+    """Return shares as integers: 0 for none of the interval, `WHOLE` for all of it."""
     found = np.clip(np.rint(share * WHOLE), 1, WHOLE - 1)
     found[share <= ROUND_OFF] = 0
     found[share >= 1.0 - ROUND_OFF] = WHOLE
@@ -29,17 +29,17 @@ def counted(share: Array) -> Array:
 
 
 def by_point(run: xr.Dataset, names: Sequence[str] = OF_POINTS) -> xr.Dataset:
-    """Return a record with all points of its surfaces as contacts; itself where they are, or were not recorded.
+    """Return a record with all points of its surfaces as contacts; itself if they already are, or were not recorded.
 
-    It has the forces, the shares of the status and the landings of all contacts, or those of these that are named, and
-    all that is not of contacts.
+    It has the forces, status shares and landings of all contacts, or the named ones of these variables, and all
+    variables that do not belong to contacts.
 
     Parameters
     ----------
     run : xarray.Dataset
         A record, or a part of one.
     names : sequence of str, optional
-        Which variables of contacts are taken, all that are recorded of points if left out.
+        Variables of contacts to include; all that are recorded for points if left out.
     """
     if POINT + OF_POINTS[0] not in run.variables:
         return run

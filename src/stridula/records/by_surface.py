@@ -7,19 +7,19 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-# Variables that add up over the points of a surface; of all others there is a mean.
+# Variables that are summed over the points of a surface; all others are averaged.
 SUMMED = ("normal_force", "tangential_force", "jammed_steps", "landings")
 
 
 def groups(contacts: Sequence[str], surfaces: Sequence[str]) -> list[list[int]]:
-    """Return the numbers of the contacts of each surface, and of each contact that is of none.
+    """Return the numbers of the contacts of each surface, and of each contact without one.
 
     Parameters
     ----------
     contacts : sequence of str
         Names of the contacts.
     surfaces : sequence of str
-        Name of the surface that each is a point of, empty for none; or nothing, where there are no surfaces.
+        Name of the surface of each contact, empty for none; or an empty sequence without surfaces.
     """
     found: dict[str | int, list[int]] = {}
     for number in range(len(contacts)):
@@ -28,10 +28,10 @@ def groups(contacts: Sequence[str], surfaces: Sequence[str]) -> list[list[int]]:
 
 
 def by_surface(run: xr.Dataset) -> xr.Dataset:
-    """Return a record with one contact for each surface in the place of its points; itself where there is none.
+    """Return a record with one contact for each surface in place of its points; itself without surfaces.
 
-    Forces and counts are sums over the points, along each point's own directions; all else are means over them, so that
-    the shares of a status are those of the points.
+    Forces and counts are sums over the points, along each point's own directions; all other variables are means, so
+    that the share of a status is the mean over the points.
 
     Parameters
     ----------

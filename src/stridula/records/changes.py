@@ -1,4 +1,4 @@
-"""Scenarios that were changed while they were played, as a record keeps them."""
+"""Scenarios that were changed during a live run, as kept in its record."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from ..checks import ArgumentError
 
 
 def played(run: xr.Dataset) -> list[tuple[float, str]]:
-    """Return the scenarios of a record that was changed on the way, each with the time [s] from which it was played.
+    """Return the scenarios of a record that was changed during the run, each with the time [s] from which it applied.
 
-    Only those that were played within the times of the record are returned, none for a record that was never changed.
+    Only those within the times of the record are returned; none for a record that was never changed.
 
     Raises
     ------
@@ -32,7 +32,7 @@ def played(run: xr.Dataset) -> list[tuple[float, str]]:
     times = run["time"].values
     if not times.size:
         return []
-    # Times are at the ends of sample intervals: what is changed at a sample is heard from the next one on.
+    # Times are at the ends of sample intervals: a change at a sample has an effect from the next one on.
     begins = [*(time for time, _ in every[1:]), float("inf")]
     return [change for change, end in zip(every, begins, strict=True) if end >= times[0] and change[0] < times[-1]]
 
@@ -66,14 +66,14 @@ def _check_same(run: xr.Dataset, what: str, part: Callable[[dict[str, Any]], Any
 
 
 def _tracks(tables: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
-    """Return what a scenario says of its tracks: a table of its own, or the bodies that contacts slide along."""
+    """Return the tracks of a scenario: its own table, or the bodies that contacts slide along."""
     under = [one.get("track") for one in tables.get("contacts", [])]
     named = {one["body"] for one in under if isinstance(one, dict) and "body" in one}
     return tables.get("track"), {name: tables.get("bodies", {}).get(name) for name in sorted(named)}
 
 
 def _but_friction(tables: dict[str, Any]) -> dict[str, Any]:
-    """Return what of a scenario says how forces move its bodies."""
+    """Return the part of a scenario that determines the response of its bodies to forces."""
     told = {key: value for key, value in tables.items() if key not in ("friction", "title", "description")}
     return {key: _without_friction(value) for key, value in told.items()}
 

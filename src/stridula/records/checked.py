@@ -1,4 +1,4 @@
-"""Records and signals as arguments: what a function needs of one is there, and is as `simulate` leaves it."""
+"""Checks of records and signals as arguments: required variables are there, in the form of `simulate`."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from ..checks import ArgumentError, brief, instance, listed
 from .variables import STATUS_SHARE, STATUS_WORDS
 
 NUMBERS = "fiu"
-# No time of a record comes near [s].
+# Upper bound of times of records [s].
 LATEST = 1e9
 
 
 def record(name: str, value: Any, *needed: str, least: int = 0) -> xr.Dataset:
-    """Return a record of `simulate` if it is one.
+    """Return a value if it is a record of `simulate`.
 
     Parameters
     ----------
     name : str
-        What the argument is called.
+        Name of the argument.
     value : xarray.Dataset
         The record.
     *needed : str
-        Variables that it must have, numbers over ``time``.
+        Required variables, numbers over ``time``.
     least : int, optional
-        Fewest samples.
+        Least number of samples.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def record(name: str, value: Any, *needed: str, least: int = 0) -> xr.Dataset:
 
 
 def signal(name: str, value: Any) -> xr.DataArray:
-    """Return a signal over time if it is one: real numbers, whatever other dimensions it has.
+    """Return a value if it is a signal over time: real numbers, with any other dimensions.
 
     Raises
     ------

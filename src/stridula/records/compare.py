@@ -1,4 +1,4 @@
-"""Two records side by side: how far they are apart, since when, and what they differ in."""
+"""Comparison of two records: size and beginning of their differences."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from .checked import check_times
 from .export import Column, columns
 from .variables import ENERGY, SOLVE, STATUS, described
 
-# Told by the shares of the states, and what the solver did to get there.
+# The dominant status, which follows from the shares, and the effort of the solver are not compared.
 LEFT_OUT = (STATUS.name, *(variable.name for variable in SOLVE))
-# Variables that hover about zero where all is well are held against their kind: the ledger's residual against the
-# largest energy, gap and height, round-off on a rigid floor, against the largest length that the record has.
+# Variables that are normally round-off are related to others of their kind: the ledger's residual to the largest
+# energy; gap and height, round-off on a rigid floor, to the largest length in the record.
 ENERGIES = tuple(variable.name for variable in ENERGY)
 DISTANCES = ("gap", "contact_height")
 LENGTHS = (*DISTANCES, "displacement")
@@ -27,31 +27,31 @@ NOT_THERE = "not there"
 
 
 def compare(a: xr.Dataset, b: xr.Dataset, tolerance: float = 1e-6) -> xr.Dataset:
-    """Compare two records sample by sample over the time that both have.
+    """Compare two records sample by sample over their common time.
 
     Parameters
     ----------
     a, b : xarray.Dataset
         Records of `simulate` with the same sample interval.
     tolerance : float, optional
-        Difference, relative to the largest value of `a`, from which a variable counts as different [1].
+        Difference, relative to the largest value of `a`, above which a variable counts as different [1].
 
     Returns
     -------
     xarray.Dataset
-        Over ``variable`` (each contact, probe and status on its own): ``difference``, the largest one, in ``units``;
-        ``relative_difference`` to the largest value of `a`, energies to the largest energy, ``gap`` and
-        ``contact_height`` to the largest length of `a`, of all its contacts: heights, gaps, displacement probes and the
-        range of ``contact_position``, whichever is largest; ``first_time`` [s] at which it is above the tolerance, NaN
-        if never. The dominant status and the sweeps of the solver are left out. Over ``variable`` and ``record``
-        (a, b): ``mean`` and ``rms``; the means of ``status_share`` are the shares of the states. Over ``attribute`` and
-        ``record``: ``value``, of attributes and of keys of the scenario that differ. Attributes: ``within_tolerance``
-        (1 or 0), ``samples``, how many were compared, ``samples_a`` and ``samples_b``.
+        Over ``variable`` (each contact, probe and status separately): ``difference``, the largest one, in ``units``;
+        ``relative_difference`` to the largest value of `a`; for energies to the largest energy, for ``gap`` and
+        ``contact_height`` to the largest length of `a` over all its contacts: heights, gaps, displacement probes and
+        the range of ``contact_position``; ``first_time`` [s] at which it exceeds the tolerance, NaN if never. The
+        dominant status and the sweeps of the solver are left out. Over ``variable`` and ``record`` (a, b): ``mean`` and
+        ``rms``; the means of ``status_share`` are the shares of the states. Over ``attribute`` and ``record``:
+        ``value``, for attributes and keys of the scenario that differ. Attributes: ``within_tolerance`` (1 or 0),
+        ``samples``, the number of compared samples, ``samples_a`` and ``samples_b``.
 
     Raises
     ------
     ValueError
-        If they are no records, have no samples, their sample intervals differ, or they have no time or no variable in
+        If they are not records, have no samples, their sample intervals differ, or they have no time or no variable in
         common.
     """
     non_negative("tolerance", tolerance)
@@ -87,7 +87,7 @@ def compare(a: xr.Dataset, b: xr.Dataset, tolerance: float = 1e-6) -> xr.Dataset
 
 
 def _common(a: xr.Dataset, b: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
-    """Return the two records over the time that both have."""
+    """Return the two records over their common time."""
     numbers: list[Array] = []
     intervals = []
     for name, record in (("a", a), ("b", b)):
@@ -113,7 +113,7 @@ def _common(a: xr.Dataset, b: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:
 def _difference(
     ours: Column, theirs: Column, scale: float, time: Array, tolerance: float
 ) -> tuple[float, float, float]:
-    """Return the largest difference, the same relative to the scale, and when it first exceeds the tolerance."""
+    """Return the largest difference, the same relative to the scale, and the time it first exceeds the tolerance."""
     first, second = (np.asarray(column.values, dtype=float) for column in (ours, theirs))
     same = (first == second) | (np.isnan(first) & np.isnan(second))
     apart = np.where(same, 0.0, np.abs(np.where(same, 0.0, second) - np.where(same, 0.0, first)))
@@ -185,7 +185,7 @@ def _scenario(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _keys(table: Any, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Go through the values of nested tables and lists of tables, by their full keys."""
+    """Iterate over the values of nested tables and lists of tables, by their full keys."""
     if isinstance(table, dict):
         for name, value in table.items():
             yield from _keys(value, f"{path}.{name}" if path else name)

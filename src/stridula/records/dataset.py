@@ -1,4 +1,4 @@
-"""Arrays of a march become a labelled xarray.Dataset."""
+"""Conversion of the arrays of a march to a labelled xarray.Dataset."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from .variables import (
 
 # Variables over time that are the same for all systems.
 OVER_TIME = {variable.name: variable for variable in (*CONTACT, *ENERGY, STATUS_SHARE, *SOLVE)}
-# All variables over time but the probes.
+# All variables over time except the probes.
 RECORDED = (*OVER_TIME, STATUS.name, FRICTION_STATE.name)
 
 
@@ -49,11 +49,10 @@ def to_dataset(
 ) -> xr.Dataset:
     """Label the arrays of a march with names, units and meanings.
 
-    Arrays of the contacts have the shapes (contacts, samples), and (samples, contacts, 3) for the status. `motion`
-    is what is imposed on each contact a step before the end and at the end, and by how much it has been moved beyond
-    that, shape (3, contacts, 3). `raw` are the last values of the probes at every step, which the low-pass still needs,
-    shape (steps, probes). `shown` says what rows of contacts are called that stand for others, by the number of one of
-    these.
+    Arrays of the contacts have the shapes (contacts, samples), and (samples, contacts, 3) for the status. `motion` is
+    the motion imposed on each contact a step before the end and at the end, and its displacement beyond these, shape
+    (3, contacts, 3). `raw` are the last values of the probes at every step, which the low-pass still needs, shape
+    (steps, probes). `shown` has the names of rows that represent several contacts, by the number of one of these.
     """
     words = described("s", "time at the end of the sample interval")
     coordinates: dict[str, Any] = {
@@ -78,14 +77,14 @@ def to_dataset(
             data[kind] = (("time", dimension), probe_values[:, chosen], attributes_of(variable))
     for name, dimensions, values, meaning in (
         ("state_modal", ("state_kind", "mode"), state.modal, "modal positions and increments at the end"),
-        ("state_remainder", ("state_kind", "mode"), state.remainder, "what they lack in the units of the march"),
+        ("state_remainder", ("state_kind", "mode"), state.remainder, "rounding remainders of state_modal"),
         ("state_carried", ("state_contact", "state_scalar"), state.carried, "scalars of each contact at the end"),
         ("state_energies", "state_energy", state.energies, "energies carried by the march at the end"),
         (
             "state_motion",
             ("state_instant", "state_contact", "state_direction"),
             motion,
-            "motions imposed on each contact at the last two steps, and what it has been moved beyond them",
+            "motions imposed on each contact at the last two steps, and its displacement beyond them",
         ),
         ("state_raw", ("state_step", "state_probe"), raw, "last values of the probes at every step"),
     ):
@@ -101,13 +100,13 @@ def over_time(
     wanted: Collection[str] = RECORDED,
     shown: Collection[int] | None = None,
 ) -> dict[str, tuple[tuple[str, ...], Array]]:
-    """Return what is recorded of contacts and energies, with its dimensions; arguments as those of `to_dataset`."""
+    """Return the variables of contacts and energies with their dimensions; arguments as in `to_dataset`."""
     along = ("time", "contact")
     found: dict[str, tuple[tuple[str, ...], Array]] = {}
     for variable in CONTACT:
         if variable.name in wanted:
             values = contact_columns[variable.name]
-            # In space a component along each tangent.
+            # In space there is a component along each tangent.
             found[variable.name] = ((*along, "tangent")[: values.ndim], np.swapaxes(values, 0, 1))
     found |= {variable.name: (("time",), energies[variable.name]) for variable in ENERGY if variable.name in wanted}
     if STATUS.name in wanted:
@@ -124,7 +123,7 @@ def over_time(
         kept = np.swapaxes(contact_columns[FRICTION_STATE.name], 0, 1).copy()
         kept[:, np.array(units) == ""] = np.nan
         if kept.ndim > 2:
-            # Another law than one of bristles has one state in space, too.
+            # Laws other than those of bristles also have a single state in space.
             kept[:, [not contact.has_state_vector for contact in contacts], 1] = np.nan
         found[FRICTION_STATE.name] = ((*along, "tangent")[: kept.ndim], kept)
     if len(system.contacts) > 1:
@@ -136,7 +135,7 @@ def over_time(
 
 
 def _of_the_one_contact(dimensions: tuple[str, ...], values: Array) -> tuple[tuple[str, ...], Array]:
-    """Return a variable without the dimension of the contacts, of which there is one."""
+    """Return a variable without the dimension of the contacts, for a single contact."""
     if "contact" not in dimensions:
         return dimensions, values
     return (dimensions[0], *dimensions[2:]), values[:, 0]

@@ -20,7 +20,7 @@ from ..disk import check_writable, named, write
 from .checked import check_real, record
 
 SUFFIXES = (".csv", ".mat")
-# What MATLAB's version 5 files can hold of one variable, and in one name.
+# Limits of MATLAB's version 5 files: bytes of a variable, characters of a name.
 LARGEST_VARIABLE = 2**31 - 1024
 LONGEST_NAME = 63
 KEYWORDS = (
@@ -49,11 +49,11 @@ class Column:
     variable : str
         Name of the recorded variable.
     labels : tuple of str
-        Which contact, probe and status it is of, where there are several.
+        Names of its contact, probe and status, where there are several.
     units : str
         Unit.
     values : ndarray, shape (time,)
-        Its samples.
+        Samples.
     """
 
     variable: str
@@ -90,9 +90,9 @@ def _names(run: xr.Dataset, dimension: Hashable) -> bool:
 
 
 def export(run: xr.Dataset, path: str | Path) -> None:
-    """Write a record as a table for other programs; the name's end says which.
+    """Write a record as a table for other programs; the ending of the name selects the format.
 
-    - ``.csv``: lines of attributes and of units that start with ``#``, a line of names, and one row a sample with all
+    - ``.csv``: lines of attributes and units that start with ``#``, a line of names, and one row per sample with all
       digits. ``pandas.read_csv(path, comment="#")`` reads it.
     - ``.mat``: MATLAB, version 5. Every variable as an array over time, and the structs ``units``, ``long_name``,
       ``labels`` (of contacts, probes and states) and ``attributes``.
@@ -102,14 +102,14 @@ def export(run: xr.Dataset, path: str | Path) -> None:
     run : xarray.Dataset
         A record of `simulate`.
     path : str or Path
-        The file; one that is there is replaced once the new one is complete.
+        The file; an existing one is replaced once the new one is complete.
 
     Raises
     ------
     ValueError
-        If `run` is not a record, the name ends otherwise, or a variable is too large for the format.
+        If `run` is not a record, the name has another ending, or a variable is too large for the format.
     OSError
-        If the file cannot be written; nothing half-written is left under its name.
+        If the file cannot be written; no partial file is left.
     """
     instance("path", path, (str, Path))
     kind = Path(path).suffix.lower()
@@ -130,7 +130,7 @@ def _csv(run: xr.Dataset, table: list[Column]) -> bytes:
     text.write(f"# units: {','.join(units)}\n")
     lines_of = csv.writer(text, lineterminator="\n")
     lines_of.writerow(["time", *(" ".join(column.name.replace("#", " ").split()) for column in table)])
-    # Python's numbers are written with as many digits as it takes to read them back equal.
+    # Python writes floats with as many digits as are needed to read them back equal.
     series = [run["time"].values.tolist(), *(column.values.tolist() for column in table)]
     lines_of.writerows(zip(*series, strict=True))
     return text.getvalue().encode("utf-8")
@@ -165,7 +165,7 @@ def _labels(run: xr.Dataset, dimensions: list[str]) -> dict[str, Any]:
 
 
 def _matlab_names(names: list[str], taken: tuple[str, ...] = ()) -> dict[str, str]:
-    """Return for each name one that MATLAB takes: letters, digits and underscores, a letter first, each once."""
+    """Return a valid MATLAB name for each name: letters, digits and underscores, a letter first, all different."""
     given: dict[str, str] = {}
     for name in names:
         plain = re.sub(r"\W", "_", name, flags=re.ASCII)

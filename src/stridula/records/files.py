@@ -27,19 +27,19 @@ def save(run: xr.Dataset, path: str | Path) -> None:
     run : xarray.Dataset
         A record of `simulate`.
     path : str or Path
-        The file; one that is there is replaced once the new one is complete.
+        The file; an existing one is replaced once the new one is complete.
 
     Raises
     ------
     OSError
-        If the file cannot be written; nothing half-written is left under its name.
+        If the file cannot be written; no partial file is left.
     """
     instance("run", run, xr.Dataset)
     check_writable(path)
     plain = run.drop_encoding()
     numbers = [name for name, values in plain.variables.items() if values.dtype.kind in "fi" and values.size]
     encoding = {name: {"zlib": True, "shuffle": True, "complevel": 1} for name in numbers if plain[name].ndim}
-    # Built in memory: on a full disk the HDF5 library brings the process down instead of raising.
+    # Built in memory: on a full disk the HDF5 library crashes the process instead of raising.
     with _locks_of_this_process():
         try:
             content = plain.to_netcdf(engine="h5netcdf", encoding=encoding)
@@ -56,7 +56,7 @@ def load(path: str | Path) -> xr.Dataset:
     Parameters
     ----------
     path : str or Path
-        A file that `save` wrote.
+        A file written by `save`.
 
     Returns
     -------
@@ -78,12 +78,12 @@ def load(path: str | Path) -> xr.Dataset:
 
 
 def scenario_of(path: str | Path) -> tuple[str, str]:
-    """Return the title and the scenario, as TOML, that a record file carries.
+    """Return the title and the scenario, as TOML, in a record file.
 
     Raises
     ------
     ValueError
-        If it is no record, or says what a function made, which no file holds.
+        If it is not a record, or comes from a function, which has no scenario.
     """
     origin = origin_of(path)
     if "scenario" not in origin:
@@ -93,12 +93,12 @@ def scenario_of(path: str | Path) -> tuple[str, str]:
 
 
 def origin_of(path: str | Path) -> dict[str, str]:
-    """Return what a record file says of where it comes from: ``title``, and ``scenario`` or ``function``.
+    """Return the origin of a record file: ``title``, and ``scenario`` or ``function``.
 
     Raises
     ------
     ValueError
-        If it is no record.
+        If it is not a record.
     """
     found: dict[str, Any] = {}
     if is_record(path):
@@ -111,13 +111,13 @@ def origin_of(path: str | Path) -> dict[str, str]:
 
 
 def is_record(path: str | Path) -> bool:
-    """Return whether a file is of the kind that records are kept in."""
+    """Return whether a file is an HDF5 file, as records are."""
     return read(path, len(MAGIC)) == MAGIC
 
 
 @contextmanager
 def _locks_of_this_process() -> Iterator[None]:
-    """Keep xarray from asking the scheduler of a dask client for a lock on what is in the memory of this process."""
+    """Keep xarray from asking the scheduler of a dask client for a lock on data in the memory of this process."""
     dask = sys.modules.get("dask")
     if dask is None:
         yield

@@ -1,4 +1,4 @@
-"""Arrays of numbers as text, bit by bit: what a scenario holds instead of a long list."""
+"""Lossless text form of arrays, used in scenarios in place of long lists."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from ..checks import ArgumentError
 
 KINDS = {"float64": "<f8", "float32": "<f4"}
 LARGEST = 4000 * 4000
-# Up to this many numbers a list is easier to read.
+# Up to this many numbers a list is more readable.
 LONGEST_LIST = 64
-# What `packed` writes: no character of it needs to be escaped.
+# Pattern of the text of `packed`, no character of which needs escaping.
 PACKED = re.compile(rf"(?:{'|'.join(KINDS)}) [\dx]* [\w+/=]*", re.ASCII)
 
 
 def packed(array: Array) -> str:
-    """Return an array as text: ``float32`` if it is of that kind, else ``float64``; shape, bytes in base 64."""
+    """Return an array as text: ``float32`` if it has that type, else ``float64``; shape, bytes in base 64."""
     kind = "float32" if array.dtype == np.float32 else "float64"
     content = zlib.compress(np.ascontiguousarray(array, dtype=KINDS[kind]).tobytes())
     return f"{kind} {'x'.join(map(str, array.shape))} {base64.b64encode(content).decode('ascii')}"
 
 
 def is_packed(text: str) -> bool:
-    """Return whether a text is meant as a packed array."""
+    """Return whether a text begins like a packed array."""
     return text.partition(" ")[0] in KINDS
 
 
 def unpacked(text: str) -> Array:
-    """Return the array that `packed` wrote.
+    """Return the array from the text of `packed`.
 
     Raises
     ------

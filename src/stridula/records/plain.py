@@ -1,4 +1,4 @@
-"""A record as plain arrays: labels take longer than a short run."""
+"""Records as plain arrays: labelling takes longer than a short run."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from ..arrays import Array
 from ..checks import brief, listed, suggestion
 from .variables import ALONG_TANGENTS
 
-# Names of the dimensions of variables over time, by how many they have beside the contact.
+# Names of the dimensions of variables over time, by their number besides the contact.
 AFTER_TIME = ((), ("contact_status",))
 
 
 @dataclass(frozen=True)
 class PlainRecord:
-    """What `simulate` records, as plain arrays: ``run["normal_force"]`` is an array over time.
+    """A record of `simulate` as plain arrays: ``run["normal_force"]`` is an array over time.
 
-    Probes and the state at the end are left out.
+    Probes and the final state are left out.
 
     Parameters
     ----------
     time : ndarray, shape (samples,)
         Time at the end of each sample interval [s].
     variables : mapping
-        Arrays by the names of records, over time, and over contacts where there are several.
+        Arrays by the names of the variables of records, over time, and over contacts if there are several.
     contacts : sequence of str
         Names of the contacts.
     attrs : dict
         Attributes of the record.
     surfaces : sequence of str, optional
-        Name of the surface that each contact is a point of, empty for none; nothing where there are no surfaces.
+        Name of the surface of each contact, empty for none; an empty sequence without surfaces.
     """
 
     time: Array
@@ -53,20 +53,20 @@ class PlainRecord:
         return self.variables[name]
 
     def __iter__(self) -> Iterator[str]:
-        """Go through the names of the variables."""
+        """Iterate over the names of the variables."""
         yield from ("time", *self.variables)
 
     def __contains__(self, name: object) -> bool:
-        """Return whether there is a variable of a name."""
+        """Return whether there is a variable of this name."""
         return name == "time" or name in self.variables
 
     def by_contact(self, name: str) -> Array:
-        """Return a variable of the contacts over time and contacts, also where there is one contact."""
+        """Return a variable of the contacts over time and contacts, also for a single contact."""
         values = self[name]
         return values if len(self.contacts) > 1 else values[:, None]
 
     def labelled(self, *names: str) -> xr.Dataset:
-        """Return some variables with the names of their dimensions, as functions of a record take them."""
+        """Return some variables as a Dataset with named dimensions, for functions of a record."""
         several = len(self.contacts) > 1
         data = {}
         for name in names:

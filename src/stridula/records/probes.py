@@ -1,4 +1,4 @@
-"""Probes: declarations of what else to record."""
+"""Probes: declarations of further quantities to record."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DIRECTION = Way(("x", "y", "z", "axial", "transverse"))
 @dataclass(frozen=True)
 class _Motion:
     quantity: ClassVar[str]
-    # How often the displacement is derived in time.
+    # Order of the time derivative of the displacement.
     derivative: ClassVar[int]
     of_slider: ClassVar[bool] = False
     point: BodyPoint
@@ -33,7 +33,7 @@ class _Motion:
 
     @property
     def body(self) -> Body:
-        """The body that it is on."""
+        """Body of the point."""
         return self.point.body
 
     @property
@@ -43,17 +43,17 @@ class _Motion:
 
     @property
     def place(self) -> str:
-        """Where it is on its body and along what, in words."""
+        """Place on its body and direction, in words."""
         is_word = isinstance(self.direction, str)
         way = self.direction if is_word else f"({', '.join(f'{one:.6g}' for one in self.direction)})"
         return f"{_words(self.point)} {way}"
 
     @property
     def keys(self) -> dict[str, Any]:
-        """What a scenario says of it, beside quantity and body."""
+        """Keys of it in a scenario, besides quantity and body."""
         place = self.point.position if self.point.point_name is None else self.point.point_name
         if hasattr(self.point.body, "mesh"):
-            # Kept by its modes.
+            # Such bodies are kept as modes.
             place = self.point.label
         return {"point": place, "direction": self.direction}
 
@@ -64,7 +64,7 @@ class Displacement(_Motion):
     Parameters
     ----------
     point : BodyPoint
-        Where.
+        Point of the body.
     direction : {"y", "x", "z", "axial", "transverse"} or sequence of float, optional
         World direction, along or across the body's own axis, or world components (x, y, z), of any length.
     """
@@ -79,7 +79,7 @@ class Velocity(_Motion):
     Parameters
     ----------
     point : BodyPoint
-        Where.
+        Point of the body.
     direction : {"y", "x", "z", "axial", "transverse"} or sequence of float, optional
         World direction, along or across the body's own axis, or world components (x, y, z), of any length.
     """
@@ -94,7 +94,7 @@ class Acceleration(_Motion):
     Parameters
     ----------
     point : BodyPoint
-        Where.
+        Point of the body.
     direction : {"y", "x", "z", "axial", "transverse"} or sequence of float, optional
         World direction, along or across the body's own axis, or world components (x, y, z), of any length.
     """
@@ -107,15 +107,15 @@ class Acceleration(_Motion):
 class Reaction:
     """Force that the support of a slider's root exerts on it, along world x or y [N], or its moment [N m].
 
-    Zero in a direction in which the root is free. The moment counts positive when it raises the slope of the
-    transverse displacement along the axis from tip to root.
+    Zero in a direction in which the root is free. The moment is positive when it increases the slope of the transverse
+    displacement along the axis from tip to root.
 
     Parameters
     ----------
     body : FiniteElementBeam
         The slider.
     component : {"x", "y", "moment"}, optional
-        Which one.
+        Component of the force, or its moment.
     """
 
     quantity: ClassVar[str] = "reaction"
@@ -129,12 +129,12 @@ class Reaction:
 
     @property
     def place(self) -> str:
-        """Where it is on its body and along what, in words."""
+        """Place on its body and direction, in words."""
         return f"root {self.component}"
 
     @property
     def keys(self) -> dict[str, Any]:
-        """What a scenario says of it, beside the quantity."""
+        """Keys of it in a scenario, besides the quantity."""
         return {"direction": self.component}
 
 
@@ -143,18 +143,17 @@ class SupportForce:
     """Force along y that a modal beam exerts on the support of one of its ends [N]: the bridge force of a string.
 
     With the tension T it is ``T w' - EI w'''`` at the left end and ``EI w''' - T w'`` at the right end, positive
-    towards +y: a beam that is pressed down pushes its supports down. It is the sum over the modes kept, without a share
-    of damping, which is internal. The sum converges slowly: under a constant force at a the n modes kept bring all of
-    it to the support but for a share of at most ``2 / (pi (n + 1) sin(pi a / 2L))`` of the force, a counted from that
-    support, and a contact that lands or breaks away rings through the highest mode. Keep modes well beyond what is
-    listened to.
+    towards +y: a beam that is pressed down pushes its supports down. It is the sum over the modes kept, without
+    damping, which is internal. The sum converges slowly: for a constant force at the distance a from the support, the n
+    modes kept miss a share of at most ``2 / (pi (n + 1) sin(pi a / 2L))`` of the force, and landing and breakaway of a
+    contact excite the highest mode. Keep modes well beyond the frequencies of interest.
 
     Parameters
     ----------
     body : ModalBeam
         The beam or string.
     end : {"left", "right"}, optional
-        Which of its ends.
+        End of the beam.
     """
 
     quantity: ClassVar[str] = "support_force"
@@ -168,12 +167,12 @@ class SupportForce:
 
     @property
     def place(self) -> str:
-        """Where it is on its body, in words."""
+        """Place on its body, in words."""
         return f"{self.end} end"
 
     @property
     def keys(self) -> dict[str, Any]:
-        """What a scenario says of it, beside quantity and body."""
+        """Keys of it in a scenario, besides quantity and body."""
         return {"end": self.end}
 
 
@@ -192,17 +191,17 @@ class _OfMode:
 
     @property
     def place(self) -> str:
-        """Which mode of its body, in words."""
+        """Mode of its body, in words."""
         return f"mode {self.mode}"
 
     @property
     def keys(self) -> dict[str, Any]:
-        """What a scenario says of it, beside quantity and body."""
+        """Keys of it in a scenario, besides quantity and body."""
         return {"mode": self.mode}
 
 
 class ModalDisplacement(_OfMode):
-    """Displacement of a mode of a body [kg^(1/2) m]: times the shape of the mode its share in all displacements.
+    """Displacement of a mode of a body [kg^(1/2) m]; times the mode shape it is its share in all displacements.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A system and its simulation written back in the words of a scenario file."""
+"""Conversion of a system and its simulation to the text of a scenario file."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ from ..system import System
 from .packed import LONGEST_LIST, PACKED, packed
 from .probes import Probe
 
-# Bytes of the surface of a body that a record keeps for films, at most.
+# Most bytes of the surface of a body that a record keeps for films.
 LARGEST_DRAWN = 20_000_000
-# What stands for a packed array while the rest is written, of a character that no text of a scenario has.
+# Placeholder of a packed array while the rest is written; it has a character that no text of a scenario has.
 _ASIDE = "\ue000packed array "
 _PUT_ASIDE = re.compile(f'"{_ASIDE}(\\d+)"')
-# A list as tomli_w writes it, one number on a line; texts are on one line each and never match.
+# A list written by tomli_w, one number on a line; texts are on one line each and never match.
 _LIST_OF_NUMBERS = re.compile(r"\[\n((?:\s*[-+.\dinfaeE]+,\n)+)\s*\]")
 
 
 def scenario_toml(system: System, probes: Sequence[Probe], simulation: dict[str, Any]) -> str:
-    """Return the scenario as TOML, in the words that `stridula run` reads.
+    """Return the scenario as TOML, as read by `stridula run`.
 
-    A beam on a beam is a slider, a track and a contact; any other system lists its bodies, contacts and connections.
-    Matrices are lists of rows while they are small, text that holds every bit of them beyond.
+    A beam on a beam is written as slider, track and contact; any other system lists its bodies, contacts and
+    connections. Small matrices are lists of rows, large ones lossless text.
     """
     probed = [probe.point for probe in probes if hasattr(probe, "point")]
     tables = _pair(system) if is_pair(system) else _general(system, probed)
@@ -48,14 +48,14 @@ def scenario_toml(system: System, probes: Sequence[Probe], simulation: dict[str,
 
 def toml(tables: Mapping[str, Any]) -> str:
     """Return tables as TOML, lists of numbers on one line."""
-    # Packed arrays need no character escaped, which tomli_w looks for one by one.
+    # Packed arrays need no escaping, which tomli_w would check character by character.
     arrays: list[str] = []
     text = _LIST_OF_NUMBERS.sub(_on_one_line, tomli_w.dumps(_without_arrays(tables, arrays)))
     return _PUT_ASIDE.sub(lambda found: f'"{arrays[int(found[1])]}"', text)
 
 
 def _without_arrays(value: Any, arrays: list[str]) -> Any:
-    """Return tables with the number of each packed array in its place."""
+    """Return tables with placeholders for the packed arrays, which are appended to `arrays`."""
     if isinstance(value, Mapping):
         return {key: _without_arrays(one, arrays) for key, one in value.items()}
     if isinstance(value, (list, tuple)):
@@ -71,7 +71,7 @@ def _on_one_line(found: re.Match[str]) -> str:
 
 
 def is_pair(system: System) -> bool:
-    """Return whether a system is one finite-element beam that slides on one modal beam, and nothing else."""
+    """Return whether a system is just a finite-element beam that slides on a modal beam."""
     return (
         len(system.contacts) == 1
         and not system.connections
@@ -127,7 +127,7 @@ def _general(system: System, probed: Sequence[BodyPoint]) -> dict[str, Any]:
 
 
 def _unmoved(connection: Connection) -> tuple[str, ...]:
-    """Return the fields of a connection that say nothing, as it is not moved; its history is written by itself."""
+    """Return the fields of a connection to leave out: its history, written separately, and others without effect."""
     return ("history",) if connection.moved_by else ("history", "offset", "velocity")
 
 
@@ -156,13 +156,13 @@ def _history(history: Any) -> dict[str, Any]:
 
 
 def _plain(record: Any, *skipped: str) -> dict[str, Any]:
-    """Return the plain fields of a dataclass that hold a value, an empty name left out."""
+    """Return the plain fields of a dataclass that hold a value, without an empty name."""
     pairs = ((f.name, getattr(record, f.name)) for f in fields(record) if f.name not in skipped)
     return {name: _value(value) for name, value in pairs if value is not None and (name, value) != ("name", "")}
 
 
 def _value(value: Any) -> Any:
-    """Return a value that TOML can write: NumPy's numbers as Python's, arrays as lists or packed."""
+    """Return a value for TOML: NumPy's numbers as Python's, arrays as lists or packed."""
     if isinstance(value, np.ndarray):
         return value.tolist() if value.size <= LONGEST_LIST else packed(value)
     if isinstance(value, (tuple, list)):
@@ -205,7 +205,7 @@ def body_table(body: Any) -> dict[str, Any]:
 
 
 def mesh_tables(body: Any) -> dict[str, Any]:
-    """Return the profile or the mesh of a body cell by cell, or element by element, as the table of the body has it."""
+    """Return the profile or the mesh of a body with all its cells or elements, as in the table of the body."""
     if body.kind == AxisymmetricBody.kind:
         return {"profile": {"shape": "cells", **_cells(body.profile, "nodes", "cells", "regions", "edges")}}
     return {"mesh": {"shape": "elements", **_cells(body.mesh, *(field.name for field in fields(body.mesh)))}}
@@ -216,7 +216,7 @@ def _cells(mesh: Any, *names: str) -> dict[str, Any]:
 
 
 def _general_body(body: Any, system: System, probed: Sequence[BodyPoint]) -> dict[str, Any]:
-    """Return the table of a body, without the name where the table's own name says it."""
+    """Return the table of a body, without its name if it equals the default name of the table."""
     circles = [contact for contact in system.contacts if contact.circle is not None and contact.circle.body == body]
     points = [*_points_in(system), *probed]
     given = _modes_table(body, points, circles) if _is_meshed(body) else body_table(body)
@@ -226,15 +226,15 @@ def _general_body(body: Any, system: System, probed: Sequence[BodyPoint]) -> dic
 
 
 def _is_meshed(body: Any) -> bool:
-    """Return whether a body has a mesh, which no table gives: its modes are kept."""
+    """Return whether a body has a mesh; it is written as its modes."""
     return hasattr(body, "mesh")
 
 
 def _modes_table(body: Any, points: Sequence[BodyPoint], circles: Sequence[PointContact] = ()) -> dict[str, Any]:
-    """Return the table of a body by its modes, with the points that are used."""
+    """Return the table of a body by its modes, with the points in use."""
     modes = body.modes()
     held = ~modes.massless
-    # No zero below zero: the body that is read from here has none.
+    # Turns -0.0 into 0.0, as in the body that is read back.
     rows = {point.label: body.trace(point.position) + 0.0 for point in points if point.body == body}
     return {
         "kind": ModalBody.kind,
@@ -256,7 +256,7 @@ def _modes_table(body: Any, points: Sequence[BodyPoint], circles: Sequence[Point
 
 
 def _drawn(body: Any) -> dict[str, Any]:
-    """Return the surface of a body as it is drawn, nothing where that is too large."""
+    """Return the surface of a body for drawing, nothing if it is too large."""
     arrays = drawn_table(body.drawn)
     if sum(array.nbytes for array in arrays.values()) > LARGEST_DRAWN:
         return {}
@@ -264,7 +264,7 @@ def _drawn(body: Any) -> dict[str, Any]:
 
 
 def _circles(contacts: Sequence[PointContact]) -> dict[str, Any]:
-    """Return the circles that contacts move along, by the points where they start, nothing without any."""
+    """Return the circles along which contacts move, by the points where they start; nothing without any."""
     found = {}
     for contact in contacts:
         circle, start = contact.circle, contact.touched_point
@@ -274,7 +274,7 @@ def _circles(contacts: Sequence[PointContact]) -> dict[str, Any]:
 
 
 def _turning(turning: Turning | None, points: dict[str, BodyPoint]) -> dict[str, Any]:
-    """Return how a body turns and how fast it passes its points, nothing if it does not."""
+    """Return the turning of a body and the velocities of its material at points; nothing if it does not turn."""
     if turning is None:
         return {}
     velocities = {name: _value(point.turning_velocity + 0.0) for name, point in points.items()}
@@ -289,7 +289,7 @@ def _turning_table(turning: Turning) -> dict[str, Any]:
 
 
 def _points_in(system: System) -> list[BodyPoint]:
-    """Return the points of bodies that contacts, connections and drives are at."""
+    """Return the points of bodies at contacts, connections and drives."""
     found = [contact.tip for contact in system.contacts]
     found += [contact.touched_point for contact in system.contacts if contact.touched_point is not None]
     found += [point for connection in system.connections for point in ends(connection)]
@@ -297,14 +297,14 @@ def _points_in(system: System) -> list[BodyPoint]:
 
 
 def _default_name(body: Any, system: System) -> str:
-    """Return what a body would be called if it had no name."""
+    """Return the name of a body by default."""
     if body == system.slider:
         return "slider"
     return "track" if body == system.track else f"body {system.bodies.index(body) + 1}"
 
 
 def _rows(rows: Array) -> Any:
-    """Return the rows of a point: the degrees of freedom that it moves with where that says it all."""
+    """Return the rows of a point, or the numbers of its degrees of freedom if these are equivalent."""
     chosen = {axis: np.flatnonzero(row) for axis, row in zip("xyz"[: len(rows)], rows, strict=True)}
     if (len(rows) == 2 or chosen["z"].size) and all(
         found.size == 0 or (found.size == 1 and rows[k, found[0]] == 1.0) for k, found in enumerate(chosen.values())

@@ -1,4 +1,4 @@
-"""Where a march is."""
+"""State of a march."""
 
 from __future__ import annotations
 
@@ -6,22 +6,22 @@ from dataclasses import dataclass
 
 from ..arrays import Array
 
-# Raised whenever what a State, or the record of one, holds means something else.
+# Incremented whenever the meaning of a State, or of its record, changes.
 LAYOUT = 2
 
 
 @dataclass
 class State:
-    """Where a march is, enough to go on from there.
+    """State of a march, sufficient to continue it.
 
     Attributes
     ----------
     modal : ndarray, shape (2, modes)
         Positions and last increments of the modes.
     remainder : ndarray, shape (2, modes)
-        What they lack in the units of the march, by rounding: with it a march goes on to the last bit.
+        Rounding remainders of these in the units of the march, so that it continues bit by bit.
     carried : ndarray, shape (contacts, scalars)
-        Scalars that the march carries for each contact.
+        Scalars of each contact in the march.
     energies : ndarray, shape (energies,)
         Energies since the start.
     """

@@ -1,4 +1,4 @@
-"""The one table of recorded variables: name, dimensions, unit, meaning."""
+"""The table of recorded variables: name, dimensions, unit, meaning."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Variable:
     Attributes
     ----------
     name : str
-        Its name in a Dataset, on labels and in files.
+        Name in a Dataset, on labels and in files.
     units : str
         Unit.
     long_name : str
@@ -34,7 +34,7 @@ class Variable:
 
 
 def described(units: str, meaning: str) -> dict[str, str]:
-    """Return the attributes of a variable that say its unit and its meaning."""
+    """Return the attributes of a variable with its unit and meaning."""
     return {"units": units, "long_name": meaning}
 
 
@@ -48,10 +48,10 @@ CONTACT = (
     Variable("jammed_steps", "1", "steps in which sliding would have jammed", "sum"),
     Variable("landings", "1", "landings: steps at which an open contact closes", "sum"),
 )
-# What has a component along each tangent in space.
+# Variables with a component along each tangent in space.
 ALONG_TANGENTS = ("tangential_force", "contact_position", "slip_velocity")
 TANGENTS = ("first", "second")
-# Units are those of the law: m for LuGre's bristles, s for the state of rate and state.
+# Units depend on the law: m for LuGre's bristles, s for the state of rate and state.
 FRICTION_STATE = Variable("friction_state", "1", "internal state of the law of friction")
 SOLVE = (
     Variable("contact_sweeps", "1", "largest number of Gauss-Seidel sweeps a step", "maximum"),
@@ -88,7 +88,7 @@ PROBES = {
     "modal_velocity": Variable("modal_velocity", "kg^(1/2) m/s", "velocity of modes", "low-pass"),
     "support_force": Variable("support_force", "N", "force along y on the supports of the ends", "low-pass"),
 }
-# Of the equilibrium that linear theory finds, less rigid motions that nothing holds.
+# Of the equilibrium of linear theory, without free rigid motions.
 EQUILIBRIUM = {
     "modal": Variable("modal_displacement", "kg^(1/2) m", "modal displacements, in the order of mode_shape"),
     "tip": Variable("tip_displacement", "m", "displacement of the tip along world x and y"),
@@ -99,12 +99,12 @@ EQUILIBRIUM = {
 
 
 def attributes_of(variable: Variable) -> dict[str, Any]:
-    """Return the attributes that a variable has in a Dataset."""
+    """Return the attributes of a variable in a Dataset."""
     return described(variable.units, variable.long_name) | {"cell_methods": f"time: {variable.cell_methods}"}
 
 
 def status_attributes() -> dict[str, Any]:
-    """Return the attributes of the status, which say what its numbers mean."""
+    """Return the attributes of the status, with the meanings of its numbers."""
     flags = {"flag_values": np.arange(3, dtype=np.int8), "flag_meanings": " ".join(STATUS_WORDS)}
     return attributes_of(STATUS) | flags
 
@@ -112,6 +112,6 @@ def status_attributes() -> dict[str, Any]:
 def dominant_status(share: Array) -> Array:
     """Return the status that holds for the largest part of each interval, from the shares, shape (..., 3).
 
-    Of equal shares the later state wins: sliding before sticking before separated.
+    For equal shares the later state is returned: sliding before sticking before separated.
     """
     return (2 - np.argmax(share[..., ::-1], axis=-1)).astype(np.int8)

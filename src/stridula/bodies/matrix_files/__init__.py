@@ -1,6 +1,6 @@
-"""Files of matrices: those of NumPy and MATLAB, Matrix Market, and what finite-element programs write.
+"""Files of matrices: NumPy, MATLAB, Matrix Market, and the formats of finite-element programs.
 
-Each format has a room of its own here and a line in `formats.py`; all end as `Entries`, which `aligned.py` brings to
+Each format has a module here and a line in `formats.py`; all readers return `Entries`, which `aligned.py` brings to
 the same degrees of freedom.
 """
 

@@ -1,4 +1,4 @@
-"""Text that Abaqus writes of matrices, and any other of rows, columns and values."""
+"""Text files of matrices by Abaqus, and any other text of rows, columns and values."""
 
 from __future__ import annotations
 
@@ -50,14 +50,14 @@ def _layout(comma: str | None, width: int) -> Layout:
 
 
 def _bad_line(path: str | os.PathLike[str]) -> str:
-    """Return what is wrong with the first line that is no entry of a matrix, nothing if all are."""
+    """Return the error of the first line that is not an entry of a matrix, empty if all are."""
     layout = _usual_layout(path)
     with text_of(path) as file:
         return first_bad(file, 0, layout)
 
 
 def _usual_layout(path: str | os.PathLike[str]) -> Layout:
-    """Return what the lines of a file are meant to look like, some of them damaged."""
+    """Return the most common layout of the lines of a file with damaged lines."""
     counts: Counter[tuple[str | None, int]] = Counter()
     with text_of(path) as file:
         for line in file:
@@ -68,5 +68,5 @@ def _usual_layout(path: str | os.PathLike[str]) -> Layout:
                 comma = "," if "," in text else None
                 counts[comma, len(text.split(comma))] += 1
     known = [layout for layout, _ in counts.most_common() if layout[1] in (3, 5)]
-    # Where no line is whole, commas are those of MATRIX INPUT.
+    # If no line is intact, commas indicate MATRIX INPUT.
     return _layout(*known[0]) if known else _layout(",", 5) if any(comma for comma, _ in counts) else _layout(None, 3)

@@ -16,7 +16,7 @@ from .formats import PathLike, format_of, whole_file
 from .labels import beside, read_labels
 from .limits import LARGEST_SPARSE, check_size
 
-# Abaqus marks a constrained degree of freedom by 1e36 on the diagonal of the stiffness; no body is as stiff as this.
+# Abaqus marks a constrained degree of freedom by 1e36 on the diagonal of the stiffness; no body is as stiff.
 PENALTY = 1e30
 
 
@@ -40,12 +40,12 @@ class AlignedMatrices:
 
 
 def read_container(path: PathLike) -> dict[str, Any] | None:
-    """Return what a file with everything holds, by the words of `ReducedBody`; points lie in a dictionary.
+    """Return the content of a file with a whole body by the parameters of `ReducedBody`; points are a dictionary.
 
     Returns
     -------
     dict or None
-        None of a file of matrices alone, which `files_of` says.
+        None for a file of matrices alone; see `files_of`.
 
     Raises
     ------
@@ -62,14 +62,14 @@ def read_container(path: PathLike) -> dict[str, Any] | None:
 
 
 def files_of(path: PathLike) -> dict[str, PathLike]:
-    """Return the files of mass, stiffness and perhaps damping of which one is given.
+    """Return the files of mass, stiffness and perhaps damping that belong to a given one.
 
     Raises
     ------
     OSError
         If the file cannot be read.
     ValueError
-        If it is damaged, or has one matrix and no name that tells where the others are.
+        If it is damaged, or has a single matrix and a name from which the other files cannot be found.
     """
     files = format_of(path).files(path)
     if not files:
@@ -88,16 +88,16 @@ def read_matrices(paths: Mapping[str, PathLike], labels: PathLike | None = None)
     Parameters
     ----------
     paths : mapping
-        Path by the name of the matrix; each of any format that is no file with everything.
+        Path by the name of the matrix; in any format of single matrices.
     labels : str or path-like, optional
-        File that says which node and degree of freedom each row is; found beside a matrix if left out.
+        File with the node and degree of freedom of each row; searched beside the matrices if left out.
 
     Raises
     ------
     OSError
         If a file cannot be read.
     ValueError
-        If a file is damaged, too large, of another kind, or if only some have labels.
+        If a file is damaged, too large, of another format, or if only some have labels.
     """
     files = _with_labels({name: _one_matrix(name, path) for name, path in paths.items()}, paths, labels)
     labelled = {file.keys is not None for file in files.values()}
@@ -115,7 +115,7 @@ def read_matrices(paths: Mapping[str, PathLike], labels: PathLike | None = None)
         named = None
         size = max(file.least_size for file in files.values())
         if size > sum(2 * file.rows.size for file in files.values()):
-            # Rows that no file names; those that Abaqus constrains, and are left out, stand in one.
+            # Rows that no file names; those that Abaqus constrains, and that are left out, are in one of them.
             check_size("stiffness", size, LARGEST_SPARSE)
         matrices = {name: file.on(None, file.size or size) for name, file in files.items()}
     for name, matrix in matrices.items():
@@ -145,12 +145,12 @@ def _one_matrix(name: str, path: PathLike) -> Entries:
 def _with_labels(
     files: dict[str, Entries], paths: Mapping[str, PathLike], given: PathLike | None
 ) -> dict[str, Entries]:
-    """Return the matrices with labels where a file of them is given, or lies beside one of theirs."""
+    """Return the matrices, with labels where a file of labels is given or lies beside one of the matrices."""
     numbered = [name for name, file in files.items() if file.keys is None]
     if given is not None and not numbered:
         raise ArgumentError("labels", "be left out where matrices name their rows themselves", os.fspath(given))
     found = {name: given or beside(paths[name], format_of(paths[name]).labels) for name in numbered}
-    # All rows are the same, so that one file of labels is enough.
+    # All matrices have the same rows, so that one file of labels is enough.
     shared = next((path for path in found.values() if path is not None), None)
     read: dict[PathLike, Array] = {}
     named = dict(files)

@@ -1,4 +1,4 @@
-"""What CalculiX writes with ``SOLVER=MATRIXSTORAGE``: ``job.sti``, ``job.mas`` and, of their rows, ``job.dof``."""
+"""Files of CalculiX with ``SOLVER=MATRIXSTORAGE``: ``job.sti``, ``job.mas`` and, for their rows, ``job.dof``."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def read_calculix(name: str, path: str | os.PathLike[str]) -> Entries:
     least = min(int(rows.min()), int(columns.min()))
     if least < 1:
         raise ValueError(f"rows and columns must be numbered from 1, got {least}")
-    # Every row has an entry on the diagonal, be it zero.
+    # Every row has an entry on the diagonal, even if it is zero.
     size = max(int(rows.max()), int(columns.max()))
     check_size(name, size, LARGEST_SPARSE)
     kept = values != 0.0

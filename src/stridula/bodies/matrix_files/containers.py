@@ -1,4 +1,4 @@
-"""Files with everything of a body: NumPy's and MATLAB's."""
+"""Files with a whole body: NumPy's and MATLAB's."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from . import limits
 from .limits import check_size
 from .matlab import read_matlab
 
-# Readers of the headers of NumPy's arrays, by version; of version 3 are arrays with named fields only.
+# Readers of the headers of NumPy's arrays by version; version 3 is only for arrays with named fields.
 HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 LONGEST_HEADER = 10_000
 
@@ -30,12 +30,12 @@ POINT = "point_"
 
 
 def read_npz(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Return the arrays of an .npz file by the words of `ReducedBody`."""
+    """Return the arrays of an .npz file by the parameters of `ReducedBody`."""
     return _parts(_npz(path))
 
 
 def read_mat(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Return the arrays of a MATLAB file by the words of `ReducedBody`."""
+    """Return the arrays of a MATLAB file by the parameters of `ReducedBody`."""
     return _parts(_mat(path))
 
 
@@ -66,14 +66,14 @@ def _npz(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def _arrays_in(archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
-    """Return where the arrays that have a meaning lie, by name."""
+    """Return the entries of the known arrays by name."""
     entries = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
     known = (*SYNONYMS, *MATRICES, *OTHERS)
     return {name: entry for name, entry in entries.items() if name in known or name.startswith(POINT)}
 
 
 def _check_header(name: str, archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> None:
-    """Raise ValueError unless the header of an array announces numbers, or a text, that its file holds."""
+    """Raise ValueError unless the header of an array announces numbers or a text that fit into its file."""
     with archive.open(entry) as file:
         try:
             version = np.lib.format.read_magic(file)
@@ -90,7 +90,7 @@ def _check_header(name: str, archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -
 
 
 def _by_words(held: Mapping[str, Any]) -> dict[str, Any]:
-    """Return arrays by the words of `ReducedBody`; a matrix may stand under both its names only if both are equal."""
+    """Return arrays by the parameters of `ReducedBody`; a matrix may have both its names only if both are equal."""
     arrays = {name: array for name, array in held.items() if name not in SYNONYMS}
     for symbol, word in SYNONYMS.items():
         if symbol not in held:
@@ -116,7 +116,7 @@ def _mat(path: str | os.PathLike[str]) -> dict[str, Any]:
     arrays = _by_words((read_matlab if is_of_version_5 else _of_version_4)(path, _is_matrix, _check_shape))
     damping = arrays.get("damping")
     if isinstance(damping, np.ndarray) and 1 in damping.shape and damping.shape != arrays["mass"].shape:
-        # MATLAB keeps numbers and lists as matrices: one number is a ratio, a row or a column a list of them.
+        # MATLAB stores numbers and lists as matrices: one number is a ratio, a row or a column a list of ratios.
         arrays["damping"] = damping.ravel() if damping.size > 1 else damping.ravel()[0]
     return arrays
 

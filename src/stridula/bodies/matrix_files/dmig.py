@@ -1,4 +1,4 @@
-"""DMIG cards of Nastran: matrices by node and degree of freedom, as punch files have them."""
+"""DMIG cards of Nastran, as in punch files: matrices by node and degree of freedom."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ LARGEST_NODE = 2**40
 
 
 def is_dmig(head: bytes) -> bool:
-    """Return whether a file that begins so holds such cards."""
+    """Return whether a file with this beginning holds DMIG cards."""
     return BEGINNING.search(head) is not None
 
 
 def held_in_dmig(path: str | os.PathLike[str]) -> list[Held]:
-    """Return what matrices a file holds."""
+    """Return the matrices in a file."""
     forms: dict[str, tuple[int, int]] = {}
     filled = set[str]()
     with text_of(path) as file:
@@ -45,7 +45,7 @@ def held_in_dmig(path: str | os.PathLike[str]) -> list[Held]:
 
 
 def read_dmig(role: str, path: str | os.PathLike[str]) -> Entries:
-    """Read the matrix of a file whose name says that it is mass, stiffness or damping."""
+    """Read the matrix of a file that is mass, stiffness or damping by its name."""
     matrix = chosen(role, held_in_dmig(path))
     rows, columns, values = array("q"), array("q"), array("d")
     with text_of(path) as file:
@@ -72,7 +72,7 @@ def read_dmig(role: str, path: str | os.PathLike[str]) -> Entries:
 
 @dataclass(frozen=True)
 class _Card:
-    """A card with the line that it begins at: its fields from the name on, in fours."""
+    """A card with the number of its first line: its fields from the name on, in fours."""
 
     line: int
     fields: list[str]
@@ -100,7 +100,7 @@ class _Card:
 
 
 def _cards(lines: Lines) -> Iterator[_Card]:
-    """Yield each DMIG card, with the fields of the lines that go on with it."""
+    """Yield each DMIG card, with the fields of its continuation lines."""
     card: _Card | None = None
     for line in lines:
         text = line.partition("$")[0].rstrip()

@@ -1,4 +1,4 @@
-"""Entries of one symmetric matrix, as the readers of all formats leave them."""
+"""Entries of one symmetric matrix, the result of the readers of all formats."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ...arrays import Array
 
 # A label (node, degree of freedom) as one integer that sorts as the pair does.
 LABEL_BASE = 2**20
-# Entries that are looked at together; a copy of all of them takes as much again.
+# Entries checked at once; a check of all together would double the memory.
 PIECE = 2**20
 
 
@@ -24,15 +24,15 @@ class Entries:
     Attributes
     ----------
     rows, columns : ndarray of int, shape (entries,)
-        Where they stand, from 0.
+        Rows and columns, from 0.
     values : ndarray, shape (entries,)
-        What they are.
+        Values.
     size : int, optional
-        Number of rows; None where the file does not say it.
+        Number of rows; None if the file does not give it.
     keys : ndarray of int, shape (rows,), optional
         Label of every row, see `key_of`; None where rows only have numbers.
     is_penalised : bool
-        Whether a constraint may stand in it as a huge number on the diagonal.
+        Whether constraints may be marked by a huge number on the diagonal.
     """
 
     rows: Array
@@ -44,12 +44,12 @@ class Entries:
 
     @property
     def least_size(self) -> int:
-        """Number of rows that it has at least."""
+        """Least number of rows."""
         named = 1 + max(int(part.max(initial=-1)) for part in (self.rows, self.columns))
         return max(named, self.size or 0)
 
     def labelled(self, labels: Array, name: str) -> Entries:
-        """Return the same with labels of its rows, shape (rows, 2); `name` is what a message calls it.
+        """Return the same with labels of its rows, shape (rows, 2); `name` is its name in messages.
 
         Raises
         ------
@@ -63,7 +63,7 @@ class Entries:
         return replace(self, size=named, keys=key_of(labels[:, 0], labels[:, 1]))
 
     def on(self, keys: Array | None, size: int) -> Any:
-        """Return the sparse matrix on rows of other, rising labels, or on as many rows without labels."""
+        """Return the sparse matrix on rows with the given rising labels, or on `size` rows without labels."""
         rows, columns = self.rows, self.columns
         if keys is not None and self.keys is not None:
             place = np.searchsorted(keys, self.keys).astype(np.int32)
@@ -82,14 +82,14 @@ def labels_of(keys: Array) -> Array:
 
 
 def by_position(rows: Array, columns: Array) -> tuple[Array, Array, Array]:
-    """Return numbers from 0 in place of any others, and those others, rising."""
+    """Return rows and columns numbered from 0, and the original numbers, rising."""
     keys, number = np.unique(np.concatenate([rows, columns]), return_inverse=True)
     i, j = np.split(number.astype(np.int32).ravel(), 2)
     return i, j, keys
 
 
 def both_triangles(rows: Array, columns: Array, values: Array, what: str) -> tuple[Array, Array, Array]:
-    """Return a symmetric matrix of which `what` says that it holds one triangle, in full.
+    """Return a symmetric matrix in full from one triangle; `what` gives the reason to expect one, for messages.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def with_mirror_images(rows: Array, columns: Array, values: Array) -> tuple[Arra
 
 
 def check_full(rows: Array, columns: Array, size: int, what: str) -> None:
-    """Raise ValueError if a matrix, of which `what` says that it is full, has one of each pair of entries only."""
+    """Raise ValueError if a matrix has only one of each pair of entries; `what` is the reason to expect both."""
     if (rows != columns).any() and not _has_mirror_images(rows, columns, np.sort(_places(rows, columns, size)), size):
         held = {-1: "the upper triangle", 1: "the lower triangle"}
         sides = {int(side) for side in np.sign(rows - columns)} - {0}
@@ -120,23 +120,23 @@ def check_full(rows: Array, columns: Array, size: int, what: str) -> None:
 def filled_in(
     rows: Array, columns: Array, values: Array, size: int, called: Callable[[int], object]
 ) -> tuple[Array, Array, Array]:
-    """Return the entries of a symmetric matrix given by either of each pair or in full, in full.
+    """Return all entries of a symmetric matrix given by one of each pair or in full.
 
     Parameters
     ----------
     rows, columns : ndarray of int
-        Where they stand, from 0.
+        Rows and columns, from 0.
     values : ndarray
-        What they are.
+        Values.
     size : int
         Number of rows.
     called : callable
-        Given the number of a row, what a message calls it.
+        Returns the name of a row in messages, given its number.
 
     Raises
     ------
     ValueError
-        If an entry stands twice.
+        If an entry appears twice.
     """
     place = _places(rows, columns, size)
     place.sort()

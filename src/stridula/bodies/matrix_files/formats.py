@@ -1,4 +1,4 @@
-"""The formats that are read, and how a file's own is told: by its first bytes, then by its ending."""
+"""The formats that are read; the format of a file is recognised by its first bytes, then by its ending."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .nastran import Held, roles
 from .output4 import held_in_output4, is_output4, read_output4
 
 PathLike = str | os.PathLike[str]
-# What is looked at to tell a format: a deck may begin with a page of remarks.
+# Bytes that are searched to recognise a format: a deck may begin with a page of remarks.
 HEAD = 8192
 
 
@@ -34,21 +34,21 @@ class Format:
     Attributes
     ----------
     words : str
-        What it is called.
+        Name.
     is_it : callable, optional
-        Whether a file that begins with some bytes is of it.
+        Returns whether a file with the given first bytes has this format.
     endings : tuple of str
-        Endings of its files, where their first bytes do not tell.
+        Endings of its files, used if the first bytes are not recognised.
     whole : callable, optional
-        Reads a file with everything.
+        Reads a file with a whole body.
     matrix : callable, optional
-        Reads one matrix, given what it is (mass, stiffness or damping) and the file.
+        Reads one matrix, given its role (mass, stiffness or damping) and the file.
     held : callable, optional
-        Says what matrices a file of several holds.
+        Returns the matrices in a file of several.
     partners : mapping
-        Endings of the files that belong together, by what their matrices are.
+        Endings of the files that belong together, by the role of their matrices.
     labels : tuple of str
-        Endings of the files beside that say which degrees of freedom rows are.
+        Endings of accompanying files with the degrees of freedom of the rows.
     """
 
     words: str
@@ -61,7 +61,7 @@ class Format:
     labels: tuple[str, ...] = ()
 
     def files(self, path: PathLike) -> dict[str, PathLike]:
-        """Return the files of mass, stiffness and damping of which one is given; none if that cannot be told."""
+        """Return the files of mass, stiffness and damping that belong to a given one; none if they are not known."""
         if self.held is not None:
             with whole_file(path):
                 return dict.fromkeys(roles(self.held(path)), path)
@@ -88,10 +88,10 @@ FORMATS = (
     ),
     Format("Nastran DMIG", is_dmig, (".pch", ".bdf", ".nas"), matrix=read_dmig, held=held_in_dmig),
 )
-# Of any ending.
+# For any ending.
 TEXT = Format("Abaqus", matrix=read_abaqus)
 
-# What is told of files that are known but not read.
+# Messages for files that are recognised but not read.
 REFUSED: tuple[tuple[Callable[[bytes, str], bool], str], ...] = (
     (
         lambda head, ending: head.startswith((b"MATLAB 7.3", b"\x89HDF")),
@@ -116,7 +116,7 @@ def format_of(path: PathLike) -> Format:
     OSError
         If it cannot be read.
     ValueError
-        If it is empty, too large, or of a format that is known but not read.
+        If it is empty, too large, or of a format that is recognised but not read.
     """
     cannot = f"cannot read {os.fspath(path)!r}"
     with one_line(cannot):
@@ -138,7 +138,7 @@ def format_of(path: PathLike) -> Format:
 
 @contextmanager
 def whole_file(path: PathLike) -> Iterator[None]:
-    """Turn whatever a reader raises on a damaged file into one line with its path; readers raise almost anything."""
+    """Turn any exception of a reader on a damaged file into a message of one line with the path."""
     try:
         yield
     except Exception as error:

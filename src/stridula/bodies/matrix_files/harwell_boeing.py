@@ -1,4 +1,4 @@
-"""Harwell-Boeing files, as Ansys' HBMAT writes them."""
+"""Harwell-Boeing files, as written by Ansys' HBMAT."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ FORM = re.compile(r"\(\s*(?:\d+P\s*,?\s*)?(\d*)\s*[IEDFGiedfg](\d+)(?:\.\d+)?(?:
 
 
 def is_harwell_boeing(head: bytes) -> bool:
-    """Return whether a file that begins so is one."""
+    """Return whether a file with this beginning is a Harwell-Boeing file."""
     lines = head.split(b"\n", 3)
     return len(lines) > 3 and KIND.match(lines[2]) is not None
 
 
 def read_harwell_boeing(name: str, path: str | os.PathLike[str]) -> Entries:
-    """Read an assembled matrix of real numbers; a right-hand side is left out."""
+    """Read an assembled matrix of real numbers; a right-hand side is ignored."""
     with text_of(path) as file:
         lines = Lines(file)
         lines.need("a title")
@@ -52,7 +52,7 @@ def read_harwell_boeing(name: str, path: str | os.PathLike[str]) -> Entries:
 
 
 def _heading(name: str, lines: Lines) -> tuple[str, int, int]:
-    """Return the kind of matrix, its rows and how many entries it holds."""
+    """Return the kind of matrix, its number of rows and its number of entries."""
     text = lines.need("the kind of matrix and its size")
     kind, *numbers = text.split()[:4]
     rows, columns, held = map(int, numbers)

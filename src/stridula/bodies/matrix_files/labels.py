@@ -1,4 +1,4 @@
-"""Files that say which node and degree of freedom a row is: ``.dof`` of CalculiX, ``.mapping`` of Ansys."""
+"""Files with the node and degree of freedom of each row: ``.dof`` of CalculiX, ``.mapping`` of Ansys."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ...checks import listed
 from .limits import LARGEST_SPARSE
 from .text import text_of
 
-# What Ansys calls degrees of freedom, by the numbers that all programs give them.
+# Numbers of degrees of freedom, common to all programs, by Ansys' names.
 NAMES = {"UX": 1, "UY": 2, "UZ": 3, "ROTX": 4, "ROTY": 5, "ROTZ": 6, "WARP": 7}
 DOF = re.compile(r"(\d{1,12})\.(\d)")
 MAPPING = re.compile(r"(\d{1,12})\s+(\d{1,12})\s+([A-Za-z]\w*)")
@@ -27,7 +27,7 @@ def read_labels(path: str | os.PathLike[str]) -> Array:
     Raises
     ------
     ValueError
-        With the line that is another one, or that names what an earlier one does.
+        If a line has another form, or repeats the label of an earlier one.
     """
     with text_of(path) as file:
         first = file.readline()
@@ -43,7 +43,7 @@ def read_labels(path: str | os.PathLike[str]) -> Array:
 
 
 def beside(path: str | os.PathLike[str], endings: tuple[str, ...]) -> Path | None:
-    """Return the file of labels beside one of a matrix: of its name, with an ending added or in place of its own."""
+    """Return the file of labels beside a file of a matrix: the same name with an ending added or replaced."""
     there = Path(path)
     for ending in endings:
         for found in (Path(f"{there}{ending}"), there.with_suffix(ending) if there.name else there):

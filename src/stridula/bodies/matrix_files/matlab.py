@@ -1,4 +1,4 @@
-"""Matrices in MATLAB files of version 5, read here: on files that are damaged SciPy's reader ends the process."""
+"""Reader of matrices in MATLAB files of version 5; SciPy's reader ends the process on damaged files."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ import scipy.sparse
 from ...arrays import Array
 
 HEADER = 128
-# Kinds of elements that hold numbers, and those that hold a variable.
+# Types of elements that hold numbers, and types that hold a variable.
 NUMBERS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
 VARIABLE, COMPRESSED = 14, 15
 # Classes of variables.
 SPARSE, FULL = 5, range(6, 16)
 COMPLEX = 0x0800
-# Enough of a variable for its name and its shape.
+# Bytes of a variable that include its name and its shape.
 BEGINNING = 4096
-# More than any matrix of a body takes.
+# Larger than any matrix of a body [bytes].
 LARGEST_VARIABLE = 2**30
 
 
 @dataclass(frozen=True)
 class _Heading:
-    """What a variable is, and where its values begin."""
+    """Name, shape and type of a variable, and the place at which its values begin."""
 
     name: str
     shape: tuple[int, ...]
@@ -48,14 +48,14 @@ def read_matlab(
     path : str or path-like
         The file.
     is_wanted : callable
-        Whether a name is read.
+        Returns whether the variable of a name is read.
     check_shape : callable
-        Given a name and a shape, raises where it is too large, before anything is unpacked.
+        Raises if a variable is too large, given its name and shape, before anything is unpacked.
 
     Raises
     ------
     ValueError
-        If the file is damaged, or a wanted variable is no matrix of real numbers.
+        If the file is damaged, or a wanted variable is not a matrix of real numbers.
     """
     content = np.memmap(path, dtype=np.uint8, mode="r").data
     if len(content) < HEADER:
@@ -75,7 +75,7 @@ def read_matlab(
 
 
 def _elements(content: memoryview, order: str) -> Iterator[tuple[int, memoryview]]:
-    """Go through the elements of a file, or of a variable: their kinds and what they hold."""
+    """Iterate over the elements of a file or of a variable: their types and contents."""
     place = 0
     while place < len(content):
         kind, data, place = _element(content, order, place)
@@ -83,12 +83,12 @@ def _elements(content: memoryview, order: str) -> Iterator[tuple[int, memoryview
 
 
 def _element(content: memoryview, order: str, place: int) -> tuple[int, memoryview, int]:
-    """Return the kind of the element at a place, what it holds, and where the next one is."""
+    """Return the type and content of the element at a place, and the place of the next one."""
     if len(content) - place < 8:
         raise ValueError("it ends within an element")
     kind, size = struct.unpack_from(f"{order}II", content, place)
     if kind >> 16:
-        # Up to four bytes stand in the place of their number.
+        # Up to four bytes are stored in place of the byte count.
         kind, size, begin = kind & 0xFFFF, min(kind >> 16, 4), place + 4
     else:
         begin = place + 8
@@ -101,7 +101,7 @@ def _element(content: memoryview, order: str, place: int) -> tuple[int, memoryvi
 
 def _unpacked_beginning(data: memoryview, order: str) -> memoryview:
     tag = zlib.decompressobj().decompress(data, BEGINNING)
-    # Of a long variable not all is there.
+    # A long variable is cut here.
     return memoryview(tag)[8:]
 
 

@@ -21,7 +21,7 @@ VALUE = Layout(1, "one number", "%")
 
 
 def read_matrix_market(name: str, path: str | os.PathLike[str]) -> Entries:
-    """Read a Matrix Market file; SciPy sees only its header: on one that is cut it may bring the process down."""
+    """Read a Matrix Market file; SciPy reads only the header, as it may end the process on a truncated file."""
     rows, columns, entries, layout, field, symmetry = scipy.io.mminfo(os.fspath(path))
     if rows != columns:
         raise ArgumentError(name, "be square", got=f"{rows} x {columns}")
@@ -34,7 +34,7 @@ def read_matrix_market(name: str, path: str | os.PathLike[str]) -> Entries:
     if layout == "array":
         count = rows * (rows + 1) // 2 if symmetric else entries
         (values,) = _numbers(path, VALUE, count)
-        # Column by column, of a symmetric matrix the lower triangle.
+        # Column by column; for a symmetric matrix the lower triangle.
         j, i = np.triu_indices(rows) if symmetric else np.divmod(np.arange(count), max(rows, 1))
     else:
         i, j, values = _numbers(path, ENTRY, entries)
@@ -56,11 +56,11 @@ def _beyond(rows: Array, columns: Array, size: int) -> int:
 
 
 def _numbers(path: str | os.PathLike[str], layout: Layout, count: int) -> list[Array]:
-    """Return the columns of numbers below the header, which must be as many as it announces."""
+    """Return the columns of numbers below the header; their number must be that of the header."""
     if not count:
         return table([], layout, str)
     with _below_header(path) as (file, _):
-        # A line more than announced is enough to see that there are more.
+        # One line more than announced shows that there are more.
         columns = table(file, layout, lambda: _bad_line(path, layout), count + 1)
     held = columns[-1].size
     if held != count:
@@ -71,7 +71,7 @@ def _numbers(path: str | os.PathLike[str], layout: Layout, count: int) -> list[A
 
 @contextmanager
 def _below_header(path: str | os.PathLike[str]) -> Iterator[tuple[TextIO, int]]:
-    """Open a file at its first entry; give it with the number of lines above."""
+    """Open a file at its first entry; yield it with the number of lines above."""
     with text_of(path) as file:
         lines = enumerate(iter(file.readline, ""), 1)
         yield file, next(number for number, line in lines if line.partition("%")[0].strip())

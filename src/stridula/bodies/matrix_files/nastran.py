@@ -1,4 +1,4 @@
-"""Which of the matrices in a file of Nastran is which, by their names."""
+"""Roles of the matrices in a file of Nastran by their names."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ...checks import ArgumentError, listed
 
-# What names of matrices begin with; K4 is structural damping.
+# First letters of the names of matrices; K4 is structural damping.
 LETTERS = {"mass": "M", "stiffness": "K", "damping": "B"}
 STRUCTURAL_DAMPING = "K4"
 
@@ -19,13 +19,13 @@ class Held:
     Attributes
     ----------
     name : str
-        What it is called.
+        Name.
     number : int
-        Where it stands among the matrices of the file, from 0.
+        Number among the matrices of the file, from 0.
     is_square, is_symmetric, is_real, is_empty : bool
-        What it is.
+        Its properties.
     size : int
-        Number of rows, 0 if the file does not say it.
+        Number of rows, 0 if the file does not give it.
     """
 
     name: str
@@ -43,7 +43,7 @@ def chosen(role: str, held: Iterable[Held]) -> Held:
     Raises
     ------
     ValueError
-        If none is, or several are, or it is complex.
+        If there is none, or several, or it is complex.
     """
     square = [matrix for matrix in held if matrix.is_square and not matrix.is_empty]
     found = [matrix for matrix in square if _role(matrix) == role]
@@ -60,7 +60,7 @@ def chosen(role: str, held: Iterable[Held]) -> Held:
 
 
 def roles(held: Iterable[Held]) -> list[str]:
-    """Return what the square matrices of a file are, mass and stiffness whether they are there or not."""
+    """Return the roles of the square matrices of a file; mass and stiffness even if they are missing."""
     there = {_role(matrix) for matrix in held if matrix.is_square and not matrix.is_empty}
     return [role for role in LETTERS if role in there or role != "damping"]
 

@@ -1,4 +1,4 @@
-"""Cards of Nastran: small, large and free fields, and numbers as they stand there."""
+"""Cards of Nastran: small, large and free fields, and the numbers in them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ BARE_EXPONENT = re.compile(r"([0-9.])([+-]\d+)$")
 
 
 def fields_of(line: str) -> tuple[str, list[str]]:
-    """Return the first field of a line and the four (large) or eight that follow, empty ones as well."""
+    """Return the first field of a line and the four (large) or eight that follow, including empty ones."""
     if "," in line:
         first, *found = (word.strip() for word in line.split(","))
         count = 4 if "*" in first else 8
@@ -23,7 +23,7 @@ def fields_of(line: str) -> tuple[str, list[str]]:
 
 
 def real(field: str) -> float:
-    """Return a number, or raise ValueError if it is none."""
+    """Return a field as a number, or raise ValueError if it is not one."""
     try:
         return float(field)
     except ValueError:

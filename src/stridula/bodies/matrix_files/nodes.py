@@ -1,4 +1,4 @@
-"""Where nodes are, by their numbers: from decks of Abaqus, CalculiX and Nastran."""
+"""Places of nodes by their numbers, from decks of Abaqus, CalculiX and Nastran."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .formats import PathLike, format_of, whole_file
 from .nastran_cards import fields_of, real
 from .text import Lines, text_of
 
-# How far a place may lie from a node, of the size of the mesh.
+# Largest distance of a place from a node, relative to the size of the mesh.
 TOLERANCE = 1e-3
 
 
@@ -25,9 +25,9 @@ class Nodes:
     Attributes
     ----------
     numbers : ndarray of int, shape (nodes,)
-        What they are called.
+        Numbers in the deck.
     places : ndarray, shape (nodes, 3)
-        Where they are [m].
+        Coordinates [m].
     """
 
     numbers: Array
@@ -49,14 +49,14 @@ class Nodes:
 
 
 def read_nodes(path: PathLike) -> Nodes:
-    """Return the nodes of a deck: of ``*NODE`` in ``.inp``, of ``GRID`` in any other.
+    """Return the nodes of a deck: ``*NODE`` in ``.inp``, ``GRID`` in any other file.
 
     Raises
     ------
     OSError
         If it cannot be read.
     ValueError
-        If it is too large, holds no nodes, or a line that is no node.
+        If it is too large, holds no nodes, or has a line that is not a node.
     """
     format_of(path)
     reader = _of_abaqus if Path(path).suffix.lower() == ".inp" else _of_nastran

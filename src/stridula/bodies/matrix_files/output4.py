@@ -1,4 +1,4 @@
-"""OUTPUT4 files of Nastran, text and binary: matrices by columns, full or in strings of numbers that are not zero."""
+"""OUTPUT4 files of Nastran, text and binary: matrices by columns, full or in strings of nonzero numbers."""
 
 from __future__ import annotations
 
@@ -21,33 +21,33 @@ from .nastran import Held, chosen
 from .text import Lines, text_of
 
 SYMMETRIC = 6
-# How many words of four bytes a number has, by its type: real and complex, in single and double precision.
+# Words of four bytes per number by type: real and complex, in single and double precision.
 WORDS = {1: 1, 2: 2, 3: 2, 4: 4}
 HEADING = re.compile(r"([ \d-]{8})" * 4 + r"\s*([A-Za-z]\w{0,7})\s*(?:1P,?\s*)?(?:(\d+)[ED](\d+)\.\d+)?")
 # A short string begins with its first row and, in the upper half of a word, its length.
 HALF = 65536
 # Bytes of the heading of a matrix in a binary file, and of one with integers of 64 bits.
 HEADING_BYTES, LONG_HEADING_BYTES = 24, 48
-# And of what is said before a column.
+# Bytes of the heading of a column.
 COLUMN_BYTES = 12
 
 
 @dataclass(frozen=True)
 class Heading:
-    """What is said before the columns of a matrix.
+    """The heading of a matrix.
 
     Attributes
     ----------
     name : str
-        What it is called.
+        Name.
     columns, rows : int
-        How many it has.
+        Numbers of columns and rows.
     form, kind : int
-        Numbers that say whether it is square or symmetric, and the type of its numbers.
+        Codes of its form, such as square or symmetric, and of the type of its numbers.
     has_long_strings : bool
         Whether strings begin with two words.
     across, width : int
-        In a text, how many numbers stand in a line and how many characters each takes.
+        In a text file, numbers in a line and characters of each.
     """
 
     name: str
@@ -65,7 +65,7 @@ class Heading:
         return self.kind <= 2
 
 
-# First row from 0, and the numbers from there on.
+# First row from 0, and the numbers from this row on.
 String = tuple[int, Array]
 
 
@@ -73,16 +73,16 @@ class Source(Protocol):
     """A file, one matrix after the other."""
 
     def heading(self) -> Heading | None:
-        """Return what the next matrix is, None at the end."""
+        """Return the heading of the next matrix, None at the end."""
         ...
 
     def column(self, heading: Heading, keep: bool) -> tuple[int, list[String]]:
-        """Return the number of a column from 1 and what it holds, of numbers only their room unless they are kept."""
+        """Return the number of a column from 1 and its strings; numbers are read only if they are kept."""
         ...
 
 
 def is_output4(head: bytes) -> bool:
-    """Return whether a file that begins so is one."""
+    """Return whether a file with this beginning is an OUTPUT4 file."""
     if _order(head):
         return True
     match = HEADING.match(head.split(b"\n", 1)[0].decode("latin-1"))
@@ -90,13 +90,13 @@ def is_output4(head: bytes) -> bool:
 
 
 def held_in_output4(path: str | os.PathLike[str]) -> list[Held]:
-    """Return what matrices a file holds."""
+    """Return the matrices in a file."""
     with _opened(path) as source:
         return list(_walk(source))
 
 
 def read_output4(role: str, path: str | os.PathLike[str]) -> Entries:
-    """Read the matrix of a file whose name says that it is mass, stiffness or damping."""
+    """Read the matrix of a file that is mass, stiffness or damping by its name."""
     matrix = chosen(role, held_in_output4(path))
     check_size(role, matrix.size, LARGEST_SPARSE)
     rows, columns, values = array("i"), array("i"), array("d")
@@ -111,7 +111,7 @@ def read_output4(role: str, path: str | os.PathLike[str]) -> Entries:
 
 
 def _walk(source: Source, wanted: int = -1, into: tuple[array[Any], ...] = ()) -> Iterator[Held]:
-    """Go through the matrices of a file, and take the entries of the one wanted."""
+    """Iterate over the matrices of a file, and collect the entries of the wanted one."""
     number = 0
     while (heading := source.heading()) is not None:
         is_empty, keep = True, number == wanted
@@ -149,7 +149,7 @@ def _string(heading: Heading, first: int, count: int) -> tuple[int, int]:
 
 
 def _begun(words: list[int]) -> tuple[int, int]:
-    """Return the first row of a string and its number of words, as one word or two say it."""
+    """Return the first row of a string and its number of words, from its one or two leading words."""
     length, first = words if len(words) == 2 else divmod(words[0], HALF)
     return first, length - 1
 
@@ -187,7 +187,7 @@ class _Text:
             3, f"the number of a column of {heading.name}, its first row and its words"
         )
         if column > heading.columns or first > 0:
-            # Of the column behind the last only room is taken.
+            # The numbers of the column after the last one are skipped.
             begin, count = (0, words) if column > heading.columns else _string(heading, first, words)
             return column, [(begin, self._numbers(heading, count, keep))]
         strings = []
@@ -221,7 +221,7 @@ class _Text:
 
 
 class _Binary:
-    """A binary file: records with their length before and behind them."""
+    """A binary file: records with their length before and after them."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self._file: BinaryIO = open(path, "rb")  # noqa: SIM115 - closed on leaving
@@ -284,7 +284,7 @@ class _Binary:
         return begin, numbers.astype(float)
 
     def _record(self, most: int | None = None) -> bytes:
-        """Return what the next record holds, or how it begins."""
+        """Return the content of the next record, or its first `most` bytes."""
         length = self._length()
         end = self._file.tell() + length
         if not (length >= 0 and end <= self._end - 4):
@@ -303,7 +303,7 @@ class _Binary:
 
 
 def _order(head: bytes) -> str:
-    """Return the order of bytes of a binary file that begins so, nothing if it is none."""
+    """Return the byte order of a binary file with this beginning, empty for any other file."""
     for order in "<>":
         for length in (HEADING_BYTES, LONG_HEADING_BYTES):
             word = struct.pack(f"{order}i", length)

@@ -1,4 +1,4 @@
-"""Numbers in the lines of text files, read piece by piece; what is wrong with a line is told with its number."""
+"""Numbers in the lines of text files, read piece by piece; errors name the number of the line."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ import numpy as np
 
 from ...arrays import Array
 
-# Lines that are made numbers at once.
+# Lines that are converted to numbers at once.
 PIECE = 2**18
-# Numbers of rows, nodes and degrees of freedom stay below.
+# Upper bound of numbers of rows, nodes and degrees of freedom.
 LARGEST_NUMBER = 2**40
 
 
 @dataclass(frozen=True)
 class Layout:
-    """What a line that is an entry of a matrix looks like.
+    """Layout of a line with an entry of a matrix.
 
     Attributes
     ----------
     width : int
-        How many numbers it has; all but the last are whole.
+        Count of numbers; all but the last are whole.
     wanted : str
-        Words for it.
+        Description for messages.
     remark : str
-        What begins a remark.
+        Beginning of a remark.
     comma : str, optional
-        What stands between numbers; None for blanks.
+        Separator of numbers; None for blanks.
     """
 
     width: int
@@ -46,18 +46,18 @@ def table(lines: Iterable[str], layout: Layout, bad_line: Callable[[], str], mos
     Parameters
     ----------
     lines : iterable of str
-        The lines; empty ones and remarks are left out.
+        The lines; empty ones and remarks are ignored.
     layout : Layout
-        What they look like.
+        Layout of the lines.
     bad_line : callable
-        Returns what is wrong with the first bad line, nothing if it finds none.
+        Returns the error of the first bad line, empty if there is none.
     most : int, optional
-        How many lines are read, all if left out.
+        Number of lines to read, all if left out.
 
     Raises
     ------
     ValueError
-        With the line that is no entry.
+        If a line is not an entry; the message names it.
     """
     held = (line for line in lines if line.partition(layout.remark)[0].strip())
     entries = itertools.islice(held, most)
@@ -82,12 +82,12 @@ def _columns(lines: list[str], layout: Layout) -> list[Array]:
 
 
 def _are_numbers(numbers: Array) -> bool:
-    """Return whether what numbers rows and columns is whole and not too large."""
+    """Return whether numbers of rows and columns are whole and not too large."""
     return bool(((numbers == np.round(numbers)) & (np.abs(numbers) < LARGEST_NUMBER)).all())
 
 
 def first_bad(lines: Iterable[str], above: int, layout: Layout) -> str:
-    """Return what is wrong with the first line that is no entry, nothing if all are; `above` lines are left out."""
+    """Return the error of the first line that is not an entry, empty if all are; `above` lines come before them."""
     for number, line in enumerate(lines, above + 1):
         text = line.partition(layout.remark)[0].strip()
         if text and not _is_entry(text.split(layout.comma), layout.width):
@@ -114,7 +114,7 @@ class Lines:
         return iter(self.take, "")
 
     def take(self) -> str:
-        """Return the next line without its end, nothing at the end of the file."""
+        """Return the next line without its end, empty at the end of the file."""
         line = self._file.readline()
         self.number += bool(line)
         return line.rstrip("\r\n") or ("\n" if line else "")
@@ -133,16 +133,16 @@ class Lines:
         return line
 
     def bad(self, wanted: str, got: str) -> ValueError:
-        """Return what to raise where the line last taken is another one."""
+        """Return the error to raise if the line last taken has another form."""
         return ValueError(f"line {self.number} must be {wanted}, got {got.strip()[:60]!r}")
 
     def numbers(self, count: int, across: int, width: int) -> Array:
-        """Return numbers that stand in columns of some width, so many across a line.
+        """Return `count` numbers in columns of `width` characters, `across` in a line.
 
         Raises
         ------
         ValueError
-            With the line that holds something else.
+            If a line holds something else; the message names it.
         """
         wanted = f"{across} numbers of {width} characters" if across > 1 else f"a number of {width} characters"
         pieces = []
