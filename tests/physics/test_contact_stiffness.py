@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi, radians, sqrt
+from math import pi, sqrt
 
 import numpy as np
 import pytest
 
 import stridula as st
 from stridula.contact.stiffness import force_at
+from stridula.verification.systems.mode_coupling import AT_CONTACT, GROUNDED
 
 from .test_equilibrium_starts import growth, starting
 from .test_space import SCHEMES, dragged, standing
@@ -82,14 +83,9 @@ def hoffmann(friction: float, **start) -> st.System:
     """Hoffmann's mass (2002) with the spring that it has at its contact: K = [[2, 1 - 4 mu / 3], [1, 2]]."""
     mass = st.PointMass(1.0)
     belt = st.RigidTrack(velocity=-5.0)
-    contact = st.PointContact(mass.centre, belt, friction=st.Coulomb(friction), stiffness=4.0 / 3.0)
-    springs = [
-        (2.0 * (2.0 - sqrt(3.0)) / 3.0, 150.0),
-        (2.0 * (2.0 + sqrt(3.0)) / 3.0, 30.0),
-    ]
+    contact = st.PointContact(mass.centre, belt, friction=st.Coulomb(friction), stiffness=AT_CONTACT)
     connections = [
-        st.Spring(mass.centre, stiffness=rate, direction=(np.cos(radians(by)), np.sin(radians(by)), 0.0))
-        for rate, by in springs
+        st.Spring(mass.centre, stiffness=rate, direction=(np.cos(by), np.sin(by), 0.0)) for rate, by in GROUNDED
     ]
     return st.System(contact, [st.Force(mass.centre, y=-10.0)], connections)
 

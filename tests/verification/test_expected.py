@@ -11,7 +11,6 @@ import stridula as st
 from stridula.verification import (
     frequencies,
     impacts,
-    instabilities,
     jams,
     laws,
     partial_slip,
@@ -20,17 +19,18 @@ from stridula.verification import (
     stability,
     strings,
 )
+from stridula.verification.systems import mode_coupling, on_belts
 
 
 def test_sdnd100():
-    points, time = sliders.turning_points(0.85e-3, 0.0, 100.0, 1e-4)
+    points, time = on_belts.turning_points(0.85e-3, 0.0, 100.0, 1e-4)
     assert points == pytest.approx([-0.65e-3, 0.45e-3, -0.25e-3, 0.05e-3], abs=1e-12)
     assert time == pytest.approx(0.125664, abs=5e-7)
     assert time == pytest.approx(4 * pi / 100)
 
 
 def test_relay():
-    points, time = sliders.turning_points(12.0, 6.0, 1.0, 1.0)
+    points, time = on_belts.turning_points(12.0, 6.0, 1.0, 1.0)
     printed = [13.317821, -11.317821, 9.317821, -7.317821, 5.317821, -3.317821, 1.317821, 0.682179]
     assert points == pytest.approx(printed, abs=5e-7)
     assert time == pytest.approx(22.423556, abs=5e-7)
@@ -38,7 +38,7 @@ def test_relay():
 
 
 def test_belt():
-    known = sliders.stick_slip(sliders.BELT)
+    known = on_belts.stick_slip(sliders.BELT)
     assert known.slip == pytest.approx(2.158799, abs=5e-7)
     assert known.stick == pytest.approx(1.5)
     assert known.slip + known.stick == pytest.approx(3.658799, abs=5e-7)
@@ -47,7 +47,7 @@ def test_belt():
 
 
 def test_hoffmann():
-    model = instabilities.hoffmann()
+    model = mode_coupling.hoffmann()
     np.testing.assert_allclose(model.sliding(0.3), [[2.0, 1.0 - 4.0 * 0.3 / 3.0], [1.0, 2.0]], atol=1e-12)
     assert model.exponents(0.5).imag == pytest.approx([1.605413, 1.192749], abs=5e-7)
     assert model.exponents(0.5).real == pytest.approx([0.0, 0.0], abs=1e-12)
@@ -63,15 +63,15 @@ def test_hoffmann():
 )
 def test_sinou(damping, printed):
     """The limit by Hurwitz is where the growth of the eigenvalues passes zero."""
-    limit, model = instabilities.sinou_limit(damping), instabilities.sinou(damping)
+    limit, model = mode_coupling.sinou_limit(damping), mode_coupling.sinou(damping)
     assert limit == pytest.approx(printed, abs=5e-7)
     assert model.exponents(limit * (1 - 1e-4))[0].real < 1e-7
     assert model.exponents(limit * (1 + 1e-4))[0].real > 1e-4
 
 
 def test_sinou_flutters_at_88_hertz():
-    model = instabilities.sinou()
-    met = model.exponents(instabilities.sinou_limit((0.0, 0.0)))
+    model = mode_coupling.sinou()
+    met = model.exponents(mode_coupling.sinou_limit((0.0, 0.0)))
     assert met.imag / (2 * pi) == pytest.approx([88.3883, 88.3883], abs=1e-3)
 
 

@@ -19,7 +19,8 @@ from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, schemes
 from .frequencies import fitted_order
-from .instabilities import hoffmann, only_sliding
+from .prony import only_sliding
+from .systems.mode_coupling import hoffmann
 
 STEEL = Material(2.1e11, 7800.0)
 STRIP = Rectangle(0.020, 0.004)

@@ -19,7 +19,7 @@ from ..lowering.schemes import Scheme
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
 from .frequencies import SQUARE, STEEL
-from .instabilities import exponents, only_sliding
+from .prony import exponents, only_sliding
 
 PUSH = 1e-3
 # Frequency below which figures are printed [Hz].
