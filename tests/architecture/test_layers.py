@@ -218,6 +218,19 @@ def test_modules_that_docs_name_are_there_in_a_fresh_interpreter(name):
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
+def test_what_the_api_page_names_is_there_after_a_plain_import():
+    """Folders and modules that names come from are attributes, and have these names, too."""
+    code = "import stridula as st; print(*(f'{name}:{hasattr(st, name)}' for name in dir(st)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    found = dict(one.split(":") for one in done.stdout.split())
+    assert set(found.values()) == {"True"}
+    assert {"acoustics", "analysis", "bodies", "contact", "drives", "integration", "plot", "records"} <= set(found)
+    for home in ("acoustics", "acoustics.levels", "acoustics.sensation", "acoustics.wav"):
+        assert set(stridula._HOME[home]) <= set(stridula.acoustics.__all__)
+    for name in stridula.acoustics.__all__:
+        assert getattr(stridula.acoustics, name) is getattr(stridula, name)
+
+
 def test_docs_name_modules():
     assert {"analysis", "papers.laulagnet_2011", "plot", "studies.share_of"} <= modules_that_docs_name()
 

@@ -1,4 +1,4 @@
-"""Ready cases as TOML, in the same words as the Python API, and their loader."""
+"""Shipped scenarios as TOML, with the names of the Python API, and their loader."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = [*_HOME]
 
 
 def __getattr__(name: str) -> Any:
-    """Import a name from its home on first use, so that a list of cases needs no compiler."""
+    """Import a name from its module on first use, so that a list of cases needs no compiler."""
     if name not in _HOME:
         raise AttributeError(f"module 'stridula.scenarios' has no attribute {name!r}")
     return getattr(import_module(f".{_HOME[name]}", __name__), name)

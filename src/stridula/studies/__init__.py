@@ -1,4 +1,4 @@
-"""What many runs say: ensembles, sweeps and maps, squeal surveys, root loci, calibration, sensitivity."""
+"""Studies of many runs: ensembles, sweeps and maps, squeal surveys, root loci, calibration, sensitivity."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ __all__ = [*_HOME]
 
 
 def __getattr__(name: str) -> Any:
-    """Import a name from its home on first use: an ensemble needs no scenarios."""
+    """Import a name from its module on first use, since an ensemble needs no scenarios."""
     if name not in _HOME:
         raise AttributeError(f"module 'stridula.studies' has no attribute {name!r}")
     return getattr(import_module(f".{_HOME[name]}", __name__), name)

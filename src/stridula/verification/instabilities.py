@@ -1,4 +1,4 @@
-"""Mode coupling: growth and frequency of a preloaded sliding contact after a small kick, seen in time."""
+"""Mode coupling: growth and frequency of a preloaded sliding contact after a small kick, measured in time."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from .systems.mode_coupling import SINOU_FREQUENCIES, Coupled, hoffmann, sinou, 
 def bound(model: Coupled, step: float) -> float:
     """Return the relative error of an exponent: of second order in the step, ``(W h)² / 12``.
 
-    W is the highest frequency of the body without contact, since the exact modal scheme marches those modes and holds
-    the foot by impulses. Central differences have ``|s|² h² / 24``, less than that.
+    W is the highest frequency of the body without contact, since the exact modal scheme integrates those modes and
+    holds the foot by impulses. Central differences have ``|s|² h² / 24``, less than that.
     """
     return (model.highest * step) ** 2 / 12.0
 
@@ -38,7 +38,7 @@ def _rows(model: Coupled, friction: float, scheme: Scheme, step: float, duration
 
 
 def _limit_undamped(model: Coupled, low: float, high: float, scheme: Scheme, step: float, duration: float) -> float:
-    """Return where both frequencies meet, from motions on both sides.
+    """Return the friction at which both frequencies meet, from motions on both sides.
 
     The squares of the two exponents are the roots of a polynomial whose discriminant is smooth in the coefficient of
     friction and passes zero where they meet.
@@ -54,7 +54,7 @@ def _limit_undamped(model: Coupled, low: float, high: float, scheme: Scheme, ste
 
 
 def hoffmann_case() -> Outcome:
-    """Below flutter, above it, and where it begins."""
+    """Motion below and above flutter, and its onset."""
     model, step, duration = hoffmann(), 2e-3, 20.0
     curves: list[Curve] = []
 
@@ -78,7 +78,7 @@ SINOU_DAMPINGS = ((0.0, 0.0), (0.02, 0.02), (0.02, 0.06))
 
 
 def sinou_case() -> Outcome:
-    """Where flutter begins without damping, with equal and with unequal damping; growth on both sides."""
+    """Onset of flutter without damping, with equal and with unequal damping; growth on both sides."""
     step, duration = 1e-5, 0.06
     curves: list[Curve] = []
 
@@ -116,7 +116,7 @@ def _rest(row: Row) -> tuple[float, float, float, str, str, str]:
 
 
 def _slack(model: Coupled, limit: float, step: float) -> float:
-    """Return the error of a limit that an error of the exponents makes."""
+    """Return the error of a limit caused by an error of the exponents."""
     if not model.damping.any():
         w1, w2 = SINOU_FREQUENCIES
         # Discriminant (w1² - w2²)² - 4 mu² w1² w2² of slope 8 mu w1² w2²; squares off by 2 |s|² (W h)² / 12 each.

@@ -1,4 +1,4 @@
-"""Observed order of the time schemes on smooth motion, and what the exact modal scheme has exact."""
+"""Observed order of the time schemes on smooth motion, and exactness of the exact modal scheme."""
 
 from __future__ import annotations
 

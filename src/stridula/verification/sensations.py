@@ -10,7 +10,7 @@ from ..acoustics.sensation import is_available, loudness, loudness_over_time
 from .case import Case, Curve, Outcome, Row, Sketch
 
 RATE = 48000
-# Levels [dB] and durations [s]. The stationary method filters from silence: at 80 dB that start alone is heard as 5 %.
+# Levels [dB] and durations [s]. The stationary method filters from silence: at 80 dB that onset alone accounts for 5 %.
 STEADY, STEADY_LASTS = (40.0, 60.0), 2.0
 VARYING, VARYING_LASTS = (40.0, 60.0, 80.0), 1.0
 TOLERANCE = "ISO 532-1, the larger of 5 % and 0.1 sone"
@@ -44,7 +44,7 @@ def tones() -> Outcome:
         curves.append(Curve(np.array(STEADY), np.array(steady), "stationary method", marks=True))
         curves.append(Curve(np.array(VARYING), np.array(varying), "time-varying method", marks=True))
     else:
-        notes.append("Not run: it takes the package mosqito (pip install .[psycho] in the sources).")
+        notes.append("Not run: it needs the package mosqito (pip install .[psycho] in the sources).")
     return Outcome(rows, Sketch("level of 1 kHz [dB]", "loudness [sone]", curves), notes)
 
 

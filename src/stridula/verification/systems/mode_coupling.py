@@ -19,7 +19,7 @@ from ...records import Displacement
 from ...system import System
 from ..prony import exponents, only_sliding
 
-# Mass of a foot behind a contact spring. On its belt it does not move, so that any mass gives the same sliding motion.
+# Mass of a foot behind a contact spring. It rests on its belt, so that any mass gives the same sliding motion.
 FOOT = 0.5
 
 
@@ -27,7 +27,7 @@ FOOT = 0.5
 class Coupled:
     """A mass in the plane on belts, each under a foot at the end of a contact spring.
 
-    Degrees of freedom: x and y of the mass, then one for each foot along its belt's normal. Along the belt a foot goes
+    Degrees of freedom: x and y of the mass, then one for each foot along its belt's normal. Along the belt a foot moves
     with the mass.
 
     Attributes
@@ -38,9 +38,9 @@ class Coupled:
         For each belt: name, degrees of freedom that give the foot's x and y, inclination of the belt [rad], sense in
         which the belt runs along its tangent.
     sliding : callable
-        Takes the coefficient of friction, returns the stiffness matrix, shape (2, 2), of the mass sliding.
+        Function of the coefficient of friction that returns the stiffness matrix of the sliding mass, shape (2, 2).
     time : float
-        Unit of time: what the lowest angular frequency is one over [s].
+        Unit of time, the inverse of the lowest angular frequency [s].
     """
 
     mass: Array
@@ -74,12 +74,12 @@ class Coupled:
         return sum((np.array([np.sin(turn), -np.cos(turn)]) for _, _, turn, _ in self.feet), np.zeros(2))
 
     def start(self, friction: float, kick: float = 0.01) -> tuple[Array, Array]:
-        """Return place of sliding equilibrium, and one a kick away from it."""
+        """Return the position of sliding equilibrium, and one displaced by a kick."""
         rest = np.linalg.solve(self.sliding(friction), self.push())
         return rest, rest + kick * np.linalg.norm(rest) * np.array([1.0, 0.6])
 
     def system(self, friction: float) -> System:
-        """Return it pressed on belts that run too fast to stick, a kick away from sliding equilibrium."""
+        """Return the system pressed on belts too fast to stick, displaced by a kick from sliding equilibrium."""
         body, push, (_, place) = self.body(), self.push(), self.start(friction)
         contacts = []
         for name, _, inclination, sense in self.feet:
@@ -91,14 +91,14 @@ class Coupled:
         return System(contacts, drives=[Force(body.at("mass"), x=push[0], y=push[1]), start])
 
     def run(self, friction: float, scheme: Scheme, step: float, duration: float) -> xr.Dataset:
-        """March and record every step."""
+        """Simulate and record every step."""
         system = self.system(friction)
         point = system.drives[0].point  # type: ignore[attr-defined]
         probes = [Displacement(point, "x"), Displacement(point, "y")]
         return simulate(system, duration, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes)
 
     def seen(self, friction: float, scheme: Scheme, step: float, duration: float) -> Array:
-        """Return the exponents of the motion seen in time [1/s], the fastest growing first."""
+        """Return the exponents of the simulated motion [1/s], the fastest growing first."""
         run = self.run(friction, scheme, step, duration)
         only_sliding(run)
         every = max(1, round(0.15 * 2.0 * pi / abs(self.exponents(friction)).max() / step))
@@ -114,7 +114,7 @@ AT_CONTACT = 4.0 / 3.0
 
 
 def hoffmann(scale: float = 1.0, damping: float = 0.0, foot: float = FOOT) -> Coupled:
-    """Return Hoffmann's mass: springs k1 at 150° and k2 at 30°, contact spring k3 over a belt that runs to -x.
+    """Return Hoffmann's mass: springs k1 at 150° and k2 at 30°, contact spring k3 over a belt that runs towards -x.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def hoffmann(scale: float = 1.0, damping: float = 0.0, foot: float = FOOT) -> Co
         damping=np.diag([damping, damping, 0.0]),
         stiffness=stiffness,
         feet=(("floor", (0, 2), 0.0, -1.0),),
-        # The normal force is -k3 y, the belt drags with mu N to -x.
+        # The normal force is -k3 y, the belt drags with mu N towards -x.
         sliding=lambda mu: free - mu * k3 * np.array([[0.0, 1.0], [0.0, 0.0]]),
         time=1.0 / sqrt(scale),
     )

@@ -22,7 +22,7 @@ from ...lowering.schemes import Scheme
 from ...records import Displacement
 from ...system import System
 
-# Takes slip velocity and state, returns ratio of forces and rate of the state.
+# A function of slip velocity and state that returns the ratio of forces and the rate of the state.
 Rubbing = Callable[[float, float], tuple[float, float]]
 
 
@@ -41,7 +41,7 @@ class Slider:
     belt : float, optional
         Velocity of the floor [m/s].
     push : Harmonic, optional
-        Force on the mass along the floor, times 1 N; none if left out.
+        Factor on a force of 1 N along the floor; none if left out.
     dashpot : float, optional
         Coefficient of a dashpot beside the spring [N s/m].
     """
@@ -57,7 +57,7 @@ class Slider:
     dashpot: float = 0.0
 
     def system(self, track: RigidTrack | None = None, **contact: Any) -> System:
-        """Return it as a system; on another track, or with more said of its contact."""
+        """Return its system, on `track` where given, with further arguments of its contact."""
         body = PointMass(self.mass)
         drives: list[Any] = [Force(body.centre, y=-self.normal)]
         if self.position or self.velocity:
@@ -71,13 +71,13 @@ class Slider:
         return System(PointContact(body.centre, track, friction=self.friction, **contact), drives, held)
 
     def run(self, duration: float, step: float, scheme: Scheme) -> xr.Dataset:
-        """March and record every step."""
+        """Simulate and record every step."""
         system = self.system()
         probes = [Displacement(system.contacts[0].tip, "x")]
         return simulate(system, duration, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes)
 
     def rates(self, rubbing: Rubbing | None = None) -> Callable[[float, Array], list[float]]:
-        """Return the equations of motion as a solver takes them: of place, slip velocity and state of the law."""
+        """Return the rates of place, slip velocity and state of the law, as a solver takes them."""
         rubbing = rubbing or rubbing_of(self.friction)
 
         def rates(_: float, y: Array) -> list[float]:
@@ -89,7 +89,7 @@ class Slider:
         return rates
 
     def turns(self, duration: float, state: float, rubbing: Rubbing | None = None) -> tuple[Array, Array]:
-        """Return when the mass turns round, and its places then, by LSODA to 1e-11 from a state of the law."""
+        """Return the times and places at which the mass turns round, by LSODA to 1e-11 from a state of the law."""
 
         def turned(_: float, y: Array) -> float:
             return float(y[1]) + self.belt
@@ -128,7 +128,7 @@ def rubbing_of(law: Any) -> Rubbing:
 
 
 def turning_points(position: float, velocity: float, angular: float, offset: float) -> tuple[list[float], float]:
-    """Return the turning points of a mass on a spring under Coulomb friction, the last one where it stays, and when.
+    """Return the turning points of a mass on a spring under Coulomb friction, the last being its rest, and their times.
 
     It swings about ``-offset sign(x')`` with ``offset = mu N / k``: the amplitude falls by ``2 offset`` every half
     period, and it stays at the first turning point within the offset.
@@ -195,7 +195,7 @@ def stick_slip(slider: Slider) -> StickSlip:
 
 
 def den_hartog(frequency: float, friction: float) -> float:
-    """Return the amplitude of a mass on a spring, both 1, under ``cos(w t)`` N, rubbed so little that it never stops.
+    """Return the amplitude of a mass on a spring, both 1, under ``cos(w t)`` N and little friction, never at rest.
 
     With ``V = 1 / (1 - w²)`` and ``U = sin(pi/w) / (w (1 + cos(pi/w)))`` it is ``sqrt(V² - (U mu N)²)``.
     """
@@ -205,7 +205,7 @@ def den_hartog(frequency: float, friction: float) -> float:
 
 
 def swing(frequency: float, friction: float, count: float, scheme: Scheme) -> float:
-    """Return the amplitude of the same in the march, steps a period given; its peaks by parabolas through samples."""
+    """Return the amplitude of the same mass, simulated in `count` steps per period; peaks by parabolas."""
     period = 2.0 * pi / frequency
     swung = Slider(1.0, 1.0, 1.0, Coulomb(friction), push=Harmonic(1.0 / period))
     place = swung.run(150.0 * period, period / count, scheme)["displacement"].values[-int(20 * count) :, 0]

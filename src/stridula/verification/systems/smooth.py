@@ -43,18 +43,18 @@ def motion(angular: Array, damping: Array, force: Array, velocity: Array, time: 
 
 @dataclass(frozen=True)
 class Smooth:
-    """A body that moves without touching, and its exact motion at the end.
+    """A body that moves without contact, and its exact motion at the end.
 
     Attributes
     ----------
     name : str
-        What it is.
+        Description.
     system : System
-        The body among its like.
+        A system with the body.
     body : FiniteElementBeam or ModalBeam
         The one that moves.
     places : tuple of float
-        Where it is looked at [m].
+        Positions of the points compared [m].
     modal : ndarray
         Positions of its modes at the end.
     """
