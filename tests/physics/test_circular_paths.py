@@ -9,21 +9,20 @@ import stridula as st
 from stridula.acoustics.redriven import redriven
 from stridula.bodies import Turning
 from stridula.lowering import assemble
+from stridula.verification.systems import discs
+from stridula.verification.systems.discs import HERE, STEEL
 
 from .test_equilibrium_starts import growth, starting
 from .test_space import SCHEMES, reference
 
-STEEL = st.Material(2.1e11, 7850.0, 0.3)
-PLATE = st.RectangleProfile({"disc": ((0.03, 0.15), (0.0, 0.01))})
-RADIUS = 0.14
-HERE = (RADIUS, 0.3, 0.01)
+RADIUS = HERE[0]
 UP = (0.0, 0.0, 1.0)
 LEDGER = ["kinetic_and_elastic", "damping_loss", "drive_work", "contact_work"]
 WORDS = {"step": 2e-6, "sample_rate": 1e5, "probes": []}
 
 
 def disc(turning: float = 0.0, cutoff: float = 4000.0, **words) -> st.AxisymmetricBody:
-    return st.AxisymmetricBody(PLATE, STEEL, cutoff, "inner", **{"damping": 0.002, **words}, turning=turning)
+    return discs.disc(turning, cutoff, **{"damping": 0.002, **words})
 
 
 def ways(abscissa: float = 0.0) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -8,18 +8,12 @@ import numpy as np
 import pytest
 
 import stridula as st
+from stridula.verification.systems.discs import HERE, PLATE, STEEL, disc, ring, struck
 
 from .test_equilibrium_starts import growth, starting
 from .test_space import SCHEMES, reference
 
-STEEL = st.Material(2.1e11, 7850.0, 0.3)
 SLIDING = 2
-PLATE = st.RectangleProfile({"disc": ((0.03, 0.15), (0.0, 0.01))})
-HERE = (0.14, 0.3, 0.01)
-
-
-def disc(turning: float, cutoff: float = 4000.0, **words) -> st.AxisymmetricBody:
-    return st.AxisymmetricBody(PLATE, STEEL, cutoff, "inner", turning=turning, **words)
 
 
 def rubbed(turning: float, friction=0.3, mass: float = 0.2, stiffness: float = 1e6, held: str = "xy", **words):
@@ -35,31 +29,15 @@ def rubbed(turning: float, friction=0.3, mass: float = 0.2, stiffness: float = 1
 # Waves.
 
 
-def ring(turning: float = 10.0) -> st.AxisymmetricBody:
-    middle, thickness = 0.088, 0.00088
-    section = (middle - thickness / 2.0, middle + thickness / 2.0), (0.0, 0.02)
-    held = st.Held("bottom", "z")
-    return st.AxisymmetricBody(st.RectangleProfile({"ring": section}), STEEL, 900.0, held, turning=turning)
-
-
 def test_waves_of_a_ring_lag_as_bryan_found():
     """Coriolis forces let the waves of an inextensible ring turn by (n² - 1) / (n² + 1) of its own turn (1890)."""
-    turning = ring().modes().turning
+    turning = ring(10.0).modes().turning
     for order, drag in zip(turning.order[1:], turning.drag[1:], strict=True):
         # The hoop is not thin against waves of high order.
         assert drag / order == pytest.approx((order**2 - 1.0) / (order**2 + 1.0), rel=1e-4 * order)
     # What moves straight on does not turn at all.
     assert turning.order[0] == 1.0
     assert abs(turning.drag[0]) < 1e-9
-
-
-def struck(turning: float, **words):
-    """A disc struck at a point that nothing touches, and what is seen there."""
-    plate = disc(turning, **words)
-    apart = st.RigidBody(1.0, points={"tip": (0.0, 0.0, 0.0)})
-    contact = st.PointContact(apart.at("tip"), plate.at(HERE), gap=1.0, normal=(0.0, 0.0, 1.0))
-    blow = st.Force(plate.at(HERE), z=1.0, history=st.Sampled((0.0, 2e-4, 4e-4), (0.0, 1.0, 0.0)))
-    return st.System(contact, [blow]), plate
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

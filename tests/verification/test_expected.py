@@ -10,7 +10,6 @@ import pytest
 import stridula as st
 from stridula.verification import (
     frequencies,
-    impacts,
     jams,
     laws,
     partial_slip,
@@ -19,7 +18,7 @@ from stridula.verification import (
     stability,
     strings,
 )
-from stridula.verification.systems import mode_coupling, on_belts
+from stridula.verification.systems import bars, mode_coupling, on_belts
 
 
 def test_sdnd100():
@@ -86,27 +85,27 @@ def test_sliding_stability():
 
 
 def test_impact():
-    assert impacts.WALL.plateau(0.1) == pytest.approx(1270.83, abs=0.005)
-    assert 5e-4 + impacts.WALL.crossing == pytest.approx(8.854e-4, abs=5e-8)
-    assert 2 * impacts.WALL.mass * 0.1 == pytest.approx(0.489840, abs=5e-7)
+    assert bars.WALL.plateau(0.1) == pytest.approx(1270.83, abs=0.005)
+    assert 5e-4 + bars.WALL.crossing == pytest.approx(8.854e-4, abs=5e-8)
+    assert 2 * bars.WALL.mass * 0.1 == pytest.approx(0.489840, abs=5e-7)
 
 
 @pytest.mark.parametrize(("courant", "printed"), [(0.9, 0.026), (0.5, 0.079)])
 def test_printed_overshoots_are_those_of_the_scheme(courant, printed):
     """Printed to 0.1 %; from the closed form of lumped mass and central differences, with this gap."""
-    words = {"gap": impacts.GAP, "velocity": impacts.VELOCITY, "duration": impacts.DURATION}
-    force = impacts.force_of_scheme(impacts.WALL, "lumped", True, impacts.WALL.step(courant), **words)
-    assert force.max() / impacts.WALL.plateau(0.1) - 1 == pytest.approx(printed, abs=5e-4)
+    words = {"gap": bars.GAP, "velocity": bars.VELOCITY, "duration": bars.DURATION}
+    force = bars.force_of_scheme(bars.WALL, "lumped", True, bars.WALL.step(courant), **words)
+    assert force.max() / bars.WALL.plateau(0.1) - 1 == pytest.approx(printed, abs=5e-4)
 
 
 def test_bouncing_bar():
-    assert impacts.contacts() == pytest.approx((1.0, 1.6667, 3.6667, 4.3333), abs=5e-5)
+    assert bars.contacts() == pytest.approx((1.0, 1.6667, 3.6667, 4.3333), abs=5e-5)
     times = (0.0, 0.5, 1.3, 2.0, 2.5, 8 / 3, 4.0, 16 / 3)
     heights = (5.0, 3.75, 0.0, 1.666667, 4.027778, 3.888889, 0.0, 5.0)
-    assert [impacts.bounce(time) for time in times] == pytest.approx(heights, abs=5e-7)
-    assert impacts.BALL.plateau(10.0) == pytest.approx(300.0)
+    assert [bars.bounce(time) for time in times] == pytest.approx(heights, abs=5e-7)
+    assert bars.BALL.plateau(10.0) == pytest.approx(300.0)
     # Momentum: the pressure 300 + 300 s over 2/3 s turns -10 m/s of 10 kg into +10 m/s against their weight.
-    crossing = impacts.BALL.crossing
+    crossing = bars.BALL.crossing
     assert 300 * crossing + 150 * crossing**2 == pytest.approx(10 * (20 + 10 * crossing))
 
 
