@@ -12,9 +12,9 @@ from scipy.optimize import brentq
 import stridula as st
 from stridula.analysis.stability import stability_of
 from stridula.verification.prony import exponents
-from stridula.verification.stability import Pair
 from stridula.verification.systems import mode_coupling
 from stridula.verification.systems.on_belts import Slider
+from stridula.verification.systems.pair import Pair
 
 STEEL, SQUARE = st.Material(2.1e11, 7800.0), st.Rectangle(0.01, 0.01)
 SLIDING = 2

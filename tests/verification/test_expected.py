@@ -9,7 +9,6 @@ import pytest
 
 import stridula as st
 from stridula.verification import (
-    frequencies,
     jams,
     laws,
     partial_slip,
@@ -18,7 +17,7 @@ from stridula.verification import (
     stability,
     strings,
 )
-from stridula.verification.systems import bars, mode_coupling, on_belts
+from stridula.verification.systems import bars, beams, mode_coupling, on_belts
 
 
 def test_sdnd100():
@@ -134,13 +133,12 @@ def test_velocity_step_starts_and_ends_where_it_must():
 
 
 def test_frequencies():
-    steel = {beam.name: beam for beam in frequencies.BEAMS}
-    found = frequencies.bending(steel["simply supported"].roots, 0.3)[:3]
+    found = beams.bending(beams.SUPPORTS["simply supported"].roots, 0.3)[:3]
     np.testing.assert_allclose(found, [261.43, 1045.70, 2352.84], atol=0.0051)
-    found = frequencies.bending(steel["guided-free"].roots, 0.15)[:3]
+    found = beams.bending(beams.SUPPORTS["guided-free"].roots, 0.15)[:3]
     np.testing.assert_allclose(found, [592.62, 3202.49, 7908.14], atol=0.0051)
     np.testing.assert_allclose(
-        frequencies.guided_free_roots(4), [2.3650204, 5.4978039, 8.6393798, 11.7809725], atol=5e-8
+        beams.SUPPORTS["guided-free"].roots, [2.3650204, 5.4978039, 8.6393798, 11.7809725], atol=5e-8
     )
 
 
