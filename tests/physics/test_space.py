@@ -16,6 +16,7 @@ from stridula.integration.forces import forces_of
 from stridula.verification.surfaces import RADIUS, WEIGHT, coin
 from stridula.verification.systems.in_space import MASS, PRINTED_RATIO, RATIO, STIFFNESS, swinging, thrown_on_a_slope
 
+from .checks import goes_on, same_side_by_side
 from .lattice import lattice, matrices
 from .test_equilibrium_starts import growth
 
@@ -327,12 +328,7 @@ def test_contacts_in_space_obey_their_laws_at_every_step(law, scheme):
 
 def test_runs_side_by_side_are_those_alone():
     systems = [standing(st.Coulomb(0.1 * k)) for k in range(1, 10)]
-    words = {"step": 4e-6, "sample_rate": 5e4, "probes": []}
-    together = st.simulate_many(systems, 2e-3, workers=1, **words)
-    for one, system in zip(together, systems, strict=True):
-        alone = st.simulate(system, 2e-3, **words)
-        for name in ("normal_force", "tangential_force", "slip_velocity", "friction_loss"):
-            np.testing.assert_allclose(one[name], alone[name], rtol=1e-9, atol=1e-9 * float(np.abs(alone[name]).max()))
+    same_side_by_side(systems, 2e-3, step=4e-6, sample_rate=5e4, probes=[])
 
 
 def dragged(friction: float, damping: float) -> st.System:
@@ -549,18 +545,13 @@ def test_an_ensemble_of_a_system_in_space_starts_from_small_changes():
 
 def test_a_run_in_space_goes_on_and_runs_again(tmp_path):
     system = standing()
-    words = {"step": 4e-6, "sample_rate": 5e4}
     probes = [st.Displacement(system.slider.at("top"), "z"), st.Velocity(system.slider.at("foot 1"), "z")]
-    whole = st.simulate(system, 2e-3, probes=probes, **words)
-    half = st.simulate(system, 1e-3, probes=probes, **words)
-    st.save(half, tmp_path / "half.nc")
-    loaded = st.load(tmp_path / "half.nc")
-    rest = st.simulate(system, 1e-3, start=loaded, probes=probes, **words)
-    for name in ("normal_force", "tangential_force", "contact_position"):
-        np.testing.assert_array_equal(whole[name][half.time.size :], rest[name])
+    names = ("normal_force", "tangential_force", "contact_position")
+    words = {"step": 4e-6, "sample_rate": 5e4, "probes": probes}
+    whole, *_, scenario = goes_on(system, 2e-3, names, tmp_path, **words)
     assert whole.tangential_force.dims == ("time", "contact", "tangent")
     assert whole.normal_force.dims == ("time", "contact")
-    again = st.load_scenario(whole).simulate()
+    again = scenario.simulate()
     np.testing.assert_array_equal(again.tangential_force, whole.tangential_force)
     np.testing.assert_array_equal(again.displacement, whole.displacement)
 

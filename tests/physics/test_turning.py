@@ -10,6 +10,7 @@ import pytest
 import stridula as st
 from stridula.verification.systems.discs import HERE, PLATE, STEEL, disc, ring, struck
 
+from .checks import goes_on, same_side_by_side
 from .test_equilibrium_starts import growth, starting
 from .test_space import SCHEMES, reference
 
@@ -202,16 +203,12 @@ def test_energy_is_kept_and_the_drive_pays(scheme):
 
 def test_a_run_goes_on_to_the_last_bit_and_runs_again(tmp_path):
     system = rubbed(300.0, friction=0.4, damping=0.002)
-    words = {"step": 4e-6, "sample_rate": 5e4}
     probes = [st.Velocity(system.track.at(HERE), "z"), st.Acceleration(system.track.at(HERE), "x")]
-    whole = st.simulate(system, 2e-3, probes=probes, **words)
-    half = st.simulate(system, 1e-3, probes=probes, **words)
-    st.save(half, tmp_path / "half.nc")
-    rest = st.simulate(system, 1e-3, start=st.load(tmp_path / "half.nc"), probes=probes, **words)
-    for name in ("normal_force", "tangential_force", "drive_work", "slip_velocity"):
-        np.testing.assert_array_equal(whole[name][half.time.size :], rest[name])
+    words = {"step": 4e-6, "sample_rate": 5e4, "probes": probes}
+    names = ("normal_force", "tangential_force", "drive_work", "slip_velocity")
+    whole, half, rest, scenario = goes_on(system, 2e-3, names, tmp_path, **words)
     np.testing.assert_array_equal(whole.velocity[half.time.size + 1 :], rest.velocity[1:])
-    again = st.load_scenario(whole).simulate()
+    again = scenario.simulate()
     for name in ("normal_force", "tangential_force", "velocity", "acceleration"):
         np.testing.assert_array_equal(again[name], whole[name])
     # And what is written of a body given by its modes is what was read.
@@ -221,12 +218,7 @@ def test_a_run_goes_on_to_the_last_bit_and_runs_again(tmp_path):
 def test_runs_side_by_side_are_those_alone():
     history = st.Ramp(1e-3)
     systems = [rubbed(40.0 * k, friction=0.3, damping=0.002, turning_history=history) for k in range(1, 10)]
-    words = {"step": 4e-6, "sample_rate": 5e4, "probes": []}
-    together = st.simulate_many(systems, 2e-3, workers=1, **words)
-    for one, system in zip(together, systems, strict=True):
-        alone = st.simulate(system, 2e-3, **words)
-        for name in ("normal_force", "tangential_force", "slip_velocity", "friction_loss"):
-            np.testing.assert_allclose(one[name], alone[name], rtol=1e-9, atol=1e-9 * float(np.abs(alone[name]).max()))
+    same_side_by_side(systems, 2e-3, step=4e-6, sample_rate=5e4, probes=[])
 
 
 def test_discs_at_rest_march_beside_those_that_turn():

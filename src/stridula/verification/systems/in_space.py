@@ -19,11 +19,7 @@ PRINTED_RATIO = 0.000498012
 
 
 def thrown_on_a_slope() -> System:
-    """Return a particle thrown horizontally on a slope whose tangent is the coefficient of friction; downhill is -z.
-
-    Friction and weight along the slope are alike in size, so the speed loses what the speed downhill gains. In the end
-    it goes straight down, at half the speed that it was thrown with.
-    """
+    """Return a particle thrown horizontally on a slope whose tangent is the coefficient of friction; downhill is -z."""
     mass = RigidBody(1.0)
     weight = Gravity(GRAVITY, direction=(0.0, -cos(SLOPE), -sin(SLOPE)))
     contact = PointContact(mass.centre, RigidTrack(), friction=Coulomb(FRICTION))
