@@ -62,8 +62,8 @@ def fitted_order(sizes: Array, errors: Array) -> float:
 
 def element_orders() -> Outcome:
     """Order of the eigenvalue of the second mode in the size of the elements, simply supported."""
-    name, counts = "simply supported", np.array([8, 12, 16, 24])
-    roots = SUPPORTS[name].roots
+    supports, counts = "simply supported", np.array([8, 12, 16, 24])
+    roots = SUPPORTS[supports].roots
     kinds: list[tuple[str, str, int, float, Callable[[FiniteElementBeam], float]]] = [
         ("bending, consistent mass", "consistent", 4, bending(roots, 0.3)[1], lambda body: families(body)[0][1]),
         ("bending, lumped mass", "lumped", 2, bending(roots, 0.3)[1], lambda body: families(body)[0][1]),
@@ -72,7 +72,7 @@ def element_orders() -> Outcome:
     ]
     rows, curves = [], []
     for name, mass, order, known, frequency in kinds:
-        errors = np.array([abs((frequency(beam_of(name, int(n), mass=mass)) / known) ** 2 - 1.0) for n in counts])
+        errors = np.array([abs((frequency(beam_of(supports, int(n), mass=mass)) / known) ** 2 - 1.0) for n in counts])
         rows.append(Row(f"order, {name}", order, fitted_order(1.0 / counts, errors), 0.1, "declared order within 0.1"))
         curves.append(Curve(0.3 / counts, errors, name, marks=True))
     sketch = Sketch("size of an element [m]", "relative error of the eigenvalue", curves, logarithmic=True)
