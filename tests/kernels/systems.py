@@ -8,6 +8,7 @@ import numpy as np
 from physics.cases import dragged, slider, track
 
 import stridula as st
+from stridula.verification.systems.on_belts import Slider
 
 BELT = st.RigidTrack(velocity=0.02, name="belt")
 WEAK = st.Stribeck(0.6, 0.35, 0.01)
@@ -15,13 +16,7 @@ WEAK = st.Stribeck(0.6, 0.35, 0.01)
 
 def oscillator(friction, belt=BELT, load=5.0, **changes) -> st.System:
     """A mass on a belt, held by a spring and a dashpot along x, pressed down: the textbook's stick-slip."""
-    mass = st.PointMass(0.4)
-    contact = st.PointContact(mass.centre, belt, friction=friction, **changes)
-    held = [
-        st.Spring(mass.centre, stiffness=3e3, direction="x"),
-        st.Dashpot(mass.centre, coefficient=1.5, direction="x"),
-    ]
-    return st.System(contact, [st.Force(mass.centre, y=-load)], held)
+    return Slider(0.4, 3e3, load, friction, dashpot=1.5).system(belt, **changes)
 
 
 def chain() -> st.System:

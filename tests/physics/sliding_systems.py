@@ -7,6 +7,7 @@ from math import radians
 import numpy as np
 
 import stridula as st
+from stridula.verification.systems.on_belts import Slider
 
 STEEL, SQUARE = st.Material(2.1e11, 7800.0), st.Rectangle(0.01, 0.01)
 
@@ -51,20 +52,13 @@ def pushed() -> st.System:
 
 
 def mass_on_a_belt(law=None, stiffness: float = 1e3, braking: float = 5.0) -> st.System:
-    mass = st.PointMass(1.0)
-    contact = st.PointContact(mass.centre, st.RigidTrack(velocity=0.5), friction=law or st.Coulomb(0.3))
-    joined = [st.Spring(mass.centre, stiffness=stiffness)]
-    joined += [st.Dashpot(mass.centre, coefficient=braking)] if braking else []
-    return st.System(contact, [st.Gravity(10.0)], joined)
+    return Slider(1.0, stiffness, 10.0, law or st.Coulomb(0.3), belt=0.5, dashpot=braking).system()
 
 
 def mass_on_a_rising_belt() -> st.System:
     """A belt that leans and rises; spring and dashpot between the mass and the ground act along x alone."""
-    mass = st.PointMass(1.0)
     belt = st.RigidTrack(velocity=0.5, normal_velocity=1e-3)
-    contact = st.PointContact(mass.centre, belt, friction=st.Coulomb(0.3), inclination=0.3)
-    joined = [st.Spring(mass.centre, stiffness=1e3), st.Dashpot(mass.centre, coefficient=5.0)]
-    return st.System(contact, [st.Gravity(10.0)], joined)
+    return Slider(1.0, 1e3, 10.0, st.Coulomb(0.3), dashpot=5.0).system(belt, inclination=0.3)
 
 
 def on_a_belt(body) -> st.System:

@@ -8,10 +8,10 @@ import xarray as xr
 
 import stridula as st
 from stridula.acoustics.panels import panel_of
+from stridula.verification.systems.discs import HERE, struck
 
 from .test_open_air import EARS
 from .test_radiation import AIR, BLOW, PLATE, RATE, WIDTH, baffled_spectrum, error, known
-from .test_turning import HERE, struck
 
 # Of the violin through a plate of spruce a metre above it [dB].
 LEVEL = 89.0

@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 
 import stridula as st
 
+from .checks import FORCES, goes_on, same_side_by_side
 from .test_equilibrium_starts import growth, starting
 from .test_space import SCHEMES, TURNED, dragged, in_the_plane, standing, turned
 
@@ -241,15 +242,10 @@ def test_growth_in_time_is_that_of_linear_theory(scheme):
 
 def test_a_run_goes_on_with_both_bristles_and_runs_again(tmp_path):
     system = standing(replace(LAW, initial_state=(1e-6, -2e-6)))
-    words = {"step": 4e-6, "sample_rate": 5e4, "probes": []}
-    whole, half = (st.simulate(system, duration, **words) for duration in (2e-3, 1e-3))
-    st.save(half, tmp_path / "half.nc")
-    rest = st.simulate(system, 1e-3, start=st.load(tmp_path / "half.nc"), **words)
+    names = ("normal_force", "tangential_force", "friction_state")
+    whole, *_, again = goes_on(system, 2e-3, names, tmp_path, step=4e-6, sample_rate=5e4, probes=[])
     assert whole.friction_state.dims == ("time", "contact", "tangent")
     assert np.ptp(whole.friction_state.values[..., 1]) > 1e-6
-    for name in ("normal_force", "tangential_force", "friction_state"):
-        np.testing.assert_array_equal(whole[name][half.time.size :], rest[name])
-    again = st.load_scenario(whole)
     assert again.system == system
     np.testing.assert_array_equal(again.simulate().friction_state, whole.friction_state)
 
@@ -277,12 +273,7 @@ def test_bristles_beside_a_law_with_one_state():
 
 def test_runs_side_by_side_are_those_alone():
     systems = [standing(replace(LAW, kinetic=0.03 * k, static=0.05 * k)) for k in range(1, 10)]
-    words = {"step": 4e-6, "sample_rate": 5e4, "probes": []}
-    together = st.simulate_many(systems, 2e-3, workers=1, **words)
-    for one, system in zip(together, systems, strict=True):
-        alone = st.simulate(system, 2e-3, **words)
-        for name in ("normal_force", "tangential_force", "slip_velocity", "friction_state", "friction_loss"):
-            np.testing.assert_allclose(one[name], alone[name], rtol=1e-9, atol=1e-9 * float(np.abs(alone[name]).max()))
+    same_side_by_side(systems, 2e-3, (*FORCES, "friction_state"), step=4e-6, sample_rate=5e4, probes=[])
 
 
 @pytest.mark.parametrize("law", [LAW, st.Coulomb(curve(LAW, 0.2) + LAW.viscous * 0.2)], ids=lambda law: law.law)

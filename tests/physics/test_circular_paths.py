@@ -9,21 +9,21 @@ import stridula as st
 from stridula.acoustics.redriven import redriven
 from stridula.bodies import Turning
 from stridula.lowering import assemble
+from stridula.verification.systems import discs
+from stridula.verification.systems.discs import HERE, STEEL
 
+from .checks import goes_on, same_side_by_side
 from .test_equilibrium_starts import growth, starting
 from .test_space import SCHEMES, reference
 
-STEEL = st.Material(2.1e11, 7850.0, 0.3)
-PLATE = st.RectangleProfile({"disc": ((0.03, 0.15), (0.0, 0.01))})
-RADIUS = 0.14
-HERE = (RADIUS, 0.3, 0.01)
+RADIUS = HERE[0]
 UP = (0.0, 0.0, 1.0)
 LEDGER = ["kinetic_and_elastic", "damping_loss", "drive_work", "contact_work"]
 WORDS = {"step": 2e-6, "sample_rate": 1e5, "probes": []}
 
 
 def disc(turning: float = 0.0, cutoff: float = 4000.0, **words) -> st.AxisymmetricBody:
-    return st.AxisymmetricBody(PLATE, STEEL, cutoff, "inner", **{"damping": 0.002, **words}, turning=turning)
+    return discs.disc(turning, cutoff, **{"damping": 0.002, **words})
 
 
 def ways(abscissa: float = 0.0) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -292,11 +292,7 @@ def test_a_contact_that_stays_sees_what_moves_round():
 def test_runs_side_by_side_are_those_alone():
     speeds = [5.0 * k for k in range(1, 10)]
     systems = [riders(on_a_circle(velocity=v, history=st.Ramp(1e-3)), stiffness=2e4, abscissas=THREE) for v in speeds]
-    together = st.simulate_many(systems, 1e-3, workers=1, **WORDS)
-    for one, system in zip(together, systems, strict=True):
-        alone = st.simulate(system, 1e-3, **WORDS)
-        for name in ("normal_force", "tangential_force", "slip_velocity", "convection_work"):
-            np.testing.assert_allclose(one[name], alone[name], rtol=1e-9, atol=1e-9 * float(np.abs(alone[name]).max()))
+    same_side_by_side(systems, 1e-3, ("normal_force", "tangential_force", "slip_velocity", "convection_work"), **WORDS)
 
 
 @pytest.mark.parametrize("turning", [0.0, 40.0])
@@ -304,13 +300,9 @@ def test_a_run_goes_on_to_the_last_bit_and_runs_again(turning, tmp_path):
     track = on_a_circle(turning, velocity=20.0, history=st.Ramp(5e-4))
     system = riders(track, friction=0.4, stiffness=2e4, abscissas=(0.0, 0.1))
     words = {"step": 4e-6, "sample_rate": 5e4, "probes": [st.Velocity(system.track.at(HERE), "z")]}
-    whole = st.simulate(system, 2e-3, **words)
-    half = st.simulate(system, 1e-3, **words)
-    st.save(half, tmp_path / "half.nc")
-    rest = st.simulate(system, 1e-3, start=st.load(tmp_path / "half.nc"), **words)
-    for name in ("normal_force", "tangential_force", "slip_velocity", "contact_position", "convection_work"):
-        np.testing.assert_array_equal(whole[name][half.time.size :], rest[name])
-    again = st.load_scenario(whole).simulate()
+    names = ("normal_force", "tangential_force", "slip_velocity", "contact_position", "convection_work")
+    whole, *_, scenario = goes_on(system, 2e-3, names, tmp_path, **words)
+    again = scenario.simulate()
     for name in ("normal_force", "tangential_force", "velocity"):
         np.testing.assert_array_equal(again[name], whole[name])
     assert again.attrs["scenario"] == whole.attrs["scenario"]

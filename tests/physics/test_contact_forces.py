@@ -15,8 +15,9 @@ from scipy.optimize import brentq
 
 import stridula as st
 from stridula._kernels import bookkeeping, contact, contacts, direct, faces, friction, solves
-from stridula.verification import instabilities
-from stridula.verification.instabilities import exponents
+from stridula.verification.prony import exponents
+from stridula.verification.systems import mode_coupling
+from stridula.verification.systems.on_belts import Slider, den_hartog, swing
 
 from .cases import SCHEME_NAMES, SCHEMES
 from .sliding_systems import bar, dragged
@@ -66,7 +67,7 @@ def growing(system, probe, duration, rate, scheme):
 @pytest.mark.parametrize("friction", [0.76, 0.9])
 def test_a_light_foot_grows_at_the_default_step_as_theory_says(friction):
     """Hoffmann's mass over a foot that weighs nothing: growth was 87 % too fast just above the onset."""
-    system = instabilities.hoffmann().system(friction)
+    system = mode_coupling.hoffmann().system(friction)
     known, seen = growing(system, st.Displacement(system.slider.at("mass"), "x"), 20.0, 50.0, st.ExactModal())
     assert seen.real == pytest.approx(known.real, rel=1e-3)
     assert seen.imag == pytest.approx(known.imag, rel=1e-3)
@@ -85,39 +86,15 @@ def test_a_pair_of_beams_grows_at_the_default_step_as_theory_says():
 # A mass that turns round.
 
 
-def den_hartog(frequency: float, friction: float) -> float:
-    """Amplitude of a mass on a spring, both 1, under cos(w t) against dry friction, without stops.
-
-    Den Hartog 1931, Trans. ASME 53: with ``V = 1 / (1 - w²)`` and ``U = sin(pi/w) / (w (1 + cos(pi/w)))``, it is
-    ``sqrt(V² - (U friction)²)``.
-    """
-    high, wide = 1.0 / (1.0 - frequency**2), np.sin(pi / frequency) / (frequency * (1.0 + np.cos(pi / frequency)))
-    return float(np.sqrt(high**2 - (wide * friction) ** 2))
-
-
-def swung(frequency: float, friction: float, steps: float, scheme) -> float:
-    """The amplitude of the same in the march, `steps` to a period, its peaks by parabolas through three samples."""
-    period, step = 2.0 * pi / frequency, 2.0 * pi / frequency / steps
-    touch = st.PointContact(MASS.centre, st.RigidTrack(), friction=st.Coulomb(friction))
-    push = st.Force(MASS.centre, x=1.0, history=st.Harmonic(frequency / (2.0 * pi)))
-    drives, spring = [st.Force(MASS.centre, y=-1.0), push], st.Spring(MASS.centre, stiffness=1.0)
-    words = {"step": step, "sample_rate": 1.0 / step, "probes": [st.Displacement(MASS.centre, "x")]}
-    run = st.simulate(st.System(touch, drives, [spring]), 150.0 * period, scheme=scheme, **words)
-    x = run.displacement.values[-int(20 * steps) :, 0]
-    top = np.flatnonzero((x[1:-1] > x[:-2]) & (x[1:-1] >= x[2:])) + 1
-    before, peak, after = x[top - 1], x[top], x[top + 1]
-    return float(np.mean(peak + (before - after) ** 2 / (8.0 * (2.0 * peak - before - after))))
-
-
 @BOTH
 @pytest.mark.parametrize(("frequency", "friction"), [(0.8, 0.2), (1.3, 0.4)])
 def test_reversals_are_of_second_order(frequency, friction, scheme):
     """Whole numbers of steps a period, to which it would lock; 1e-4 at T/400 took T/16000."""
     expected = den_hartog(frequency, friction)
-    errors = [abs(swung(frequency, friction, steps, scheme) / expected - 1.0) for steps in (100, 400, 800)]
+    errors = [abs(swing(frequency, friction, steps, scheme) / expected - 1.0) for steps in (100, 400, 800)]
     assert errors[1] < 1e-4
     assert np.log2(errors[0] / errors[2]) / 3.0 == pytest.approx(2.0, abs=0.4)
-    assert abs(swung(frequency, friction, 401.7, scheme) / expected - 1.0) < 1e-4
+    assert abs(swing(frequency, friction, 401.7, scheme) / expected - 1.0) < 1e-4
 
 
 def test_what_slid_before_decides_on_a_reversal():
@@ -225,10 +202,9 @@ def test_a_step_of_the_velocity_under_rate_and_state(scheme):
     law, normal, jump = st.RateAndState(0.6, 0.005, 0.01, 1e-5, 1e-6), 10.0, 0.5
     stiffness = 2.0 * normal * (law.b - law.a) / law.slip_distance
     history = st.Sampled([0.0, jump, jump, 100.0], [1.0, 1.0, 10.0, 10.0])
-    touch = st.PointContact(MASS.centre, st.RigidTrack(velocity=1e-6, history=history), friction=law)
-    start = st.InitialState(MASS, (law.reference * normal / stiffness, 0.0))
-    drives, spring = [st.Force(MASS.centre, y=-normal), start], st.Spring(MASS.centre, stiffness=stiffness)
-    run = st.simulate(st.System(touch, drives, [spring]), 6.0, scheme=scheme, step=1e-3, sample_rate=1e3, probes=[])
+    held = Slider(1.0, stiffness, normal, law, law.reference * normal / stiffness)
+    system = held.system(st.RigidTrack(velocity=1e-6, history=history))
+    run = st.simulate(system, 6.0, scheme=scheme, step=1e-3, sample_rate=1e3, probes=[])
     ratio = -(run.tangential_force / run.normal_force).values
     time = run.time.values - 1e-3 - jump
     np.testing.assert_allclose(ratio[time < -1e-9], law.reference, rtol=1e-9)
@@ -243,10 +219,8 @@ def test_bristles_start_where_they_are_told():
     held = law.coefficient_at(0.3) / law.stiffness
 
     def moved(law):
-        touch = st.PointContact(MASS.centre, st.RigidTrack(velocity=0.3), friction=law)
-        start = st.InitialState(MASS, (float(law.coefficient_at(0.3)) * 10.0 / 100.0, 0.0))
-        drives, spring = [st.Force(MASS.centre, y=-10.0), start], st.Spring(MASS.centre, stiffness=100.0)
-        run = st.simulate(st.System(touch, drives, [spring]), 0.05, step=1e-4, sample_rate=1e4, probes=[])
+        sliding = Slider(1.0, 100.0, 10.0, law, float(law.coefficient_at(0.3)) * 10.0 / 100.0, belt=0.3)
+        run = sliding.run(0.05, 1e-4, st.ExactModal())
         return np.ptp(run.tangential_force.values) / 4.0
 
     assert moved(replace(law, initial_state=-float(held))) < 1e-9

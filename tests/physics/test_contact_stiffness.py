@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi, radians, sqrt
+from math import pi, sqrt
 
 import numpy as np
 import pytest
 
 import stridula as st
 from stridula.contact.stiffness import force_at
+from stridula.verification.systems.mode_coupling import AT_CONTACT, GROUNDED
 
+from .checks import goes_on, same_side_by_side
 from .test_equilibrium_starts import growth, starting
 from .test_space import SCHEMES, dragged, standing
 
@@ -82,14 +84,9 @@ def hoffmann(friction: float, **start) -> st.System:
     """Hoffmann's mass (2002) with the spring that it has at its contact: K = [[2, 1 - 4 mu / 3], [1, 2]]."""
     mass = st.PointMass(1.0)
     belt = st.RigidTrack(velocity=-5.0)
-    contact = st.PointContact(mass.centre, belt, friction=st.Coulomb(friction), stiffness=4.0 / 3.0)
-    springs = [
-        (2.0 * (2.0 - sqrt(3.0)) / 3.0, 150.0),
-        (2.0 * (2.0 + sqrt(3.0)) / 3.0, 30.0),
-    ]
+    contact = st.PointContact(mass.centre, belt, friction=st.Coulomb(friction), stiffness=AT_CONTACT)
     connections = [
-        st.Spring(mass.centre, stiffness=rate, direction=(np.cos(radians(by)), np.sin(radians(by)), 0.0))
-        for rate, by in springs
+        st.Spring(mass.centre, stiffness=rate, direction=(np.cos(by), np.sin(by), 0.0)) for rate, by in GROUNDED
     ]
     return st.System(contact, [st.Force(mass.centre, y=-10.0)], connections)
 
@@ -155,24 +152,14 @@ def test_several_contacts_obey_their_laws_at_every_step(scheme):
 
 def test_runs_side_by_side_are_those_alone():
     systems = [on_layers(st.PowerStiffness(10.0**k, 1.5, 0.05)) for k in np.linspace(10.0, 12.0, 9)]
-    words = {"step": 4e-6, "sample_rate": 5e4, "probes": []}
-    together = st.simulate_many(systems, 2e-3, workers=1, **words)
-    for one, system in zip(together, systems, strict=True):
-        alone = st.simulate(system, 2e-3, **words)
-        for name in ("normal_force", "tangential_force", "slip_velocity", "friction_loss"):
-            np.testing.assert_allclose(one[name], alone[name], rtol=1e-9, atol=1e-9 * float(np.abs(alone[name]).max()))
+    same_side_by_side(systems, 2e-3, step=4e-6, sample_rate=5e4, probes=[])
 
 
 def test_a_run_goes_on_to_the_last_bit_and_runs_again(tmp_path):
     system = on_layers(st.PowerStiffness(1e12, 1.5, 0.05))
-    words = {"step": 4e-6, "sample_rate": 5e4, "probes": []}
-    whole, half = st.simulate(system, 2e-3, **words), st.simulate(system, 1e-3, **words)
-    st.save(half, tmp_path / "half.nc")
-    rest = st.simulate(system, 1e-3, start=st.load(tmp_path / "half.nc"), **words)
-    for name in ("normal_force", "tangential_force", "kinetic_and_elastic"):
-        np.testing.assert_array_equal(whole[name][half.time.size :], rest[name])
-    again = st.load_scenario(whole).simulate()
-    np.testing.assert_array_equal(again.normal_force, whole.normal_force)
+    names = ("normal_force", "tangential_force", "kinetic_and_elastic")
+    whole, *_, again = goes_on(system, 2e-3, names, tmp_path, step=4e-6, sample_rate=5e4, probes=[])
+    np.testing.assert_array_equal(again.simulate().normal_force, whole.normal_force)
 
 
 def test_a_stiff_contact_is_a_rigid_one():

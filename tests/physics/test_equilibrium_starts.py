@@ -12,8 +12,8 @@ import stridula as st
 from stridula.integration.live import LiveMarch
 from stridula.linear import starts
 from stridula.studies.ensembles import _perturbed
-from stridula.verification import instabilities
-from stridula.verification.instabilities import exponents
+from stridula.verification.prony import exponents
+from stridula.verification.systems import mode_coupling
 
 from .sliding_systems import STEADY, TRAVELLING, bar, dragged, mass_on_a_belt, pushed, reduced, rod
 
@@ -98,7 +98,7 @@ def growth(system: st.System, probe, step: float, duration: float, every: int, s
 
 def hoffmann() -> tuple:
     """Flutter of a mass of two degrees of freedom."""
-    system = instabilities.hoffmann().system(0.9)
+    system = mode_coupling.hoffmann().system(0.9)
     return system, st.Displacement(system.slider.at("mass"), "x"), 5e-3, 40.0, 200, 1e-4
 
 

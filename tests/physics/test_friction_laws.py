@@ -8,9 +8,9 @@ from scipy.integrate import solve_ivp
 
 import stridula as st
 from physics.cases import SCHEME_NAMES, SCHEMES
+from stridula.verification.systems.on_belts import Slider, rubbing_of
 
 BOTH = pytest.mark.parametrize("scheme", SCHEMES, ids=SCHEME_NAMES)
-MASS = st.PointMass(0.4)
 LOAD = 5.0
 STIFFNESS = 3e3
 LAWS = {
@@ -25,12 +25,9 @@ LAWS = {
 }
 
 
-def on_a_belt(law, belt, dashpot, x=0.0, velocity=0.0) -> st.System:
+def on_a_belt(law, belt, dashpot, x=0.0, velocity=0.0) -> Slider:
     """A mass on a belt, held by a spring and a dashpot."""
-    contact = st.PointContact(MASS.centre, st.RigidTrack(belt), friction=law)
-    joints = [st.Spring(MASS.centre, stiffness=STIFFNESS), st.Dashpot(MASS.centre, coefficient=dashpot)]
-    start = st.InitialState(MASS, (x, 0.0), (velocity, 0.0))
-    return st.System(contact, [st.Force(MASS.centre, y=-LOAD), start], joints)
+    return Slider(0.4, STIFFNESS, LOAD, law, x, velocity, belt, dashpot=dashpot)
 
 
 @BOTH
@@ -41,7 +38,7 @@ def test_steady_sliding_is_on_the_curve_of_the_law(law, belt, scheme):
 
     The tip slides towards -x along a belt that moves to +x; the force on the track has the sense of the slip.
     """
-    run = st.simulate(on_a_belt(law, belt, 200.0), 1.5, scheme=scheme, step=1e-4, sample_rate=1e3, probes=[])
+    run = st.simulate(on_a_belt(law, belt, 200.0).system(), 1.5, scheme=scheme, step=1e-4, sample_rate=1e3, probes=[])
     last = run.isel(time=-1)
     assert float(last.slip_velocity) == pytest.approx(-belt, rel=1e-6)
     ratio = float(last.tangential_force / last.normal_force)
@@ -55,38 +52,15 @@ def test_steady_sliding_tells_the_laws_apart():
     assert min(abs(a - b) for n, a in enumerate(ratios) for b in ratios[:n]) > 1e-3
 
 
-def slope(law, belt, dashpot):
-    """Rates of the smooth sliding of the mass: position, velocity, internal state."""
-
-    def rates(_, y):
-        x, v, state = y
-        slip = v - belt
-        ratio = np.sign(slip) * float(law.coefficient_at(slip))
-        rate = 0.0
-        if isinstance(law, st.LuGre):
-            limit = law.kinetic + (law.static - law.kinetic) * np.exp(-((slip / law.velocity) ** 2))
-            rate = slip - law.stiffness * abs(slip) * state / limit
-            ratio = law.stiffness * state + law.damping * rate + law.viscous * slip
-        elif isinstance(law, st.RateAndState):
-            age = abs(slip) * state / law.slip_distance
-            rate = 1 - age if law.evolution == "aging" else -age * np.log(age)
-            inner = (law.reference + law.b * np.log(law.velocity * state / law.slip_distance)) / law.a
-            ratio = law.a * np.arcsinh(slip / (2 * law.velocity) * np.exp(inner))
-        return [v, (-STIFFNESS * x - dashpot * v - ratio * LOAD) / 0.4, rate]
-
-    return rates
-
-
 def error(law, scheme, step, duration=0.04):
     """Error of position and friction's loss at the end of a smooth slide, relative to their size."""
     belt, dashpot = 1.0, 2.0
-    system = on_a_belt(law, belt, dashpot, x=1e-3, velocity=0.05)
-    run = st.simulate(system, duration, scheme=scheme, step=step, sample_rate=1 / step, probes=[])
+    slider = on_a_belt(law, belt, dashpot, x=1e-3, velocity=0.05)
+    run = slider.run(duration, step, scheme)
     assert np.all(run.status == 2)
     state = law.slip_distance / law.velocity if isinstance(law, st.RateAndState) else 0.0
-    exact = solve_ivp(
-        slope(law, belt, dashpot), (0, duration), [1e-3, 0.05, state], rtol=1e-12, atol=1e-15, method="DOP853"
-    )
+    start = [1e-3, 0.05 - belt, state]
+    exact = solve_ivp(slider.rates(), (0, duration), start, rtol=1e-12, atol=1e-15, method="DOP853")
     return abs(float(run.contact_position[-1]) - exact.y[0, -1]) / np.abs(exact.y[0]).max()
 
 
@@ -122,12 +96,9 @@ def test_harness_rejects_a_first_order_scheme(law):
 def explicit_bristles(law, belt, step, duration):
     """The same mass under LuGre's law by explicit Euler for the bristles and semi-implicit Euler for the mass."""
     x = v = z = 0.0
-    peak = 0.0
+    peak, rubbing = 0.0, rubbing_of(law)
     for _ in range(round(duration / step)):
-        slip = v - belt
-        limit = law.kinetic + (law.static - law.kinetic) * np.exp(-((slip / law.velocity) ** 2))
-        rate = slip - law.stiffness * abs(slip) * z / limit
-        ratio = law.stiffness * z + law.damping * rate + law.viscous * slip
+        ratio, rate = rubbing(v - belt, z)
         z += step * rate
         v += step * (-STIFFNESS * x - 20.0 * v - ratio * LOAD) / 0.4
         x += step * v
@@ -147,7 +118,7 @@ def test_bristles_do_not_depend_on_the_step():
     """
     deflections, forces = [], []
     for step in (1e-4, 3e-5, 1e-5):
-        run = st.simulate(on_a_belt(STIFF, 0.3, 20.0), 0.03, step=step, sample_rate=1 / step, probes=[])
+        run = st.simulate(on_a_belt(STIFF, 0.3, 20.0).system(), 0.03, step=step, sample_rate=1 / step, probes=[])
         settled = run.isel(time=slice(int(0.01 / step), None))
         deflections.append(np.abs(settled.friction_state.values).max())
         forces.append(float(settled.tangential_force[-1]))
@@ -161,7 +132,7 @@ def test_the_state_does_not_depend_on_the_step():
     """A slip distance of 1 um crossed in 3 us, at steps ten and a hundred times as long: the state is D / |v|."""
     law = st.RateAndState(0.5, 0.02, 0.012, 1e-6, 1e-2)
     for step in (3e-4, 3e-5):
-        run = st.simulate(on_a_belt(law, 0.3, 200.0), 1.2, step=step, sample_rate=1 / step, probes=[])
+        run = st.simulate(on_a_belt(law, 0.3, 200.0).system(), 1.2, step=step, sample_rate=1 / step, probes=[])
         slip = np.abs(run.slip_velocity.values[-1])
         assert run.friction_state.values[-1] == pytest.approx(1e-6 / slip, rel=1e-6)
         ratio = float(run.tangential_force[-1] / run.normal_force[-1])
@@ -172,7 +143,7 @@ def test_the_state_does_not_depend_on_the_step():
 def test_a_viscous_law_takes_the_energy_of_the_slide(scheme):
     """Friction's loss over a slide is the integral of ratio x load x slip speed, to second order."""
     law = LAWS["stribeck"]
-    run = st.simulate(on_a_belt(law, 1.0, 2.0), 0.1, scheme=scheme, step=1e-4, sample_rate=1e4, probes=[])
+    run = st.simulate(on_a_belt(law, 1.0, 2.0).system(), 0.1, scheme=scheme, step=1e-4, sample_rate=1e4, probes=[])
     speed = np.abs(run.slip_velocity.values)
     # A constant speed within a step, whose mean is that of the two velocities around it.
     expected = np.cumsum(law.coefficient_at(speed) * LOAD * speed * 1e-4)
@@ -189,7 +160,7 @@ def test_stick_slip_of_a_static_and_a_kinetic_coefficient(scheme):
     damping the amplitude about mu_k N / k is sqrt(((mu_s - mu_k) N / k)² + (V / w)²).
     """
     law, belt = st.StaticKinetic(0.6, 0.4), 0.02
-    run = st.simulate(on_a_belt(law, belt, 1e-9), 1.0, scheme=scheme, step=2e-5, sample_rate=5e4, probes=[])
+    run = st.simulate(on_a_belt(law, belt, 1e-9).system(), 1.0, scheme=scheme, step=2e-5, sample_rate=5e4, probes=[])
     x, status = run.contact_position.values, run.status.values
     middle, angular = 0.4 * LOAD / STIFFNESS, np.sqrt(STIFFNESS / 0.4)
     amplitude = np.hypot(0.2 * LOAD / STIFFNESS, belt / angular)

@@ -9,6 +9,7 @@ import pytest
 
 import stridula as st
 from physics.cases import SCHEME_NAMES, SCHEMES, STEEL, STEP, STRIP, dragged, every_step, pair, slider, track
+from stridula.verification.systems.bars import GAP, VELOCITY, WALL
 
 STICKING, SLIDING = 1, 2
 BOTH = pytest.mark.parametrize("scheme", SCHEMES, ids=SCHEME_NAMES)
@@ -197,21 +198,15 @@ def test_weight_of_the_slider_rests_on_the_contact(scheme):
     assert run.reaction.values[-1, 0] == pytest.approx(-weight * sin(rod.angle) * 0.5 / 2, rel=1e-4)
 
 
-def impact(scheme, courant, elements=100):
-    """An elastic bar dropped on a wall: E = 210e9, rho = 7800, S = 3.14e-4, L = 1, gap 5e-5, v = 0.1.
-
-    The wall is a track a million million times heavier; bending is made slow by a small second moment, so that the
-    bar's modes alone set the step.
-    """
-    steel = st.Material(210e9, 7800.0)
-    bar = st.FiniteElementBeam(steel, st.Section(3.14e-4, 1e-16), 1.0, elements=elements, mass="lumped")
+def impact(scheme, courant):
+    """The elastic bar of the verification dropped on a wall: a track a million million times heavier."""
+    bar = WALL.body("lumped")
     wall = st.ModalBeam(st.Material(1.0, 1e18), st.Section(1.0, 1.0), 1.0, bending_modes=1, axial_modes=0)
-    system = pair(lambda _: [st.InitialVelocity(bar, y=-0.1)], 0.0, rod=bar, bar=wall, at=0.5, gap=5e-5)
-    speed = np.sqrt(210e9 / 7800.0)
-    step = courant * (1.0 / elements) / speed
+    system = pair(lambda _: [st.InitialVelocity(bar, y=-VELOCITY)], 0.0, rod=bar, bar=wall, at=0.5, gap=GAP)
+    step = WALL.step(courant)
     probes = [st.Velocity(bar.tip), st.Velocity(bar.root)]
     run = st.simulate(system, 1.2e-3, scheme=scheme, step=step, sample_rate=1 / step, probes=probes)
-    return run, steel.density * speed * 3.14e-4 * 0.1, 2.0 / speed
+    return run, WALL.plateau(VELOCITY), WALL.crossing
 
 
 @BOTH

@@ -1,19 +1,5 @@
 """Natural frequencies against closed forms, and the observed order of the finite elements.
 
-A beam in bending obeys ``EI w'''' = rho S w_tt``. With ``w = A cos + B sin + C cosh + D sinh`` of ``b s`` and
-``x = b L``, its frequency is ``(x/L)² sqrt(EI / rho S) / 2 pi``, where x follows from the supports:
-
-- pinned-pinned (w = w'' = 0 at both ends): sin x = 0, so x = n pi;
-- guided-free (w' = w''' = 0; w'' = w''' = 0): from the guided end w = A cos + C cosh; at the free one
-  -A cos x + C cosh x = 0 and A sin x + C sinh x = 0, so tan x + tanh x = 0, and a translation at no frequency;
-- guided-pinned: A cos x + C cosh x = 0 and -A cos x + C cosh x = 0, so cos x = 0, x = (j - 1/2) pi;
-- pinned-free: w = B sin + D sinh; -B sin x + D sinh x = 0 and -B cos x + D cosh x = 0, so tan x = tanh x, and a
-  rotation at no frequency;
-- clamped-free: cos x cosh x = -1; free-free and clamped-clamped: cos x cosh x = 1.
-
-A rod obeys ``E u'' = rho u_tt``: n c / 2L with both ends held or both free, (n - 1/2) c / 2L with one held. A guided
-end is free in both translations, a pinned one held in both.
-
 Orders. Hermite cubics give eigenvalues to order 2 (4 - 2) = 4, linear bars with consistent mass
 ``w² = (c k)² (1 + (k h)²/12)`` and lumped ``(1 - (k h)²/12)``: order 2.
 """
@@ -24,90 +10,22 @@ from math import radians
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
 import stridula as st
-
-STEEL = st.Material(2.1e11, 7800.0)
-SQUARE = st.Rectangle(0.010, 0.010)
-
-
-def roots(function, starts):
-    """Roots of a characteristic function, one around each start."""
-    return np.array([brentq(function, start - 0.5, start + 0.5, xtol=1e-14, rtol=1e-14) for start in starts])
-
-
-def guided_free(x):
-    return np.sin(x) * np.cosh(x) + np.cos(x) * np.sinh(x)
-
-
-def pinned_free(x):
-    return np.sin(x) * np.cosh(x) - np.cos(x) * np.sinh(x)
-
-
-def clamped_free(x):
-    return np.cos(x) + 1 / np.cosh(x)
-
-
-def free_free(x):
-    return np.cos(x) - 1 / np.cosh(x)
-
-
-N = np.arange(1, 4)
-# Supports of root and tip, roots x of bending, multiples of c / 2L of the rod, rigid motions.
-SUPPORTS = {
-    "simply supported": ("pinned", "pinned", N * np.pi, N, 0),
-    "guided-free": ("guided", "free", roots(guided_free, (N - 0.25) * np.pi), N, 2),
-    "guided-pinned": ("guided", "pinned", (N - 0.5) * np.pi, N - 0.5, 0),
-    "pinned-free": ("pinned", "free", roots(pinned_free, (N + 0.25) * np.pi), N - 0.5, 1),
-    "clamped-free": ("clamped", "free", roots(clamped_free, (N - 0.5) * np.pi), N - 0.5, 0),
-    "clamped-clamped": ("clamped", "clamped", roots(free_free, (N + 0.5) * np.pi), N, 0),
-    "free-free": ("free", "free", roots(free_free, (N + 0.5) * np.pi), N, 3),
-    "guided-guided": ("guided", "guided", N * np.pi, N, 2),
-}
-
-
-def beam(supports: str, elements: int = 16, length: float = 0.3, angle: float = 0.0, **words) -> st.FiniteElementBeam:
-    root, tip, *_ = SUPPORTS[supports]
-    return st.FiniteElementBeam(
-        STEEL, SQUARE, length, angle=angle, elements=elements, root_support=root, tip_support=tip, **words
-    )
-
-
-def bending_form(x, length):
-    return (x / length) ** 2 * np.sqrt(STEEL.young * SQUARE.second_moment / (STEEL.density * SQUARE.area)) / 2 / np.pi
-
-
-def rod_form(multiple, length):
-    return multiple * np.sqrt(STEEL.young / STEEL.density) / (2 * length)
-
-
-def families(body: st.FiniteElementBeam):
-    """Frequencies of the bending and of the axial modes, told apart by where their motion points; no rigid ones."""
-    along, across = body.axes
-    points = np.linspace(0.0, body.length, 23)
-    moved = np.array([body.trace(s) for s in points])
-    axial = np.sum(np.tensordot(moved, along, axes=(1, 0)) ** 2, axis=0)
-    bending = np.sum(np.tensordot(moved, across, axes=(1, 0)) ** 2, axis=0)
-    frequency = body.modes().frequency
-    elastic = frequency > 0
-    # Nothing couples them: a mode is of one kind to round-off of the eigenproblem.
-    mixed = np.minimum(axial, bending) / np.maximum(axial, bending)
-    assert np.all(mixed[elastic] < 1e-6)
-    return frequency[elastic & (bending > axial)], frequency[elastic & (axial > bending)]
+from stridula.verification.systems.beams import SQUARE, STEEL, SUPPORTS, beam_of, bending, families, stretching
 
 
 @pytest.mark.parametrize("supports", SUPPORTS)
 def test_closed_forms_and_rigid_motions(supports):
     """24 elements: bending within (x/24)^4/720 of the eigenvalue, x <= 11 for three modes; bar (n pi/24)²/24
     and its next term, 3 % of that."""
-    _, _, x, multiple, rigid = SUPPORTS[supports]
-    body = beam(supports, elements=24)
-    bending, rod = families(body)
-    np.testing.assert_allclose(bending[:3], bending_form(x, 0.3), rtol=(11 / 24) ** 4 / 720)
-    np.testing.assert_allclose(rod[:3], rod_form(multiple, 0.3), rtol=(3 * np.pi / 24) ** 2 / 23)
-    assert np.all(rod[:3] > rod_form(multiple, 0.3)), "consistent mass: from above"
-    assert np.sum(body.modes().frequency == 0.0) == rigid
+    known = SUPPORTS[supports]
+    body = beam_of(supports, elements=24)
+    bent, rod = families(body)
+    np.testing.assert_allclose(bent[:3], bending(known.roots[:3], 0.3), rtol=(11 / 24) ** 4 / 720)
+    np.testing.assert_allclose(rod[:3], stretching(known.multiples[:3], 0.3), rtol=(3 * np.pi / 24) ** 2 / 23)
+    assert np.all(rod[:3] > stretching(known.multiples[:3], 0.3)), "consistent mass: from above"
+    assert np.sum(body.modes().frequency == 0.0) == known.rigid
 
 
 @pytest.mark.parametrize(
@@ -119,13 +37,11 @@ def test_closed_forms_and_rigid_motions(supports):
 )
 def test_printed_numbers(supports, length, expected):
     """Steel, 10 x 10 mm; printed to 0.005 Hz."""
-    np.testing.assert_allclose(families(beam(supports, elements=60, length=length))[0][:3], expected, atol=0.0051)
+    np.testing.assert_allclose(families(beam_of(supports, elements=60, length=length))[0][:3], expected, atol=0.0051)
 
 
 def test_printed_roots():
-    np.testing.assert_allclose(
-        roots(guided_free, (np.arange(1, 5) - 0.25) * np.pi), [2.3650204, 5.4978039, 8.6393798, 11.7809725], atol=5e-8
-    )
+    np.testing.assert_allclose(SUPPORTS["guided-free"].roots, [2.3650204, 5.4978039, 8.6393798, 11.7809725], atol=5e-8)
 
 
 @pytest.mark.parametrize("supports", SUPPORTS)
@@ -136,10 +52,10 @@ def test_modes_are_normalised_and_rigid_ones_carry_the_mass(supports, length):
     With a free or guided beam that is all of it. For a rigid motion the strain is nought: the trace at any point is
     linear in s.
     """
-    body = beam(supports, elements=5, length=length, angle=0.4)
+    body = beam_of(supports, elements=5, length=length, angle=0.4)
     modes = body.modes()
     moving = np.sum(modes.translation**2, axis=1)
-    if SUPPORTS[supports][4] >= 2:
+    if SUPPORTS[supports].rigid >= 2:
         np.testing.assert_allclose(moving, body.total_mass, rtol=1e-12)
     else:
         assert np.all(moving < body.total_mass)
@@ -158,20 +74,20 @@ def test_modes_are_normalised_and_rigid_ones_carry_the_mass(supports, length):
 @pytest.mark.parametrize("mass", ["consistent", "lumped"])
 def test_angle_does_not_change_frequencies(supports, mass):
     """Round-off of the eigenvalues is eps times the largest: relative to the lowest, 2e-16 (8^4) 1e2 = 1e-10."""
-    level = beam(supports, elements=8, mass=mass).modes().frequency
+    level = beam_of(supports, elements=8, mass=mass).modes().frequency
     for degrees in (-80, -45, 10, 30, 60, 89):
-        turned = beam(supports, elements=8, mass=mass, angle=radians(degrees)).modes().frequency
+        turned = beam_of(supports, elements=8, mass=mass, angle=radians(degrees)).modes().frequency
         np.testing.assert_allclose(turned, level, rtol=1e-9)
 
 
 def test_held_root_is_clamped_across_when_upright_and_along_when_flat():
     """With x held at a guided root, an upright beam bends as clamped-free and is free along; both are the extremes."""
-    body = beam("guided-free", elements=24)
+    body = beam_of("guided-free", elements=24)
     frequency = body.modes(held_x=True).frequency
     assert np.sum(frequency == 0) == 1
-    np.testing.assert_allclose(frequency[1:4], bending_form(SUPPORTS["clamped-free"][2], 0.3), rtol=(11 / 24) ** 4)
-    flat = beam("guided-free", elements=24, angle=radians(89.999999)).modes(held_x=True).frequency
-    np.testing.assert_allclose(flat[1:3], bending_form(SUPPORTS["guided-free"][2][:2], 0.3), rtol=1e-4)
+    np.testing.assert_allclose(frequency[1:4], bending(SUPPORTS["clamped-free"].roots[:3], 0.3), rtol=(11 / 24) ** 4)
+    flat = beam_of("guided-free", elements=24, angle=radians(89.999999)).modes(held_x=True).frequency
+    np.testing.assert_allclose(flat[1:3], bending(SUPPORTS["guided-free"].roots[:2], 0.3), rtol=1e-4)
 
 
 def observed_order(frequency_of, exact, counts):
@@ -183,24 +99,24 @@ def observed_order(frequency_of, exact, counts):
 @pytest.mark.parametrize("supports", SUPPORTS)
 @pytest.mark.parametrize("mode", [1, 2])
 def test_order_of_hermite_bending_is_four(supports, mode):
-    exact = bending_form(SUPPORTS[supports][2][mode], 0.3)
-    order = observed_order(lambda n: families(beam(supports, elements=n))[0][mode], exact, (16, 32))
+    exact = bending(SUPPORTS[supports].roots[mode], 0.3)
+    order = observed_order(lambda n: families(beam_of(supports, elements=n))[0][mode], exact, (16, 32))
     assert order == pytest.approx(4.0, abs=0.1)
 
 
 @pytest.mark.parametrize("supports", SUPPORTS)
 @pytest.mark.parametrize("mass", ["consistent", "lumped"])
 def test_order_of_linear_bar_is_two(supports, mass):
-    exact = rod_form(SUPPORTS[supports][3][1], 0.3)
-    order = observed_order(lambda n: families(beam(supports, elements=n, mass=mass))[1][1], exact, (12, 24))
+    exact = stretching(SUPPORTS[supports].multiples[1], 0.3)
+    order = observed_order(lambda n: families(beam_of(supports, elements=n, mass=mass))[1][1], exact, (12, 24))
     assert order == pytest.approx(2.0, abs=0.1)
 
 
 def test_order_of_lumped_bending_is_two():
     """A lumped mass is right to the second order only, whatever the shape functions."""
-    exact = bending_form(2 * np.pi, 0.3)
+    exact = bending(2 * np.pi, 0.3)
     words = {"supports": "simply supported", "mass": "lumped"}
-    order = observed_order(lambda n: families(beam(elements=n, **words))[0][1], exact, (16, 32))
+    order = observed_order(lambda n: families(beam_of(elements=n, **words))[0][1], exact, (16, 32))
     assert order == pytest.approx(2.0, abs=0.1)
 
 
@@ -212,13 +128,13 @@ def test_dispersion_of_the_bar_is_exact(mass, sign):
     kh = np.arange(1, count) * np.pi / count
     c_over_h = np.sqrt(STEEL.young / STEEL.density) * count / 0.3
     shape = 6 * (1 - np.cos(kh)) / (2 + np.cos(kh)) if mass == "consistent" else 2 * (1 - np.cos(kh))
-    rod = families(beam("simply supported", elements=count, mass=mass))[1]
+    rod = families(beam_of("simply supported", elements=count, mass=mass))[1]
     np.testing.assert_allclose(rod, c_over_h * np.sqrt(shape) / 2 / np.pi, rtol=1e-9)
-    assert np.all(sign * (rod - rod_form(np.arange(1, count), 0.3)) > 0)
+    assert np.all(sign * (rod - stretching(np.arange(1, count), 0.3)) > 0)
 
 
 def test_cutoff_keeps_exactly_the_lower_modes():
-    whole, cut = beam("guided-free", elements=8), beam("guided-free", elements=8, cutoff=5e3)
+    whole, cut = beam_of("guided-free", elements=8), beam_of("guided-free", elements=8, cutoff=5e3)
     kept = whole.modes().frequency <= 5e3
     np.testing.assert_array_equal(cut.modes().frequency, whole.modes().frequency[kept])
     np.testing.assert_array_equal(cut.trace(0.1), whole.trace(0.1)[:, kept])
@@ -229,7 +145,7 @@ def test_modal_beam_has_the_closed_forms():
     bar = st.ModalBeam(STEEL, SQUARE, 0.3, bending_modes=3, axial_modes=2)
     frequency = bar.modes().frequency
     np.testing.assert_allclose(frequency[:3], [261.43, 1045.70, 2352.84], atol=0.0051)
-    np.testing.assert_allclose(frequency[3:], rod_form(np.array([1, 2]), 0.3), rtol=1e-14)
+    np.testing.assert_allclose(frequency[3:], stretching(np.array([1, 2]), 0.3), rtol=1e-14)
     mass = STEEL.density * SQUARE.area * 0.3
     np.testing.assert_allclose(bar.trace(0.15)[1, 0] ** 2, 2 / mass, rtol=1e-14)
     # All the mass moves with the sum of all modes: 8/pi² sum of 1/k² over odd k; 200 modes leave 2/(pi² 100) x 2.
@@ -247,7 +163,7 @@ def test_a_string_has_the_closed_form_of_fletcher():
     stiffness = np.pi**2 * STEEL.young * wire.second_moment / (tension * 0.65**2)
     frequency = string.modes().frequency
     np.testing.assert_allclose(frequency[:40], numbers * ideal * np.sqrt(1 + stiffness * numbers**2), rtol=1e-13)
-    np.testing.assert_allclose(frequency[40:], rod_form(np.array([1, 2]), 0.65), rtol=1e-14)
+    np.testing.assert_allclose(frequency[40:], stretching(np.array([1, 2]), 0.65), rtol=1e-14)
 
 
 def test_no_tension_is_no_tension_to_the_last_bit():
@@ -280,7 +196,7 @@ def test_a_string_gives_way_as_its_statics_say():
 def test_modal_beam_is_the_limit_of_finite_elements():
     """A pinned beam of 24 elements against the modal one: frequencies, and the static compliance at a point."""
     bar = st.ModalBeam(STEEL, SQUARE, 0.3, bending_modes=60, axial_modes=60)
-    body = beam("simply supported", elements=24)
+    body = beam_of("simply supported", elements=24)
     np.testing.assert_allclose(families(body)[0][:3], bar.modes().frequency[:3], rtol=1e-4)
 
     def compliance(matrix, modes):
@@ -301,14 +217,14 @@ def test_modal_beam_is_the_limit_of_finite_elements():
 @pytest.mark.parametrize("wrong", ["clamped-clamped", "guided-pinned", "pinned-free"])
 def test_harness_rejects_wrong_supports(wrong):
     """Negative control: each other support misses the closed form of the simply supported beam."""
-    exact = bending_form(SUPPORTS["simply supported"][2], 0.3)
-    assert not np.allclose(families(beam(wrong, elements=24))[0][:3], exact, rtol=1e-2)
+    exact = bending(SUPPORTS["simply supported"].roots[:3], 0.3)
+    assert not np.allclose(families(beam_of(wrong, elements=24))[0][:3], exact, rtol=1e-2)
 
 
 def test_harness_rejects_lumped_mass_as_fourth_order():
     """Negative control: a lumped mass in bending has lost the fourth order."""
-    exact = bending_form(2 * np.pi, 0.3)
+    exact = bending(2 * np.pi, 0.3)
     order = observed_order(
-        lambda n: families(beam("simply supported", elements=n, mass="lumped"))[0][1], exact, (8, 16)
+        lambda n: families(beam_of("simply supported", elements=n, mass="lumped"))[0][1], exact, (8, 16)
     )
     assert abs(order - 4.0) > 0.1

@@ -25,8 +25,9 @@ from stridula.bodies.cut_elements import cut_into_tetrahedra
 from stridula.bodies.solid_surfaces import cut_faces
 from stridula.lowering import assemble
 from stridula.verification import open_air
+from stridula.verification.systems.discs import HERE, disc, struck
 
-from .test_turning import HERE, disc, rubbed, struck
+from .test_turning import rubbed
 
 STEEL = st.Material(2.1e11, 7850.0, 0.3)
 AWAY = (0.1, 2.0, 0.01)

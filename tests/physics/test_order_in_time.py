@@ -1,73 +1,22 @@
-"""Observed order of the schemes on smooth motions with a closed form, and the exactness of the exact modal one.
-
-A mode ``q'' + 2 z w q' + w² q = f sin(W t + phi)`` from q(0) = 0, q'(0) = v: the steady part is the imaginary part of
-``f e^{i(Wt+phi)} / (w² - W² + 2 i z w W)``, and the free part ``e^{-z w t} (A cos wd t + B sin wd t)`` meets the start.
-With w = 0: ``q = (f/W²) (sin phi - sin(Wt+phi)) + (v + f cos phi / W) t``.
-"""
+"""Observed order of the schemes on smooth motions with a closed form, and the exactness of the exact modal one."""
 
 from __future__ import annotations
-
-from math import pi
 
 import numpy as np
 import pytest
 
 import stridula as st
-from physics.cases import SCHEME_NAMES, SCHEMES, STEEL, STRIP, pair, slider, track
-
-FREQUENCY, PHASE = 310.0, 0.7
-DURATION = 0.012
-
-
-def closed_form(w, z, force, velocity, t):
-    """Position at time t of modes under ``force sin(W t + phi)``, from q = 0 with `velocity`."""
-    angular = 2 * pi * FREQUENCY
-    position = np.empty_like(w)
-    for k in range(w.size):
-        f, v = force[k], velocity[k]
-        if w[k] == 0:
-            swing = np.sin(PHASE) - np.sin(angular * t + PHASE)
-            position[k] = f / angular**2 * swing + (v + f * np.cos(PHASE) / angular) * t
-            continue
-        steady = f * np.exp(1j * PHASE) / (w[k] ** 2 - angular**2 + 2j * z[k] * w[k] * angular)
-        wd = w[k] * np.sqrt(1 - z[k] ** 2)
-        a = -steady.imag
-        b = (v - (1j * angular * steady).imag + z[k] * w[k] * a) / wd
-        free = np.exp(-z[k] * w[k] * t) * (a * np.cos(wd * t) + b * np.sin(wd * t))
-        position[k] = (steady * np.exp(1j * angular * t)).imag + free
-    return position
-
-
-def forced_track():
-    """Five bending and two axial modes under an oblique harmonic force; the slider rests a metre above."""
-    bar = st.ModalBeam(STEEL, STRIP, 0.8, bending_modes=5, axial_modes=2, damping=0.03)
-    rod = slider(cutoff=2e3)
-    history = st.Harmonic(FREQUENCY, phase=PHASE)
-    system = pair(lambda _: [st.Force(bar.at(0.31), x=300.0, y=2.0, history=history)], 0.5, rod=rod, bar=bar, gap=1.0)
-    return system, system.slider.modes().count, bar.trace(0.31).T @ [300.0, 2.0], bar.modes(), 0.0
-
-
-def thrown_slider():
-    """A slider in free flight, thrown up, under a harmonic force; modes below 3 kHz."""
-    rod = slider(30.0, cutoff=3e3)
-    history = st.Harmonic(FREQUENCY, phase=PHASE)
-
-    def drives(_):
-        return [st.InitialVelocity(rod, x=0.3, y=0.8), st.Force(rod.at(0.2), x=2.0, y=3.0, history=history)]
-
-    system = pair(drives, 0.5, rod=rod, bar=track(cutoff=500.0), gap=1.0)
-    return system, 0, rod.trace(0.2).T @ [2.0, 3.0], rod.modes(), rod.modes().translation.T @ [0.3, 0.8]
+from physics.cases import SCHEME_NAMES, SCHEMES, pair, slider, track
+from stridula.verification.systems.smooth import DURATION, forced_track, motion, thrown_slider
 
 
 def error(case, scheme, step) -> float:
     """Relative error of the modal positions of a body at the end."""
-    system, first, force, modes, velocity = case
-    velocity = np.zeros(modes.count) + velocity
-    run = st.simulate(system, DURATION, scheme=scheme, step=step, sample_rate=1 / step)
+    run = st.simulate(case.system, DURATION, scheme=scheme, step=step, sample_rate=1 / step)
     assert np.all(run.status == 0)
-    got = run.state_modal.values[0, first : first + modes.count]
-    expected = closed_form(modes.angular_frequency, modes.damping, force, velocity, DURATION)
-    return float(np.linalg.norm(got - expected) / np.linalg.norm(expected))
+    first = 0 if case.body == case.system.slider else case.system.slider.modes().count
+    got = run.state_modal.values[0, first : first + case.modal.size]
+    return float(np.linalg.norm(got - case.modal) / np.linalg.norm(case.modal))
 
 
 def observed_order(case, scheme) -> float:
@@ -122,7 +71,7 @@ def test_exact_scheme_is_exact_for_free_damped_motion(fraction):
     step = DURATION / np.ceil(DURATION / (fraction * limit))
     run = st.simulate(system, DURATION, scheme=st.ExactModal(), step=step, sample_rate=1 / step)
     v = modes.translation.T @ [0.1, 0.4]
-    expected = closed_form(modes.angular_frequency, modes.damping, 0 * v, v, DURATION)
+    expected = motion(modes.angular_frequency, modes.damping, 0 * v, v, DURATION)
     got = run.state_modal.values[0, : modes.count]
     assert np.linalg.norm(got - expected) <= 1e4 * 2.3e-16 * np.linalg.norm(expected)
     central = st.CentralDifference()

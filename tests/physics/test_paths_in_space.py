@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 import stridula as st
 
+from .checks import goes_on, same_side_by_side
 from .into_space import IntoSpace
 
 STEEL, STRIP = st.Material(2.1e11, 7800.0, 0.3), st.Rectangle(0.02, 0.009)
@@ -183,13 +184,8 @@ def test_friction_is_along_the_slip_on_a_track():
 
 
 def test_a_run_goes_on_and_runs_again(tmp_path):
-    system, words = thrown(TURNED), {"step": 2e-5, "sample_rate": 5e4}
-    whole, half = (st.simulate(system, duration, **words) for duration in (0.02, 0.01))
-    st.save(half, tmp_path / "half.nc")
-    rest = st.simulate(system, 0.01, start=st.load(tmp_path / "half.nc"), **words)
-    for name in ("normal_force", "tangential_force", "contact_position", "acceleration"):
-        np.testing.assert_array_equal(whole[name][half.time.size :], rest[name])
-    again = st.load_scenario(whole)
+    system, names = thrown(TURNED), ("normal_force", "tangential_force", "contact_position", "acceleration")
+    whole, *_, again = goes_on(system, 0.02, names, tmp_path, step=2e-5, sample_rate=5e4)
     assert again.system == system
     np.testing.assert_array_equal(again.simulate().normal_force, whole.normal_force)
     plate = IntoSpace(TURNED).system(rubbed(PLATE))[0]
@@ -198,12 +194,8 @@ def test_a_run_goes_on_and_runs_again(tmp_path):
 
 def test_runs_side_by_side_are_those_alone():
     systems = [thrown(Rotation.random(random_state=seed).as_matrix()) for seed in range(9)]
-    words = {"step": 2e-5, "sample_rate": 5e4, "probes": []}
-    together = st.simulate_many(systems, 5e-3, workers=1, **words)
-    for one, system in zip(together, systems, strict=True):
-        alone = st.simulate(system, 5e-3, **words)
-        for name in ("normal_force", "tangential_force", "contact_position"):
-            np.testing.assert_allclose(one[name], alone[name], rtol=1e-9, atol=1e-9 * float(np.abs(alone[name]).max()))
+    names = ("normal_force", "tangential_force", "contact_position")
+    same_side_by_side(systems, 5e-3, names, step=2e-5, sample_rate=5e4, probes=[])
 
 
 def test_a_tip_leaves_at_the_end():

@@ -14,7 +14,7 @@ from kernels.systems import on_a_soft_plate, soft
 import stridula as st
 from physics.cases import STEEL, dragged, slider
 from physics.test_plates import LEANING, STEP, assert_same, recorded
-from stridula.verification.instabilities import exponents
+from stridula.verification.prony import exponents
 
 SHEET = st.ModalPlate(STEEL, 0.002, 0.4, 0.3, in_plane=True, in_plane_modes=(32, 24))
 

@@ -11,9 +11,10 @@ from scipy.optimize import brentq
 
 import stridula as st
 from stridula.analysis.stability import stability_of
-from stridula.verification import instabilities
-from stridula.verification.instabilities import exponents
-from stridula.verification.stability import Pair
+from stridula.verification.prony import exponents
+from stridula.verification.systems import mode_coupling
+from stridula.verification.systems.on_belts import Slider
+from stridula.verification.systems.pair import Pair
 
 STEEL, SQUARE = st.Material(2.1e11, 7800.0), st.Rectangle(0.01, 0.01)
 SLIDING = 2
@@ -26,7 +27,7 @@ def values(found) -> np.ndarray:
 
 def test_mode_coupling():
     """Hoffmann: mu 0.5 and 0.9, and flutter from 0.75 at sqrt 2; the foot rides on its belt."""
-    model = instabilities.hoffmann()
+    model = mode_coupling.hoffmann()
 
     def fastest(friction):
         found = values(st.sliding_stability(model.system(friction)))
@@ -45,7 +46,7 @@ def test_mode_coupling():
 )
 def test_mode_coupling_with_damping(damping, limit):
     """Hulten: damping moves the limit, unequal damping down."""
-    model = instabilities.sinou(damping)
+    model = mode_coupling.sinou(damping)
 
     def growth(friction):
         return float(st.sliding_stability(model.system(friction)).growth_rate.max())
@@ -99,25 +100,15 @@ def test_growth_of_the_moving_contact_of_two_beams():
     assert abs(elsewhere / known.real - 1.0) > 0.05
 
 
-def on_a_belt(law, stiffness: float, speed: float, *drives) -> st.System:
-    """1 kg on a spring, pressed with 10 N on a belt."""
-    mass = st.PointMass(1.0)
-    contact = st.PointContact(mass.centre, st.RigidTrack(velocity=speed), friction=law)
-    start = [st.InitialState(mass, displacement=(place, 0.0)) for place in drives]
-    hold = st.Spring(mass.centre, stiffness=stiffness)
-    return st.System(contact, drives=[st.Gravity(WEIGHT), *start], connections=[hold])
-
-
 def swings(law, stiffness: float, speed: float, skipped: float = 0.0, kick: float = 1e-5) -> tuple[complex, complex]:
-    """Return the exponent of swinging in sliding, and the one seen in time about the equilibrium."""
-    found = values(st.sliding_stability(on_a_belt(law, stiffness, speed)))
+    """Return the exponent of 1 kg swinging in sliding on a belt, and the one seen in time about the equilibrium."""
+    rest = float(law.coefficient_at(speed)) * WEIGHT / stiffness
+    slider = Slider(1.0, stiffness, WEIGHT, law, rest * (1.0 + kick), belt=speed)
+    found = values(st.sliding_stability(slider.system()))
     known = found[np.argmax(found.imag)]
     period = 2.0 * pi / abs(known.imag)
-    rest = float(law.coefficient_at(speed)) * WEIGHT / stiffness
-    system = on_a_belt(law, stiffness, speed, rest * (1.0 + kick))
     step = period / 4000.0
-    probe = st.Displacement(system.slider.centre, "x")
-    run = st.simulate(system, skipped + 3.0 * period, step=step, sample_rate=1.0 / step, probes=[probe])
+    run = slider.run(skipped + 3.0 * period, step, st.ExactModal())
     # Under a law with a state slow sliding counts as sticking.
     assert law.state_units or bool((run.status == SLIDING).all())
     motion = run.displacement.values.reshape(run.time.size, 1)
@@ -196,7 +187,7 @@ def test_several_contacts_have_each_its_own_slip_velocity(belts, velocity, slips
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_a_given_velocity_gives_the_sense_of_mode_coupling(sense):
     """Hoffmann's mass on a floor at rest, sliding as it would on its belt: flutter one way, none the other."""
-    system = instabilities.hoffmann().system(0.9)
+    system = mode_coupling.hoffmann().system(0.9)
     contact, *_ = system.contacts
     still = st.System(replace(contact, track=st.RigidTrack()), drives=system.drives)
     slip = -contact.track.velocity

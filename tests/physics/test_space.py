@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan, cos, hypot, pi, radians, sin, sqrt
+from math import cos, hypot, pi, radians, sin, sqrt
 
 import numpy as np
 import pytest
@@ -14,7 +14,9 @@ from stridula._kernels import layout as at
 from stridula.integration.contact_solve import GaussSeidel
 from stridula.integration.forces import forces_of
 from stridula.verification.surfaces import RADIUS, WEIGHT, coin
+from stridula.verification.systems.in_space import MASS, PRINTED_RATIO, RATIO, STIFFNESS, swinging, thrown_on_a_slope
 
+from .checks import goes_on, same_side_by_side
 from .lattice import lattice, matrices
 from .test_equilibrium_starts import growth
 
@@ -174,22 +176,12 @@ def test_linear_theory_is_that_of_the_plane(friction):
 # Friction in two directions.
 
 
-def on_a_slope(step: float, duration: float = 10.0, scheme=None):
-    """A particle thrown horizontally on a slope whose tangent is the coefficient of friction; downhill is -z."""
-    slope = atan(0.5)
-    mass = st.RigidBody(1.0)
-    weight = st.Gravity(9.81, direction=(0.0, -cos(slope), -sin(slope)))
-    contact = st.PointContact(mass.centre, st.RigidTrack(), friction=st.Coulomb(0.5))
-    system = st.System(contact, [weight, st.InitialVelocity(mass, x=1.0)])
-    return st.simulate(system, duration, step=step, sample_rate=25.0, scheme=scheme or st.ExactModal(), probes=[])
-
-
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_a_particle_on_a_slope_ends_straight_downhill_at_half_its_speed(scheme):
     """Speed and speed downhill lose and win alike: their sum stays the speed at the start."""
     errors = []
     for step in (4e-3, 2e-3, 1e-3):
-        run = on_a_slope(step, scheme=scheme)
+        run = st.simulate(thrown_on_a_slope(), 10.0, step=step, sample_rate=25.0, scheme=scheme, probes=[])
         along, up = run.slip_velocity.values[-1]
         assert abs(along) < 1e-9
         errors.append(-up / 0.5 - 1.0)
@@ -228,45 +220,25 @@ def test_a_mass_is_stopped_in_all_directions_alike(law):
         np.testing.assert_allclose(other, found[0], atol=1e-9 * 0.05)
 
 
-def rubbed(direction: tuple[float, float]) -> st.System:
-    """8 kg on springs of 315 N/m along both tangents, pressed with 1 N on a belt at 10 m/s, mu = 0.5."""
-    mass = st.RigidBody(8.0)
-    belt = st.RigidTrack(velocity=-10.0 * direction[0], lateral_velocity=-10.0 * direction[1])
-    contact = st.PointContact(mass.centre, belt, friction=st.Coulomb(0.5))
-    springs = [st.Spring(mass.centre, stiffness=315.0, direction=way) for way in ("x", "z")]
-    return st.System(contact, [st.Force(mass.centre, y=-1.0)], springs)
-
-
 @pytest.mark.parametrize("direction", [(1.0, 0.0), (0.6, -0.8)])
 def test_friction_damps_motion_across_the_slip(direction):
     """Ratio mu N / (2 v sqrt(k m)) = 0.000498012 across, none along (Ansys VM274)."""
-    known = 0.5 / (2.0 * 10.0 * sqrt(315.0 * 8.0))
-    assert known == pytest.approx(0.000498012, abs=5e-10)
-    found = st.sliding_stability(rubbed(direction))
-    np.testing.assert_allclose(np.sort(found.damping_ratio), [0.0, known], atol=1e-12)
+    assert pytest.approx(PRINTED_RATIO, abs=5e-10) == RATIO
+    found = st.sliding_stability(swinging(direction))
+    np.testing.assert_allclose(np.sort(found.damping_ratio), [0.0, RATIO], atol=1e-12)
     np.testing.assert_allclose(found.tangential_force, 0.5 * np.array(direction), atol=1e-15)
     np.testing.assert_allclose(found.slip_velocity, 10.0 * np.array(direction), rtol=1e-12)
 
 
 def test_motion_across_the_slip_decays_so_in_time():
     """A swing across of 1 mm/s against the 10 m/s of the belt, over 30 periods."""
-    system = rubbed((1.0, 0.0))
-    across = st.InitialVelocity(system.slider, z=1e-3)
-    probe = st.Displacement(system.slider.centre, "z")
-    known = 0.5 / (2.0 * 10.0 * sqrt(315.0 * 8.0))
-    own = sqrt(315.0 / 8.0)
-    period = 2.0 * pi / own
-    run = st.simulate(
-        st.System(system.contact, [*system.drives, across], system.connections),
-        30.0 * period,
-        step=period / 400.0,
-        sample_rate=400.0 / period,
-        probes=[probe],
-    )
+    system, own = swinging(across=1e-3), sqrt(STIFFNESS / MASS)
+    probe, step = st.Displacement(system.slider.centre, "z"), 2.0 * pi / own / 400.0
+    run = st.simulate(system, 30.0 * 400.0 * step, step=step, sample_rate=1.0 / step, probes=[probe])
     z = run.displacement.values[:, 0]
     peaks = np.array([np.abs(z[400 * k : 400 * k + 400]).max() for k in range(30)])
-    decay = -np.polyfit(np.arange(30) * period, np.log(peaks), 1)[0]
-    assert decay == pytest.approx(known * own, rel=2e-3)
+    decay = -np.polyfit(np.arange(30) * 400.0 * step, np.log(peaks), 1)[0]
+    assert decay == pytest.approx(RATIO * own, rel=2e-3)
 
 
 # Many contacts.
@@ -356,12 +328,7 @@ def test_contacts_in_space_obey_their_laws_at_every_step(law, scheme):
 
 def test_runs_side_by_side_are_those_alone():
     systems = [standing(st.Coulomb(0.1 * k)) for k in range(1, 10)]
-    words = {"step": 4e-6, "sample_rate": 5e4, "probes": []}
-    together = st.simulate_many(systems, 2e-3, workers=1, **words)
-    for one, system in zip(together, systems, strict=True):
-        alone = st.simulate(system, 2e-3, **words)
-        for name in ("normal_force", "tangential_force", "slip_velocity", "friction_loss"):
-            np.testing.assert_allclose(one[name], alone[name], rtol=1e-9, atol=1e-9 * float(np.abs(alone[name]).max()))
+    same_side_by_side(systems, 2e-3, step=4e-6, sample_rate=5e4, probes=[])
 
 
 def dragged(friction: float, damping: float) -> st.System:
@@ -578,18 +545,13 @@ def test_an_ensemble_of_a_system_in_space_starts_from_small_changes():
 
 def test_a_run_in_space_goes_on_and_runs_again(tmp_path):
     system = standing()
-    words = {"step": 4e-6, "sample_rate": 5e4}
     probes = [st.Displacement(system.slider.at("top"), "z"), st.Velocity(system.slider.at("foot 1"), "z")]
-    whole = st.simulate(system, 2e-3, probes=probes, **words)
-    half = st.simulate(system, 1e-3, probes=probes, **words)
-    st.save(half, tmp_path / "half.nc")
-    loaded = st.load(tmp_path / "half.nc")
-    rest = st.simulate(system, 1e-3, start=loaded, probes=probes, **words)
-    for name in ("normal_force", "tangential_force", "contact_position"):
-        np.testing.assert_array_equal(whole[name][half.time.size :], rest[name])
+    names = ("normal_force", "tangential_force", "contact_position")
+    words = {"step": 4e-6, "sample_rate": 5e4, "probes": probes}
+    whole, *_, scenario = goes_on(system, 2e-3, names, tmp_path, **words)
     assert whole.tangential_force.dims == ("time", "contact", "tangent")
     assert whole.normal_force.dims == ("time", "contact")
-    again = st.load_scenario(whole).simulate()
+    again = scenario.simulate()
     np.testing.assert_array_equal(again.tangential_force, whole.tangential_force)
     np.testing.assert_array_equal(again.displacement, whole.displacement)
 

@@ -8,18 +8,13 @@ import numpy as np
 import pytest
 
 import stridula as st
+from stridula.verification.systems.discs import HERE, PLATE, STEEL, disc, ring, struck
 
+from .checks import goes_on, same_side_by_side
 from .test_equilibrium_starts import growth, starting
 from .test_space import SCHEMES, reference
 
-STEEL = st.Material(2.1e11, 7850.0, 0.3)
 SLIDING = 2
-PLATE = st.RectangleProfile({"disc": ((0.03, 0.15), (0.0, 0.01))})
-HERE = (0.14, 0.3, 0.01)
-
-
-def disc(turning: float, cutoff: float = 4000.0, **words) -> st.AxisymmetricBody:
-    return st.AxisymmetricBody(PLATE, STEEL, cutoff, "inner", turning=turning, **words)
 
 
 def rubbed(turning: float, friction=0.3, mass: float = 0.2, stiffness: float = 1e6, held: str = "xy", **words):
@@ -35,31 +30,15 @@ def rubbed(turning: float, friction=0.3, mass: float = 0.2, stiffness: float = 1
 # Waves.
 
 
-def ring(turning: float = 10.0) -> st.AxisymmetricBody:
-    middle, thickness = 0.088, 0.00088
-    section = (middle - thickness / 2.0, middle + thickness / 2.0), (0.0, 0.02)
-    held = st.Held("bottom", "z")
-    return st.AxisymmetricBody(st.RectangleProfile({"ring": section}), STEEL, 900.0, held, turning=turning)
-
-
 def test_waves_of_a_ring_lag_as_bryan_found():
     """Coriolis forces let the waves of an inextensible ring turn by (n² - 1) / (n² + 1) of its own turn (1890)."""
-    turning = ring().modes().turning
+    turning = ring(10.0).modes().turning
     for order, drag in zip(turning.order[1:], turning.drag[1:], strict=True):
         # The hoop is not thin against waves of high order.
         assert drag / order == pytest.approx((order**2 - 1.0) / (order**2 + 1.0), rel=1e-4 * order)
     # What moves straight on does not turn at all.
     assert turning.order[0] == 1.0
     assert abs(turning.drag[0]) < 1e-9
-
-
-def struck(turning: float, **words):
-    """A disc struck at a point that nothing touches, and what is seen there."""
-    plate = disc(turning, **words)
-    apart = st.RigidBody(1.0, points={"tip": (0.0, 0.0, 0.0)})
-    contact = st.PointContact(apart.at("tip"), plate.at(HERE), gap=1.0, normal=(0.0, 0.0, 1.0))
-    blow = st.Force(plate.at(HERE), z=1.0, history=st.Sampled((0.0, 2e-4, 4e-4), (0.0, 1.0, 0.0)))
-    return st.System(contact, [blow]), plate
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -224,16 +203,12 @@ def test_energy_is_kept_and_the_drive_pays(scheme):
 
 def test_a_run_goes_on_to_the_last_bit_and_runs_again(tmp_path):
     system = rubbed(300.0, friction=0.4, damping=0.002)
-    words = {"step": 4e-6, "sample_rate": 5e4}
     probes = [st.Velocity(system.track.at(HERE), "z"), st.Acceleration(system.track.at(HERE), "x")]
-    whole = st.simulate(system, 2e-3, probes=probes, **words)
-    half = st.simulate(system, 1e-3, probes=probes, **words)
-    st.save(half, tmp_path / "half.nc")
-    rest = st.simulate(system, 1e-3, start=st.load(tmp_path / "half.nc"), probes=probes, **words)
-    for name in ("normal_force", "tangential_force", "drive_work", "slip_velocity"):
-        np.testing.assert_array_equal(whole[name][half.time.size :], rest[name])
+    words = {"step": 4e-6, "sample_rate": 5e4, "probes": probes}
+    names = ("normal_force", "tangential_force", "drive_work", "slip_velocity")
+    whole, half, rest, scenario = goes_on(system, 2e-3, names, tmp_path, **words)
     np.testing.assert_array_equal(whole.velocity[half.time.size + 1 :], rest.velocity[1:])
-    again = st.load_scenario(whole).simulate()
+    again = scenario.simulate()
     for name in ("normal_force", "tangential_force", "velocity", "acceleration"):
         np.testing.assert_array_equal(again[name], whole[name])
     # And what is written of a body given by its modes is what was read.
@@ -243,12 +218,7 @@ def test_a_run_goes_on_to_the_last_bit_and_runs_again(tmp_path):
 def test_runs_side_by_side_are_those_alone():
     history = st.Ramp(1e-3)
     systems = [rubbed(40.0 * k, friction=0.3, damping=0.002, turning_history=history) for k in range(1, 10)]
-    words = {"step": 4e-6, "sample_rate": 5e4, "probes": []}
-    together = st.simulate_many(systems, 2e-3, workers=1, **words)
-    for one, system in zip(together, systems, strict=True):
-        alone = st.simulate(system, 2e-3, **words)
-        for name in ("normal_force", "tangential_force", "slip_velocity", "friction_loss"):
-            np.testing.assert_allclose(one[name], alone[name], rtol=1e-9, atol=1e-9 * float(np.abs(alone[name]).max()))
+    same_side_by_side(systems, 2e-3, step=4e-6, sample_rate=5e4, probes=[])
 
 
 def test_discs_at_rest_march_beside_those_that_turn():

@@ -10,7 +10,7 @@ import pytest
 import stridula as st
 from stridula import plot
 from stridula.studies.loci import critical_values
-from stridula.verification.instabilities import hoffmann, sinou, sinou_limit
+from stridula.verification.systems.mode_coupling import hoffmann, sinou, sinou_limit
 
 
 def hoffmann_at(friction: float) -> st.System:

@@ -21,8 +21,8 @@ from stridula.analysis.status_changes import (
     regularity,
     slips,
 )
-from stridula.verification.sliders import Slider
-from stridula.verification.sliders import stick_slip as cycle_of
+from stridula.verification.systems.on_belts import Slider
+from stridula.verification.systems.on_belts import stick_slip as cycle_of
 
 RATE = 20e3
 SEPARATED, STICKING, SLIDING = range(3)
@@ -294,20 +294,19 @@ def clockwork(slip, stick, belt=0.01, fall=0.15, leaf=None):
     angular = np.pi / slip
     for _ in range(60):
         angular = 2.0 / slip * (np.pi - np.arctan(0.5 * stick * angular))
-    block, law = st.PointMass(1.0), st.StaticKinetic(0.25 + fall, 0.25)
     load = 0.5 * stick * belt * angular**2 / fall
-    known = cycle_of(Slider(1.0, angular**2, load, law, 0.0, belt, belt))
+    slider = Slider(1.0, angular**2, load, st.StaticKinetic(0.25 + fall, 0.25), 0.0, belt, belt)
+    known, system = cycle_of(slider), slider.system()
     assert (known.slip, known.stick) == pytest.approx((slip, stick))
-    drives = [st.Force(block.centre, y=-load), st.InitialVelocity(block, x=belt)]
-    connections = [st.Spring(block.centre, stiffness=angular**2)]
-    if leaf is not None:
-        metal, stiffness = st.PointMass(0.3), 0.3 * (2.0 * np.pi * leaf) ** 2
-        connections += [
-            st.Spring(block.centre, metal.centre, stiffness=stiffness),
-            st.Dashpot(block.centre, metal.centre, coefficient=0.02 * np.sqrt(0.3 * stiffness)),
-            st.Spring(metal.centre, stiffness=1e3, direction="y"),
-        ]
-    return st.System(st.PointContact(block.centre, st.RigidTrack(velocity=belt), friction=law), drives, connections)
+    if leaf is None:
+        return system
+    block, metal, stiffness = system.slider, st.PointMass(0.3), 0.3 * (2.0 * np.pi * leaf) ** 2
+    joined = [
+        st.Spring(block.centre, metal.centre, stiffness=stiffness),
+        st.Dashpot(block.centre, metal.centre, coefficient=0.02 * np.sqrt(0.3 * stiffness)),
+        st.Spring(metal.centre, stiffness=1e3, direction="y"),
+    ]
+    return replace(system, connections=[*system.connections, *joined])
 
 
 @pytest.mark.parametrize("rate", RATES)

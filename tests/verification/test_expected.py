@@ -9,9 +9,6 @@ import pytest
 
 import stridula as st
 from stridula.verification import (
-    frequencies,
-    impacts,
-    instabilities,
     jams,
     laws,
     partial_slip,
@@ -20,17 +17,18 @@ from stridula.verification import (
     stability,
     strings,
 )
+from stridula.verification.systems import bars, beams, mode_coupling, on_belts
 
 
 def test_sdnd100():
-    points, time = sliders.turning_points(0.85e-3, 0.0, 100.0, 1e-4)
+    points, time = on_belts.turning_points(0.85e-3, 0.0, 100.0, 1e-4)
     assert points == pytest.approx([-0.65e-3, 0.45e-3, -0.25e-3, 0.05e-3], abs=1e-12)
     assert time == pytest.approx(0.125664, abs=5e-7)
     assert time == pytest.approx(4 * pi / 100)
 
 
 def test_relay():
-    points, time = sliders.turning_points(12.0, 6.0, 1.0, 1.0)
+    points, time = on_belts.turning_points(12.0, 6.0, 1.0, 1.0)
     printed = [13.317821, -11.317821, 9.317821, -7.317821, 5.317821, -3.317821, 1.317821, 0.682179]
     assert points == pytest.approx(printed, abs=5e-7)
     assert time == pytest.approx(22.423556, abs=5e-7)
@@ -38,7 +36,7 @@ def test_relay():
 
 
 def test_belt():
-    known = sliders.stick_slip(sliders.BELT)
+    known = on_belts.stick_slip(sliders.BELT)
     assert known.slip == pytest.approx(2.158799, abs=5e-7)
     assert known.stick == pytest.approx(1.5)
     assert known.slip + known.stick == pytest.approx(3.658799, abs=5e-7)
@@ -47,7 +45,7 @@ def test_belt():
 
 
 def test_hoffmann():
-    model = instabilities.hoffmann()
+    model = mode_coupling.hoffmann()
     np.testing.assert_allclose(model.sliding(0.3), [[2.0, 1.0 - 4.0 * 0.3 / 3.0], [1.0, 2.0]], atol=1e-12)
     assert model.exponents(0.5).imag == pytest.approx([1.605413, 1.192749], abs=5e-7)
     assert model.exponents(0.5).real == pytest.approx([0.0, 0.0], abs=1e-12)
@@ -63,15 +61,15 @@ def test_hoffmann():
 )
 def test_sinou(damping, printed):
     """The limit by Hurwitz is where the growth of the eigenvalues passes zero."""
-    limit, model = instabilities.sinou_limit(damping), instabilities.sinou(damping)
+    limit, model = mode_coupling.sinou_limit(damping), mode_coupling.sinou(damping)
     assert limit == pytest.approx(printed, abs=5e-7)
     assert model.exponents(limit * (1 - 1e-4))[0].real < 1e-7
     assert model.exponents(limit * (1 + 1e-4))[0].real > 1e-4
 
 
 def test_sinou_flutters_at_88_hertz():
-    model = instabilities.sinou()
-    met = model.exponents(instabilities.sinou_limit((0.0, 0.0)))
+    model = mode_coupling.sinou()
+    met = model.exponents(mode_coupling.sinou_limit((0.0, 0.0)))
     assert met.imag / (2 * pi) == pytest.approx([88.3883, 88.3883], abs=1e-3)
 
 
@@ -86,27 +84,27 @@ def test_sliding_stability():
 
 
 def test_impact():
-    assert impacts.WALL.plateau(0.1) == pytest.approx(1270.83, abs=0.005)
-    assert 5e-4 + impacts.WALL.crossing == pytest.approx(8.854e-4, abs=5e-8)
-    assert 2 * impacts.WALL.mass * 0.1 == pytest.approx(0.489840, abs=5e-7)
+    assert bars.WALL.plateau(0.1) == pytest.approx(1270.83, abs=0.005)
+    assert 5e-4 + bars.WALL.crossing == pytest.approx(8.854e-4, abs=5e-8)
+    assert 2 * bars.WALL.mass * 0.1 == pytest.approx(0.489840, abs=5e-7)
 
 
 @pytest.mark.parametrize(("courant", "printed"), [(0.9, 0.026), (0.5, 0.079)])
 def test_printed_overshoots_are_those_of_the_scheme(courant, printed):
     """Printed to 0.1 %; from the closed form of lumped mass and central differences, with this gap."""
-    words = {"gap": impacts.GAP, "velocity": impacts.VELOCITY, "duration": impacts.DURATION}
-    force = impacts.force_of_scheme(impacts.WALL, "lumped", True, impacts.WALL.step(courant), **words)
-    assert force.max() / impacts.WALL.plateau(0.1) - 1 == pytest.approx(printed, abs=5e-4)
+    words = {"gap": bars.GAP, "velocity": bars.VELOCITY, "duration": bars.DURATION}
+    force = bars.force_of_scheme(bars.WALL, "lumped", True, bars.WALL.step(courant), **words)
+    assert force.max() / bars.WALL.plateau(0.1) - 1 == pytest.approx(printed, abs=5e-4)
 
 
 def test_bouncing_bar():
-    assert impacts.contacts() == pytest.approx((1.0, 1.6667, 3.6667, 4.3333), abs=5e-5)
+    assert bars.contacts() == pytest.approx((1.0, 1.6667, 3.6667, 4.3333), abs=5e-5)
     times = (0.0, 0.5, 1.3, 2.0, 2.5, 8 / 3, 4.0, 16 / 3)
     heights = (5.0, 3.75, 0.0, 1.666667, 4.027778, 3.888889, 0.0, 5.0)
-    assert [impacts.bounce(time) for time in times] == pytest.approx(heights, abs=5e-7)
-    assert impacts.BALL.plateau(10.0) == pytest.approx(300.0)
+    assert [bars.bounce(time) for time in times] == pytest.approx(heights, abs=5e-7)
+    assert bars.BALL.plateau(10.0) == pytest.approx(300.0)
     # Momentum: the pressure 300 + 300 s over 2/3 s turns -10 m/s of 10 kg into +10 m/s against their weight.
-    crossing = impacts.BALL.crossing
+    crossing = bars.BALL.crossing
     assert 300 * crossing + 150 * crossing**2 == pytest.approx(10 * (20 + 10 * crossing))
 
 
@@ -135,13 +133,12 @@ def test_velocity_step_starts_and_ends_where_it_must():
 
 
 def test_frequencies():
-    steel = {beam.name: beam for beam in frequencies.BEAMS}
-    found = frequencies.bending(steel["simply supported"].roots, 0.3)[:3]
+    found = beams.bending(beams.SUPPORTS["simply supported"].roots, 0.3)[:3]
     np.testing.assert_allclose(found, [261.43, 1045.70, 2352.84], atol=0.0051)
-    found = frequencies.bending(steel["guided-free"].roots, 0.15)[:3]
+    found = beams.bending(beams.SUPPORTS["guided-free"].roots, 0.15)[:3]
     np.testing.assert_allclose(found, [592.62, 3202.49, 7908.14], atol=0.0051)
     np.testing.assert_allclose(
-        frequencies.guided_free_roots(4), [2.3650204, 5.4978039, 8.6393798, 11.7809725], atol=5e-8
+        beams.SUPPORTS["guided-free"].roots, [2.3650204, 5.4978039, 8.6393798, 11.7809725], atol=5e-8
     )
 
 

@@ -7,8 +7,8 @@ from math import exp, sqrt
 from ..contact import ExponentialWeakening, FrictionLaw, LinearWeakening, Stribeck
 from ..lowering.schemes import Scheme
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
-from .instabilities import exponents, only_sliding
-from .sliders import Slider
+from .prony import exponents, only_sliding
+from .systems.on_belts import Slider
 
 MASS, STIFFNESS, NORMAL, BELT = 1.0, 4.0, 10.0, 0.5
 

@@ -3,112 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from math import pi, sqrt
+from math import pi
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ..arrays import Array
-from ..bodies import FiniteElementBeam, Material, ModalBeam, Rectangle
+from ..bodies import FiniteElementBeam, ModalBeam
 from .case import Case, Curve, Outcome, Row, Sketch
+from .systems.beams import COUNT, SQUARE, STEEL, SUPPORTS, N, beam_of, bending, families, stretching
 
-STEEL = Material(2.1e11, 7800.0)
-SQUARE = Rectangle(0.010, 0.010)
 ELEMENTS = 40
-COUNT = 4
-
-
-def bending(roots: Array, length: float) -> Array:
-    """Return ``(x / L)² sqrt(EI / rho S) / 2 pi`` [Hz] for the roots x of a beam's characteristic function."""
-    return (roots / length) ** 2 * sqrt(STEEL.young * SQUARE.second_moment / (STEEL.density * SQUARE.area)) / (2.0 * pi)
-
-
-def stretching(multiples: Array, length: float) -> Array:
-    """Return ``n c / 2 L`` [Hz] of a rod."""
-    return multiples * sqrt(STEEL.young / STEEL.density) / (2.0 * length)
-
-
-def guided_free_roots(count: int) -> Array:
-    """Return the roots of ``tan x + tanh x = 0`` above zero."""
-    starts = (np.arange(1, count + 1) - 0.25) * pi
-    return np.array([brentq(lambda x: np.sin(x) + np.cos(x) * np.tanh(x), a - 0.5, a + 0.5) for a in starts])
-
-
-N = np.arange(1, COUNT + 1)
-
-
-@dataclass(frozen=True)
-class Beam:
-    """A steel beam of 10 x 10 mm with known frequencies.
-
-    Attributes
-    ----------
-    name : str
-        Its supports as text.
-    root, tip : str
-        Supports.
-    length : float
-        Length [m].
-    roots : ndarray
-        Roots of the characteristic function of bending.
-    multiples : ndarray
-        Multiples of c / 2L in stretching.
-    rigid : int
-        Number of rigid motions.
-    """
-
-    name: str
-    root: str
-    tip: str
-    length: float
-    roots: Array
-    multiples: Array
-    rigid: int
-
-    def elements(self, count: int = ELEMENTS) -> FiniteElementBeam:
-        """Return the beam in finite elements."""
-        return FiniteElementBeam(
-            STEEL, SQUARE, self.length, elements=count, root_support=self.root, tip_support=self.tip
-        )
-
-
-BEAMS = (
-    Beam("simply supported", "pinned", "pinned", 0.3, N * pi, N, 0),
-    Beam("guided-free", "guided", "free", 0.15, guided_free_roots(COUNT), N, 2),
-    Beam("guided-pinned", "guided", "pinned", 0.3, (N - 0.5) * pi, N - 0.5, 0),
-)
-
-
-def families(body: FiniteElementBeam) -> tuple[Array, Array]:
-    """Return the frequencies above zero of bending and of stretching [Hz], distinguished by their motion."""
-    along, across = body.axes
-    moved = np.array([body.trace(place) for place in np.linspace(0.0, body.length, 23)])
-    share = [np.sum(np.tensordot(moved, way, axes=(1, 0)) ** 2, axis=0) for way in (across, along)]
-    frequency = body.modes().frequency
-    return frequency[(frequency > 0) & (share[0] > share[1])], frequency[(frequency > 0) & (share[1] > share[0])]
+# Names of supports and lengths [m].
+BEAMS = (("simply supported", 0.3), ("guided-free", 0.15), ("guided-pinned", 0.3))
 
 
 def beams() -> Outcome:
     """Three supports in 40 elements."""
     rows, curves = [], []
-    for beam in BEAMS:
-        found, along = families(beam.elements())
-        known, known_along = bending(beam.roots, beam.length), stretching(beam.multiples, beam.length)
+    for name, length in BEAMS:
+        beam, body = SUPPORTS[name], beam_of(name, ELEMENTS, length)
+        found, along = families(body)
+        known, known_along = bending(beam.roots, length), stretching(beam.multiples, length)
         hermite = "Hermite cubics, 40 elements: (x/n)^4 / 1440 of the frequency, round-off of the highest mode"
         linear = "linear bars, 40 elements: (x/n)² / 24 of the frequency and its next term"
         for k in range(COUNT):
             # The next term of the series is (x/n)² of the first.
             share = (beam.roots[k] / ELEMENTS) ** 4 / 1440.0 * (1.0 + (beam.roots[k] / ELEMENTS) ** 2)
             share += np.finfo(float).eps * (found[-1] / found[k]) ** 2
-            rows.append(Row(f"{beam.name}, bending {k + 1}", known[k], found[k], share * known[k], hermite, "Hz"))
+            rows.append(Row(f"{name}, bending {k + 1}", known[k], found[k], share * known[k], hermite, "Hz"))
         for k in range(2):
             share = (beam.multiples[k] * pi / ELEMENTS) ** 2 / 23.0
-            words = f"{beam.name}, stretching {k + 1}"
+            words = f"{name}, stretching {k + 1}"
             rows.append(Row(words, known_along[k], along[k], share * known_along[k], linear, "Hz"))
-        rigid = int(np.sum(beam.elements().modes().frequency == 0.0))
-        rows.append(Row(f"{beam.name}, rigid motions", beam.rigid, rigid, 0.0, "a count"))
-        curves.append(Curve(N, found[:COUNT] / known - 1.0, beam.name, marks=True))
+        rigid = int(np.sum(body.modes().frequency == 0.0))
+        rows.append(Row(f"{name}, rigid motions", beam.rigid, rigid, 0.0, "a count"))
+        curves.append(Curve(N, found[:COUNT] / known - 1.0, name, marks=True))
     return Outcome(rows, Sketch("mode in bending", "frequency over the closed form, less 1", curves))
 
 
@@ -131,23 +60,19 @@ def fitted_order(sizes: Array, errors: Array) -> float:
     return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
 
 
-def pinned(count: int, mass: str) -> FiniteElementBeam:
-    """Return the simply supported beam in finite elements."""
-    return FiniteElementBeam(STEEL, SQUARE, 0.3, elements=count, mass=mass, root_support="pinned", tip_support="pinned")
-
-
 def element_orders() -> Outcome:
     """Order of the eigenvalue of the second mode in the size of the elements, simply supported."""
-    beam, counts = BEAMS[0], np.array([8, 12, 16, 24])
+    supports, counts = "simply supported", np.array([8, 12, 16, 24])
+    roots = SUPPORTS[supports].roots
     kinds: list[tuple[str, str, int, float, Callable[[FiniteElementBeam], float]]] = [
-        ("bending, consistent mass", "consistent", 4, bending(beam.roots, 0.3)[1], lambda body: families(body)[0][1]),
-        ("bending, lumped mass", "lumped", 2, bending(beam.roots, 0.3)[1], lambda body: families(body)[0][1]),
+        ("bending, consistent mass", "consistent", 4, bending(roots, 0.3)[1], lambda body: families(body)[0][1]),
+        ("bending, lumped mass", "lumped", 2, bending(roots, 0.3)[1], lambda body: families(body)[0][1]),
         ("stretching, consistent mass", "consistent", 2, stretching(N, 0.3)[1], lambda body: families(body)[1][1]),
         ("stretching, lumped mass", "lumped", 2, stretching(N, 0.3)[1], lambda body: families(body)[1][1]),
     ]
     rows, curves = [], []
     for name, mass, order, known, frequency in kinds:
-        errors = np.array([abs((frequency(pinned(int(n), mass)) / known) ** 2 - 1.0) for n in counts])
+        errors = np.array([abs((frequency(beam_of(supports, int(n), mass=mass)) / known) ** 2 - 1.0) for n in counts])
         rows.append(Row(f"order, {name}", order, fitted_order(1.0 / counts, errors), 0.1, "declared order within 0.1"))
         curves.append(Curve(0.3 / counts, errors, name, marks=True))
     sketch = Sketch("size of an element [m]", "relative error of the eigenvalue", curves, logarithmic=True)

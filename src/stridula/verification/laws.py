@@ -2,95 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
-from math import asinh, exp, log, sqrt
+from math import log, sqrt
 
 import numpy as np
 import xarray as xr
-from scipy.integrate import solve_ivp
 
 from ..arrays import Array
 from ..bodies import PointMass
-from ..connections import Spring
 from ..contact import LuGre, PointContact, RateAndState, RigidTrack
-from ..drives import Force, InitialState
+from ..drives import Force
 from ..integration import simulate
 from ..lowering.schemes import Scheme
-from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
 from .frequencies import fitted_order
+from .systems.on_belts import Slider, rubbing_of
 
 
-@dataclass(frozen=True)
-class Pulled:
-    """A mass under a force of 1 N on a belt that runs towards -x, held by a spring: pulled, as seen from the belt.
-
-    Attributes
-    ----------
-    friction : LuGre or RateAndState
-        Law of friction.
-    mass, stiffness : float
-        Mass [kg], stiffness of the spring [N/m].
-    speed : float
-        Velocity of the belt, or of the spring's end as seen from it [m/s].
-    stretch : float
-        Force of the spring at the start [N].
-    slip : float
-        Slip velocity at the start [m/s].
-    """
-
-    friction: LuGre | RateAndState
-    mass: float
-    stiffness: float
-    speed: float
-    stretch: float = 0.0
-    slip: float = 0.0
-
-    def run(self, duration: float, step: float, scheme: Scheme) -> tuple[Array, Array, xr.Dataset]:
-        """Simulate and return time, force of the spring [N], and the record of every step."""
-        body = PointMass(self.mass)
-        track = RigidTrack(velocity=-self.speed)
-        start = InitialState(
-            body, displacement=(-self.stretch / self.stiffness, 0.0), velocity=(self.slip - self.speed, 0.0)
-        )
-        system = System(
-            PointContact(body.centre, track, friction=self.friction),
-            drives=[Force(body.centre, y=-1.0), start],
-            connections=[Spring(body.centre, stiffness=self.stiffness)],
-        )
-        probes = [Displacement(body.centre, "x")]
-        run = simulate(system, duration, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes)
-        return run["time"].values, -self.stiffness * run["displacement"].values[:, 0], run
-
-    def reference(
-        self, duration: float, state: float, friction: Callable[[float, float], tuple[float, float]]
-    ) -> tuple[Array, Array]:
-        """Return times and forces of the spring at its longest and shortest, by LSODA to 1e-11.
-
-        `friction` is a function of slip velocity and state that returns the ratio of forces and the rate of the state.
-        """
-
-        def rates(time: float, y: Array) -> list[float]:
-            ratio, rate = friction(y[1], y[2])
-            return [self.speed - y[1], (y[0] * self.stiffness - ratio) / self.mass, rate]
-
-        def turns(time: float, y: Array) -> float:
-            return self.speed - float(y[1])
-
-        found = solve_ivp(
-            rates,
-            (0.0, duration),
-            [self.stretch / self.stiffness, self.slip, state],
-            method="LSODA",
-            rtol=1e-11,
-            atol=1e-15,
-            events=turns,
-            max_step=duration / 2000.0,
-        )
-        return found.t_events[0], found.y_events[0][:, 0] * self.stiffness
+def pulled(slider: Slider, duration: float, step: float, scheme: Scheme) -> tuple[Array, Array]:
+    """Simulate and return time [s] and force of the spring [N] at every step."""
+    run = slider.run(duration, step, scheme)
+    return run["time"].values, -slider.stiffness * run["displacement"].values[:, 0]
 
 
 def extremes(time: Array, force: Array) -> tuple[Array, Array, Array]:
@@ -102,20 +36,15 @@ def extremes(time: Array, force: Array) -> tuple[Array, Array, Array]:
 
 
 BRISTLES = LuGre(static=1.5, kinetic=1.0, velocity=1e-3, stiffness=1e5, damping=sqrt(1e5), viscous=0.4)
-PULL = Pulled(BRISTLES, mass=1.0, stiffness=2.0, speed=0.1)
+# A belt that runs towards -x: as seen from it, the mass is pulled.
+PULL = Slider(1.0, 2.0, 1.0, BRISTLES, velocity=-0.1, belt=-0.1)
 
 
 @lru_cache
 def lugre_reference() -> tuple[float, float, float]:
     """Return period [s], peak and least force of the spring [N] of the pull test."""
-    law = BRISTLES
-
-    def friction(velocity: float, z: float) -> tuple[float, float]:
-        curve = law.kinetic + (law.static - law.kinetic) * exp(-((velocity / law.velocity) ** 2))
-        rate = velocity - law.stiffness * abs(velocity) * z / curve
-        return law.stiffness * z + law.damping * rate + law.viscous * velocity, rate
-
-    time, force = PULL.reference(40.0, 0.0, friction)
+    time, place = PULL.turns(40.0, 0.0)
+    force = -PULL.stiffness * place
     peaks = force > 1.0
     late = time > 10.0
     return (
@@ -134,7 +63,7 @@ def lugre() -> Outcome:
         found: list[Row] = []
         steps, errors = (1e-2, 1e-3, 3e-4, 1e-4), []
         for step in steps:
-            time, force, _ = PULL.run(40.0, step, scheme)
+            time, force = pulled(PULL, 40.0, step, scheme)
             tops, peaks, troughs = extremes(time, force)
             errors.append(abs(peaks[1:].mean() - peak))
             if step == 3e-4:
@@ -142,7 +71,7 @@ def lugre() -> Outcome:
             if step == 1e-2:
                 curves.append(Curve(time, force, f"{scheme.name}, step {step:g} s"))
             away = "it breaks away within a step: k v h"
-            drift = PULL.stiffness * PULL.speed * step
+            drift = PULL.stiffness * abs(PULL.belt) * step
             found += [
                 Row(f"step {step:g} s: peak force", peak, peaks[1:].mean(), drift, away, "N", scheme.name),
                 Row(f"step {step:g} s: least force", least, troughs.mean(), drift, away, "N", scheme.name),
@@ -228,22 +157,21 @@ def age_steps() -> Outcome:
 
 # Below the critical stiffness N (b - a) / D (1 + m V² / (N a D)) = 100 N/m (Rice & Ruina 1983).
 CREEP = RateAndState(reference=0.6, a=0.010, b=0.015, slip_distance=1e-4, velocity=1e-3)
-SLOW = Pulled(CREEP, mass=1.0, stiffness=60.0, speed=1e-3, stretch=0.6 * 0.999, slip=1e-3)
+SLOW = Slider(1.0, 60.0, 1.0, CREEP, position=-0.6 * 0.999 / 60.0, belt=-1e-3)
 SETTLED = 30.0
 
 
 @lru_cache
 def slow_reference() -> tuple[float, float, float, float]:
     """Return period [s], peak and least force of the spring [N], and largest slip velocity [m/s] of the cycle."""
-    law, fastest = CREEP, [0.0]
+    fastest, equations = [0.0], rubbing_of(CREEP)
 
-    def friction(velocity: float, theta: float) -> tuple[float, float]:
-        fastest[0] = max(fastest[0], abs(velocity))
-        exponent = (law.reference + law.b * log(law.velocity * theta / law.slip_distance)) / law.a
-        ratio = law.a * asinh(velocity / (2.0 * law.velocity) * exp(exponent))
-        return ratio, 1.0 - abs(velocity) * theta / law.slip_distance
+    def rubbing(slip: float, theta: float) -> tuple[float, float]:
+        fastest[0] = max(fastest[0], abs(slip))
+        return equations(slip, theta)
 
-    time, force = SLOW.reference(2.0 * SETTLED, law.state_at_start, friction)
+    time, place = SLOW.turns(2.0 * SETTLED, CREEP.state_at_start, rubbing)
+    force = -SLOW.stiffness * place
     time, force = time[time > SETTLED], force[time > SETTLED]
     peaks = force > force.mean()
     return float(np.diff(time[peaks]).mean()), float(force[peaks].mean()), float(force[~peaks].mean()), fastest[0]
@@ -258,7 +186,7 @@ def slow_stick_slip() -> Outcome:
         steps, errors = (3e-3, 1e-3, 3e-4), []
         found: list[Row] = []
         for step in steps:
-            time, force, _ = SLOW.run(2.0 * SETTLED, step, scheme)
+            time, force = pulled(SLOW, 2.0 * SETTLED, step, scheme)
             late = time > SETTLED
             tops, peaks, troughs = extremes(time[late], force[late])
             errors.append(abs(peaks.mean() - peak))

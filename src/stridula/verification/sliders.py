@@ -2,93 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import atan, cos, hypot, pi, sin, sqrt
+from math import pi, sqrt
 
 import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from ..bodies import PointMass
-from ..connections import Spring
-from ..contact import Coulomb, FrictionLaw, PointContact, RigidTrack, StaticKinetic
-from ..drives import Force, InitialState
-from ..histories import Harmonic
-from ..integration import simulate
+from ..contact import Coulomb, StaticKinetic
 from ..lowering.schemes import Scheme
-from ..records import Displacement
-from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
+from .systems.on_belts import Slider, den_hartog, stick_slip, swing, turning_points
 
 STICKING, SLIDING = 1, 2
-
-
-@dataclass(frozen=True)
-class Slider:
-    """A mass on a spring, pressed on a floor: ``m x'' + k x = -mu N sign(x' - belt)``.
-
-    Attributes
-    ----------
-    mass, stiffness, normal : float
-        Mass [kg], stiffness of its spring [N/m], force that presses it on the floor [N].
-    friction : Coulomb, StaticKinetic or another law without internal state
-        Law of friction.
-    position, velocity : float
-        Start [m, m/s].
-    belt : float, optional
-        Velocity of the floor [m/s].
-    push : Harmonic, optional
-        Factor on a force of 1 N along the floor; none if left out.
-    """
-
-    mass: float
-    stiffness: float
-    normal: float
-    friction: FrictionLaw
-    position: float
-    velocity: float = 0.0
-    belt: float = 0.0
-    push: Harmonic | None = None
-
-    def run(self, duration: float, step: float, scheme: Scheme) -> xr.Dataset:
-        """Simulate and record every step."""
-        body = PointMass(self.mass)
-        system = System(
-            PointContact(body.centre, RigidTrack(velocity=self.belt), friction=self.friction),
-            drives=[
-                Force(body.centre, y=-self.normal),
-                InitialState(body, displacement=(self.position, 0.0), velocity=(self.velocity, 0.0)),
-                *([Force(body.centre, x=1.0, history=self.push)] if self.push else []),
-            ],
-            connections=[Spring(body.centre, stiffness=self.stiffness)],
-        )
-        probes = [Displacement(body.centre, "x")]
-        return simulate(system, duration, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes)
-
-
-def turning_points(position: float, velocity: float, angular: float, offset: float) -> tuple[list[float], float]:
-    """Return the turning points of a mass on a spring under Coulomb friction, the last being its rest, and their times.
-
-    It swings about ``-offset sign(x')`` with ``offset = mu N / k``: the amplitude falls by ``2 offset`` every half
-    period, and it stays at the first turning point within the offset.
-    """
-    if velocity == 0.0:
-        sense, first, time = (-1.0 if position > 0 else 1.0), position, 0.0
-        points = []
-    else:
-        sense = 1.0 if velocity > 0 else -1.0
-        centre = -offset * sense
-        first = centre + sense * hypot(position - centre, velocity / angular)
-        # Phase from the start to the turning point of the circle about the centre.
-        time = atan(abs(velocity) / angular / abs(position - centre)) / angular
-        points, sense = [first], -sense
-    place = first
-    while abs(place) > offset:
-        place = -place - 2.0 * offset * sense
-        points.append(place)
-        time += pi / angular
-        sense = -sense
-    return points, time
 
 
 def turned(position: Array) -> Array:
@@ -158,48 +83,6 @@ def relay() -> Outcome:
 BELT = Slider(1.0, 4.0, 10.0, StaticKinetic(0.4, 0.25), position=0.0, velocity=0.5, belt=0.5)
 
 
-@dataclass(frozen=True)
-class StickSlip:
-    """The cycle of a mass on a belt with constant static and kinetic friction.
-
-    Attributes
-    ----------
-    slip, stick : float
-        Times of slip and of stick [s].
-    lowest, highest : float
-        Ends of the motion [m].
-    slowest : float
-        Least velocity [m/s].
-    """
-
-    slip: float
-    stick: float
-    lowest: float
-    highest: float
-    slowest: float
-
-
-def stick_slip(slider: Slider) -> StickSlip:
-    """Return the cycle: from the static limit the mass swings about the kinetic one until it moves with the belt again.
-
-    With ``D = (mu_s - mu_k) N / k`` it leaves at ``x_k + D`` with the belt's velocity v, so its amplitude is
-    ``sqrt(D² + (v/w)²)``, and it comes back to v at ``x_k - D``.
-    """
-    law = slider.friction
-    assert isinstance(law, StaticKinetic)
-    angular = sqrt(slider.stiffness / slider.mass)
-    reach = (law.static - law.kinetic) * slider.normal / slider.stiffness
-    middle = law.kinetic * slider.normal / slider.stiffness
-    amplitude = hypot(reach, slider.belt / angular)
-    return StickSlip(
-        slip=2.0 / angular * (pi - atan(reach * angular / slider.belt)),
-        stick=2.0 * reach / slider.belt,
-        lowest=middle - amplitude,
-        highest=middle + amplitude,
-        slowest=-amplitude * angular,
-    )
-
-
 def belt() -> Outcome:
     """Stick-slip of a mass on a belt."""
     known, step = stick_slip(BELT), 2e-4
@@ -259,28 +142,16 @@ def belt_without_jump() -> Outcome:
 FREQUENCY, FRICTION = 0.8, 0.2
 
 
-def den_hartog() -> Outcome:
-    """Mass and spring of 1 under ``cos(w t)`` N, under little friction, never at rest: amplitude by steps per period.
-
-    With ``V = 1 / (1 - w²)`` and ``U = sin(pi/w) / (w (1 + cos(pi/w)))`` it is ``sqrt(V² - (U mu N)²)``.
-    """
-    high = 1.0 / (1.0 - FREQUENCY**2)
-    wide = sin(pi / FREQUENCY) / (FREQUENCY * (1.0 + cos(pi / FREQUENCY)))
-    amplitude, period = sqrt(high**2 - (wide * FRICTION) ** 2), 2.0 * pi / FREQUENCY
-    swung = Slider(1.0, 1.0, 1.0, Coulomb(FRICTION), 0.0, push=Harmonic(1.0 / period))
+def forced() -> Outcome:
+    """Mass and spring of 1 under ``cos(w t)`` N and little friction, never at rest: its amplitude."""
+    amplitude, period = den_hartog(FREQUENCY, FRICTION), 2.0 * pi / FREQUENCY
     counts = np.array([100.0, 200.0, 400.0, 800.0])
     curves: list[Curve] = []
 
-    def peak(scheme: Scheme, count: float) -> float:
-        place = swung.run(150.0 * period, period / count, scheme)["displacement"].values[-int(20 * count) :, 0]
-        top = np.flatnonzero((place[1:-1] > place[:-2]) & (place[1:-1] >= place[2:])) + 1
-        before, highest, after = place[top - 1], place[top], place[top + 1]
-        return float(np.mean(highest + (before - after) ** 2 / (8.0 * (2.0 * highest - before - after))))
-
     def rows(scheme: Scheme) -> list[Row]:
-        errors = np.array([abs(peak(scheme, float(count)) / amplitude - 1.0) for count in counts])
+        errors = np.array([abs(swing(FREQUENCY, FRICTION, float(count), scheme) / amplitude - 1.0) for count in counts])
         curves.append(Curve(period / counts, errors, scheme.name, marks=True))
-        found = peak(scheme, 400.0)
+        found = swing(FREQUENCY, FRICTION, 400.0, scheme)
         words = "(w h)² of it: reversals are of second order, also with whole numbers of steps a period"
         within = amplitude * (2.0 * pi / 400.0) ** 2
         order = -float(np.polyfit(np.log(counts), np.log(errors), 1)[0])
@@ -298,7 +169,7 @@ CASES = (
         "den-hartog",
         "Forced oscillator with dry friction, without stops",
         "J. P. Den Hartog 1931, Trans. ASME 53, APM-107: closed form of the amplitude",
-        den_hartog,
+        forced,
     ),
     Case(
         "sdnd100",

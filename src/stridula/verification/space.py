@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from math import atan, cos, pi, sin, sqrt
+from math import pi, sin, sqrt
 
 import numpy as np
 
-from ..bodies import RigidBody
-from ..connections import Spring
-from ..contact import Coulomb, PointContact, RigidTrack
-from ..drives import Force, Gravity, InitialVelocity
 from ..integration import simulate
 from ..linear.equilibrium import find_equilibrium
 from ..linear.modes import modes_of
@@ -18,10 +13,18 @@ from ..linear.structure import Structure
 from ..linear.vibration import vibration
 from ..lowering.schemes import Scheme
 from ..records import Displacement
-from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
-
-GRAVITY, FRICTION, THROWN = 9.81, 0.5, 1.0
+from .systems.in_space import (
+    GRAVITY,
+    MASS,
+    PRINTED_RATIO,
+    RATIO,
+    SLOPE,
+    STIFFNESS,
+    THROWN,
+    swinging,
+    thrown_on_a_slope,
+)
 
 
 def slope() -> Outcome:
@@ -30,13 +33,9 @@ def slope() -> Outcome:
     Friction and weight along the slope are equal in size, so the speed loses what the speed downhill gains. In the end
     it moves straight down, at half its initial speed.
     """
-    angle, step = atan(FRICTION), 1e-3
-    mass = RigidBody(1.0)
-    weight = Gravity(GRAVITY, direction=(0.0, -cos(angle), -sin(angle)))
-    contact = PointContact(mass.centre, RigidTrack(), friction=Coulomb(FRICTION))
-    system = System(contact, [weight, InitialVelocity(mass, x=THROWN)])
+    system, step = thrown_on_a_slope(), 1e-3
     # It turns within v / g sin.
-    share = (step * GRAVITY * sin(angle) / THROWN) ** 2
+    share = (step * GRAVITY * sin(SLOPE) / THROWN) ** 2
     curves = [Curve(np.array([0.0, 5.0]), np.full(2, THROWN / 2.0), "half the speed at the start")]
 
     def rows(scheme: Scheme) -> list[Row]:
@@ -57,28 +56,23 @@ def slope() -> Outcome:
 
 def across() -> Outcome:
     """8 kg on 315 N/m across a slip of 10 m/s under 1 N and mu = 0.5: friction damps it by mu N / (2 v sqrt(k m))."""
-    mass, rate, pressed, speed, periods = 8.0, 315.0, 1.0, 10.0, 30
-    known, own = FRICTION * pressed / (2.0 * speed * sqrt(rate * mass)), sqrt(rate / mass)
-    body = RigidBody(mass)
-    contact = PointContact(body.centre, RigidTrack(velocity=-speed), friction=Coulomb(FRICTION))
-    springs = [Spring(body.centre, stiffness=rate, direction=way) for way in ("x", "z")]
-    system = System(contact, [Force(body.centre, y=-pressed)], springs)
+    known, own, periods = RATIO, sqrt(STIFFNESS / MASS), 30
+    system, moving = swinging(), swinging(across=1e-3)
     structure = Structure(system)
     found = modes_of(structure, vibration(structure, find_equilibrium(structure, np.zeros(1)))).values
     theory = float((-found.real / np.abs(found)).max())
     printed = [
         Row("damping ratio, linear theory", known, theory, 1e-12, "round-off"),
-        Row("damping ratio as printed", 0.000498012, known, 5e-10, "digits printed by Ansys VM274"),
+        Row("damping ratio as printed", PRINTED_RATIO, known, 5e-10, "digits printed by Ansys VM274"),
     ]
     per_period = 400
     step = 2.0 * pi / own / per_period
-    swinging = replace(system, drives=[*system.drives, InitialVelocity(body, z=1e-3)])
     curves = []
 
     def rows(scheme: Scheme) -> list[Row]:
-        probes = [Displacement(body.centre, "z")]
+        probes = [Displacement(moving.contacts[0].tip, "z")]
         run = simulate(
-            swinging, periods * per_period * step, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes
+            moving, periods * per_period * step, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes
         )
         swings = np.abs(run["displacement"].values[:, 0]).reshape(periods, per_period).max(axis=1)
         # The largest value of a period comes first, after a quarter of it.

@@ -7,10 +7,8 @@ from math import pi
 import numpy as np
 
 from ..arrays import Array
-from ..bodies import AxisymmetricBody, Held, Material, RectangleProfile, RigidBody
-from ..contact import PointContact
+from ..bodies import AxisymmetricBody
 from ..drives import Force
-from ..histories import Sampled
 from ..integration import simulate
 from ..linear.equilibrium import find_equilibrium
 from ..linear.modes import modes_of
@@ -18,40 +16,22 @@ from ..linear.structure import SEPARATED, Structure
 from ..linear.vibration import vibration
 from ..lowering.schemes import Scheme
 from ..records import Displacement
-from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
+from .systems.discs import HALF, HERE, disc, ring, struck, untouched
 
-STEEL = Material(2.1e11, 7850.0, 0.3)
-HERE = (0.14, 0.3, 0.01)
 RPM = pi / 30.0
-
-
-def _disc(turning: float) -> AxisymmetricBody:
-    plate = RectangleProfile({"disc": ((0.03, 0.15), (0.0, 0.01))})
-    return AxisymmetricBody(plate, STEEL, 2500.0, "inner", turning=turning)
-
-
-def _ring(turning: float) -> AxisymmetricBody:
-    middle, thickness = 0.088, 0.00088
-    section = (middle - thickness / 2.0, middle + thickness / 2.0), (0.0, 0.02)
-    return AxisymmetricBody(RectangleProfile({"ring": section}), STEEL, 900.0, Held("bottom", "z"), turning=turning)
-
-
-def _untouched(body: AxisymmetricBody, force: Force | None = None) -> System:
-    place = HERE if body.mesh.cell_at(HERE[0], HERE[2]) is not None else (0.088, 0.0, 0.02)
-    apart = RigidBody(1.0)
-    contact = PointContact(apart.centre, body.at(place), gap=1.0, normal=(0.0, 0.0, 1.0))
-    return System(contact, [force] if force else [])
+# Highest frequency of the modes of the disc [Hz].
+CUTOFF = 2500.0
 
 
 def _frequencies(body: AxisymmetricBody) -> Array:
     """Return the rising frequencies of a body without contact by linear theory of its system [Hz]."""
-    structure = Structure(_untouched(body))
+    structure = Structure(untouched(body))
     found = modes_of(structure, vibration(structure, find_equilibrium(structure, np.zeros(1), [SEPARATED])))
     return np.sort(np.abs(found.values.imag)) / (2.0 * pi)
 
 
-def ring() -> Outcome:
+def ring_case() -> Outcome:
     """A free ring of 176 mm at 12 000 rpm: its waves turn by (n² - 1) / (n² + 1) of its own turn (Bryan 1890).
 
     In the material the pair of n waves is split by twice 2 n / (n² + 1) of the speed: 320 and 240 Hz between the
@@ -59,7 +39,7 @@ def ring() -> Outcome:
     neglected here, raises their means above those at rest.
     """
     rows, turns = [], 12e3 * RPM
-    turning = _ring(turns).modes().turning
+    turning = ring(turns).modes().turning
     assert turning is not None
     thin = "thickness and breadth of the ring, (n h / r)² and (n b / r)² / 12"
     for printed, order, drag in zip(
@@ -72,20 +52,20 @@ def ring() -> Outcome:
     speeds = np.linspace(0.0, 60.0, 5)
     curves = []
     for k, pair in enumerate(turning.pairs[1:3], start=1):
-        rest = _ring(turns).modes().frequency[pair[0]]
+        rest = ring(turns).modes().frequency[pair[0]]
         for sign in (1.0, -1.0):
             found = rest + sign * turning.drag[k] * speeds
             curves.append(Curve(speeds, found, f"{turning.order[k]:.0f} waves, {'with' if sign > 0 else 'against'}"))
     return Outcome(rows, Sketch("turns per second [1/s]", "frequency in space [Hz]", curves))
 
 
-def disc() -> Outcome:
+def disc_case() -> Outcome:
     """A disc held at its bore: pairs split into f + n W and f - n W, a wave stands still at w / n, a blow causes beats.
 
     Bending waves of a thin disc hardly lag; their lag is computed with the modes and included in the closed forms.
     """
     turns = 60.0
-    body = _disc(turns)
+    system, body = struck(turns, cutoff=CUTOFF)
     modes = body.modes()
     assert modes.turning is not None
     frequency, pairs = modes.frequency, modes.turning.pairs
@@ -107,7 +87,7 @@ def disc() -> Outcome:
     ]
 
     def stiffness(speed: float) -> float:
-        structure = Structure(_untouched(_disc(speed), Force(_disc(speed).at(HERE), z=1.0)))
+        structure = Structure(untouched(disc(speed, CUTOFF), Force(disc(speed, CUTOFF).at(HERE), z=1.0)))
         at = find_equilibrium(structure, np.zeros(1), [SEPARATED])
         return 1.0 / float(-structure.lines[0].normal @ at.displacement)
 
@@ -123,16 +103,9 @@ def disc() -> Outcome:
     curves: list[Curve] = []
 
     def beats(scheme: Scheme) -> list[Row]:
-        step, length = 2e-6, 2e-4
-        blow = Force(body.at(HERE), z=1.0, history=Sampled((0.0, length, 2.0 * length), (0.0, 1.0, 0.0)))
-        run = simulate(
-            _untouched(body, blow),
-            0.03,
-            scheme=scheme,
-            step=step,
-            sample_rate=5e4,
-            probes=[Displacement(body.at(HERE), "z")],
-        )
+        step, length = 2e-6, HALF
+        probes = [Displacement(body.at(HERE), "z")]
+        run = simulate(system, 0.03, scheme=scheme, step=step, sample_rate=5e4, probes=probes)
         time, seen = run["time"].values, run["displacement"].values[:, 0]
         expected = np.zeros_like(time)
         # The spectrum of a triangular blow about its middle is sinc².
@@ -159,12 +132,12 @@ CASES = (
         "turning-ring",
         "A ring that turns: its waves lag behind it",
         "Bryan (1890); Ansys VM302, after Genta (2005)",
-        ring,
+        ring_case,
     ),
     Case(
         "turning-disc",
         "A disc that turns: split pairs, standing waves, beats",
         "waves carried round, closed form",
-        disc,
+        disc_case,
     ),
 )
