@@ -67,7 +67,7 @@ class Bridge:
 
 
 def bridged_sound(
-    run: xr.Dataset, bridge: Bridge, listener: Any, baffled: bool | None, air: Air | None, sample_rate: float | None
+    run: xr.Dataset, bridge: Bridge, listener: Any, baffled: bool | None, air: Air, sample_rate: float | None
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
     """Return pressures (listeners, samples), their times, the listeners and attributes; arguments are as in `radiate`.
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 from ..arrays import Array, in_space
 from ..bodies.body_surfaces import BodySurface
-from ..checks import ArgumentError, at_least, instance, listed
+from ..checks import ArgumentError, at_least, listed
 from ..system import System
 from .air import Air
 from .convolution import Convolution
@@ -43,10 +43,10 @@ def check_in_open_air(baffled: bool | None) -> None:
 def free_sound(
     run: xr.Dataset,
     system: System,
-    listener: Any = None,
-    bodies: Sequence[Any] | None = None,
-    air: Air | None = None,
-    sample_rate: float | None = None,
+    listener: Any,
+    bodies: Sequence[Any] | None,
+    air: Air,
+    sample_rate: float | None,
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
     """Return pressures (listeners, samples), their times, the listeners and attributes; arguments are as in `radiate`.
 
@@ -70,7 +70,7 @@ def bodies_sound(
     heard: dict[str, Any],
     above: tuple[Array, Array],
     listener: Any,
-    air: Air | None,
+    air: Air,
     sample_rate: float | None,
 ) -> tuple[Array, Array, Array, dict[str, Any], Moved]:
     """Return pressures (listeners, samples), their times, the listeners, attributes and the motion, of bodies by name.
@@ -83,8 +83,6 @@ def bodies_sound(
     ValueError
         If a listener is in a body, or there is no such motion.
     """
-    air = Air() if air is None else air
-    instance("air", air, Air)
     surfaces = [body.surface() for body in heard.values()]
     places = listeners_of(_ears(above, surfaces) if listener is None else listener)
     distances = np.array([distances_to(surface, places) for surface in surfaces])

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from ..checks import ArgumentError, instance, listed
+from ..checks import ArgumentError, listed
 from ..lines import Outline, outlines_of
 from ..records.checked import record
 from ..system import System
@@ -25,8 +25,9 @@ from .panels import panel_of
 from .recorded import sampled
 from .redriven import redriven
 from .resampling import bandwidth_of, ratio_of, resample
+from .responses import slim_below
 from .slim_beams import SlimBeam, slim_beam
-from .track_sound import slim_below, track_sound
+from .track_sound import track_sound
 
 # Tracks whose heights differ by less lie in one plane [m].
 LEVEL = 1e-9
@@ -57,11 +58,11 @@ class _Axes:
 def plane_sound(
     run: xr.Dataset,
     system: System,
-    listener: Any = None,
-    bodies: Sequence[Any] | None = None,
-    baffled: bool | None = None,
-    air: Air | None = None,
-    sample_rate: float | None = None,
+    listener: Any,
+    bodies: Sequence[Any] | None,
+    baffled: bool | None,
+    air: Air,
+    sample_rate: float | None,
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
     """Return pressures (listeners, samples), their times, the listeners and attributes; arguments are as in `radiate`.
 
@@ -70,8 +71,6 @@ def plane_sound(
     ValueError
         If nothing can be heard, a listener is where it cannot be heard, or the record is not usable.
     """
-    air = Air() if air is None else air
-    instance("air", air, Air)
     run = record("run", run)
     tracks, beams = _tracks(system), _beams(system)
     heard, silent = chosen(system, bodies, [*tracks, *beams])

@@ -87,6 +87,8 @@ def radiate(
     """
     if baffled is not None:
         instance("baffled", baffled, bool)
+    air = Air() if air is None else air
+    instance("air", air, Air)
     return _labelled(*_sound(track, run, listener, bodies, baffled, air, sample_rate))
 
 

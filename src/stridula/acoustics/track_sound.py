@@ -10,17 +10,16 @@ import xarray as xr
 
 from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
-from ..checks import instance
 from ..records.changes import check_one_track
 from .air import Air
 from .convolution import Convolution
 from .delays import Response
 from .driven import FASTEST, accelerations, first_time
 from .listeners import ears, listeners_of
-from .panels import Panel, line_of, panel_of
+from .panels import Panel
 from .recorded import Pressing, pressing
 from .resampling import bandwidth_of, ratio_of, resample
-from .responses import check_listeners, responses
+from .responses import way_of
 
 # Bytes of modal motion held at once.
 MEMORY = 64e6
@@ -35,7 +34,7 @@ def track_sound(
     track: ModalBeam | ModalPlate,
     listener: Any,
     baffled: bool,
-    air: Air | None,
+    air: Air,
     sample_rate: float | None,
     silence: tuple[str, str] = ("silence", "the contact never presses"),
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
@@ -62,7 +61,7 @@ def panel_sound(
     track: ModalBeam | ModalPlate,
     listener: Any,
     baffled: bool,
-    air: Air | None,
+    air: Air,
     sample_rate: float | None,
     silence: tuple[str, str],
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
@@ -70,13 +69,10 @@ def panel_sound(
 
     Other arguments, results and errors are those of `track_sound`.
     """
-    air = Air() if air is None else air
-    instance("air", air, Air)
-    surface: Callable[[Any], Panel] = panel_of if baffled else line_of
-    panel = surface(track)
+    way = way_of(track, baffled)
     listeners = listeners_of(ears(track) if listener is None else listener)
-    check_listeners(listeners, track, baffled)
-    pressed, panel = press(panel)
+    way.check(listeners)
+    pressed, panel = press(way.panel)
     recorded = 1.0 / pressed.interval
     ratio = ratio_of(sample_rate, recorded, pressed.samples)
     bandwidth = bandwidth_of(ratio, recorded)
@@ -85,7 +81,7 @@ def panel_sound(
     kept = kept[np.argsort(panel.wavenumbers[kept, 0], kind="stable")]
     heard = panel.only(kept)
     shift = (first_time(pressed) - pressed.start) / pressed.interval
-    paths = responses(heard, track, baffled, listeners, air, pressed.interval, shift, bandwidth)
+    paths = way.responses(kept, listeners, air, pressed.interval, shift, bandwidth)
     pressure = resample(_sum(heard, pressed, paths), ratio)
     time = np.arange(pressure.shape[1]) * pressed.interval / float(ratio)
     distances = _distances(listeners, panel)
@@ -96,15 +92,13 @@ def panel_sound(
     notes = _notes(pressed, len(kept), len(panel.wavenumbers), time[-1], arrival, silence)
     if bandwidth < AUDIBLE:
         notes.append(f"whole up to {bandwidth:.4g} Hz only, for the record's sample rate")
-    if not baffled:
-        notes.append(f"a line of dipoles: the beam is slim below {slim_below(track, air):.4g} Hz")
     attributes = {
         "bandwidth": bandwidth,
         "modes": len(kept),
         "baffled": int(baffled),
         "distance": distances.tolist(),
         **air.attributes,
-        "notes": "; ".join(notes),
+        "notes": "; ".join([*notes, *way.notes(air)]),
     }
     return pressure, pressed.start + time, listeners, attributes
 
@@ -129,11 +123,6 @@ def _distances(listeners: Array, panel: Panel) -> Array:
     low = np.array([0.0, panel.edge])
     away = listeners[:, :2] - np.clip(listeners[:, :2], low, low + np.array([panel.length, panel.width]))
     return np.asarray(np.hypot(np.hypot(away[:, 0], away[:, 1]), listeners[:, 2]))
-
-
-def slim_below(beam: Any, air: Air) -> float:
-    """Return the frequency [Hz] below which a beam is slim: its width is a sixth of the wavelength."""
-    return float(air.speed / (6.0 * beam.section.largest_side))
 
 
 def _first_press(pressed: Pressing) -> float:
