@@ -95,9 +95,12 @@ def bodies_sound(
     for (name, body), surface, away in zip(heard.items(), surfaces, distances, strict=True):
         first, _ = moved.spans[name]
         modes = first + np.flatnonzero(~body.modes().massless)
-        sent = free_responses(surface, places, away, air, moved.interval, shift, bandwidth)
+        frequency = body.modes().frequency[: modes.size]
+        # A body that does not vibrate moves as a whole up to any frequency.
+        highest = float(frequency.max(initial=0.0)) or np.inf
+        sent = free_responses(surface, places, away, air, moved.interval, shift, bandwidth, highest)
         pressure += convolved(sent.responses, moved, modes)
-        said, worst = _doubts(name, body.modes().frequency[: modes.size], sent)
+        said, worst = _doubts(name, frequency, sent)
         notes += said
         errors[name] = worst
     sounding = resample(pressure, ratio)
