@@ -18,6 +18,7 @@ from .delays import Response
 from .flat_patches import patch_integrals
 from .free_responses import LEFT, Sent, free_responses
 from .listeners import HEIGHT, SPACING, listeners_of
+from .recorded_motion import recorded_motion
 from .redriven import Moved, redriven
 from .resampling import bandwidth_of, ratio_of, resample
 
@@ -59,7 +60,12 @@ def free_sound(
     normal, tangent = map(in_space, system.contacts[0].frame[:2])
     named = {system.body_name(body): body for body in heard}
     pressure, time, places, attributes, moved = bodies_sound(
-        lambda: redriven(run, system), named, (normal, tangent), listener, air, sample_rate
+        lambda: recorded_motion(run, system, heard) or redriven(run, system),
+        named,
+        (normal, tangent),
+        listener,
+        air,
+        sample_rate,
     )
     notes = [attributes["notes"], *lacks(system, heard, silent, moved)]
     return pressure, time, places, attributes | {"notes": "; ".join(filter(None, notes))}
@@ -118,6 +124,7 @@ def bodies_sound(
         "distance": distances.min(axis=0).tolist(),
         "bodies": list(heard),
         "fit_error": list(errors.values()),
+        "motion": moved.words,
         **air.attributes,
         "notes": "; ".join(notes),
     }
@@ -219,6 +226,8 @@ def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], moved: Mo
     if silent:
         notes.append(f"without a surface and not heard: {listed(silent)}")
     notes += ends_of({system.body_name(body): body for body in heard}, moved)
+    if moved.is_recorded:
+        return notes
     if moved.start > 0.5 * moved.interval:
         notes.append("the record continues another one; vibration left from that one is not included")
     elif started := [str(drive) for drive in system.drives if drive.starts_motion]:

@@ -121,8 +121,8 @@ def _taps(
     turned = np.exp(2j * np.pi / lasts * np.outer(times, np.arange(len(heard))))
     turned[:, 1:] *= 2.0
     taps = interval / lasts * (turned @ heard).real
-    # Of the loudest mode: what others leave is not heard beside it. Towards the end comes what fits that differ from one
-    # frequency to the next put before the next arrival, which does not get less with time.
+    # Of the loudest mode: what others leave is not heard beside it. Towards the end comes what fits that differ from
+    # one frequency to the next put before the next arrival, which does not get less with time.
     size = float(np.abs(taps).max(initial=0.0))
     late = np.abs(taps[times > 0.5 * (lasts - early)]).max(axis=1, initial=0.0)
     pieces = np.array_split(late, max(1, int(late.size * interval / (0.25 * early))))

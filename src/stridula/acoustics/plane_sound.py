@@ -23,6 +23,7 @@ from .free_bodies import chosen, convolved, lacks
 from .listeners import HEIGHT, SPACING, check_in_front, ears, listeners_of
 from .panels import panel_of
 from .recorded import sampled
+from .recorded_motion import RecordedModes, recorded_motion
 from .redriven import redriven
 from .resampling import bandwidth_of, ratio_of, resample
 from .responses import slim_below
@@ -183,8 +184,10 @@ def _of_track(
         pressing = pressing.assign(normal_force=pressing["normal_force"] - pressing["normal_force"].isel(time=0))
     places = _axes(track).listeners(seen - [outline.place[0], 0.0, outline.place[1]])
     silence = (f"{name} is silent", "its forces never change" if starts else "the contact never presses")
-    pressure, time, _, attributes = track_sound(pressing, track, places, baffled, air, sample_rate, silence)
-    if any(contact.touched_point and contact.touched_point.body == track for contact in system.contacts):
+    pressure, time, _, attributes = track_sound(pressing, track, places, baffled, air, sample_rate, silence, name)
+    if attributes["motion"] != RecordedModes.words and any(
+        contact.touched_point and contact.touched_point.body == track for contact in system.contacts
+    ):
         attributes["notes"] += f"; what touches {name} at one point does not drive it here"
     return pressure, time, attributes
 
@@ -201,7 +204,7 @@ def _of_beams(
     silent: Sequence[str],
 ) -> Part:
     """Return the sound of slim beams, with that of their images behind a wall."""
-    moved = redriven(run, system, beams)
+    moved = recorded_motion(run, system, beams) or redriven(run, system, beams)
     recorded = 1.0 / moved.interval
     ratio = ratio_of(sample_rate, recorded, moved.samples)
     bandwidth, shift = bandwidth_of(ratio, recorded), (moved.first - moved.start) / moved.interval
@@ -226,7 +229,7 @@ def _of_beams(
     sounding[times < nearest[:, None] / air.speed] = 0.0
     modes = sum(last - first for first, last in (moved.spans[system.body_name(body)] for body in beams))
     notes += lacks(system, beams, silent, moved)
-    attributes = {"bandwidth": bandwidth, "modes": modes, "baffled": int(wall is not None)}
+    attributes = {"bandwidth": bandwidth, "modes": modes, "baffled": int(wall is not None), "motion": moved.words}
     return sounding, moved.start + times, {**attributes, "distance": nearest.tolist(), "notes": "; ".join(notes)}
 
 
@@ -256,6 +259,7 @@ def _added(parts: Sequence[Part]) -> tuple[Array, dict[str, Any]]:
     """Return the sum of sounds and what is known of all of them together."""
     attributes = dict(parts[0][2])
     attributes["modes"] = sum(one["modes"] for *_, one in parts)
+    attributes["motion"] = " or ".join(dict.fromkeys(one["motion"] for *_, one in parts))
     attributes["distance"] = np.min([one["distance"] for *_, one in parts], axis=0).tolist()
     notes = [note for *_, one in parts for note in one["notes"].split("; ") if note]
     attributes["notes"] = "; ".join(dict.fromkeys(notes))
