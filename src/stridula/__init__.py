@@ -59,6 +59,7 @@ _HOME = {
         "Acceleration",
         "Displacement",
         "ModalDisplacement",
+        "ModalMotion",
         "ModalVelocity",
         "Reaction",
         "SupportForce",

@@ -321,6 +321,27 @@ def test_a_response_is_delayed_by_the_way_to_the_surface():
         assert peak == pytest.approx(distance / st.Air().speed / interval + 0.5, abs=4.0)
 
 
+def test_beyond_the_highest_mode_fits_end_and_below_it_responses_stay():
+    surface, place = open_air.ring_sphere(12), open_air.PLACES[:1]
+    whole, short = (
+        free_responses(surface, place, np.array([0.6]), st.Air(), 1e-5, 0.0, 15e3, highest) for highest in (np.inf, 4e3)
+    )
+    assert whole.frequencies[-1] > 17e3
+    assert 6e3 < short.frequencies[-1] < 6.4e3
+    assert len(short.frequencies) < len(whole.frequencies)
+    assert max(whole.left, short.left) < 5e-3
+    spectra = []
+    for sent in (whole, short):
+        (one,) = sent.responses
+        spectra.append(
+            np.fft.rfft(one.taps, 4096, axis=0) * np.exp(-2j * pi * np.arange(2049) / 4096 * one.first)[:, None]
+        )
+    frequency = np.arange(2049) / 4096 / 1e-5
+    known, found = (one[(frequency > 50.0) & (frequency < 4.6e3)] for one in spectra)
+    assert np.abs(found - known).max() < 5e-3 * np.abs(known).max()
+    assert np.abs(spectra[1][frequency > 6.6e3]).max() < 5e-3 * np.abs(spectra[1]).max()
+
+
 def test_a_start_in_motion_is_said_to_be_left_out():
     plate = disc(0.0, cutoff=800.0)
     apart = st.RigidBody(1.0, points={"tip": (0.0, 0.0, 0.0)})

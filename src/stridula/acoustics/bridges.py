@@ -16,7 +16,7 @@ from ..declared import check_declared
 from ..records.checked import record
 from ..records.probes import DIRECTION
 from .air import Air
-from .driven import FASTEST, LEAD, Modes, respond
+from .driven import FASTEST, LEAD, DrivenModes, Modes, respond
 from .free_bodies import bodies_sound, check_in_open_air, ends_of
 from .panels import Panel
 from .recorded import Pressing, sampled
@@ -67,7 +67,7 @@ class Bridge:
 
 
 def bridged_sound(
-    run: xr.Dataset, bridge: Bridge, listener: Any, baffled: bool | None, air: Air | None, sample_rate: float | None
+    run: xr.Dataset, bridge: Bridge, listener: Any, baffled: bool | None, air: Air, sample_rate: float | None
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
     """Return pressures (listeners, samples), their times, the listeners and attributes; arguments are as in `radiate`.
 
@@ -130,8 +130,8 @@ def _force(run: xr.Dataset, probe: str | None) -> tuple[float, float, Array]:
     return start, interval, force
 
 
-def _pressed(bridge: Bridge, panel: Panel, start: float, interval: float, force: Array) -> tuple[Pressing, Panel]:
-    """Return the force on a track as one that presses against its normal, and the track pressed there."""
+def _pressed(bridge: Bridge, panel: Panel, start: float, interval: float, force: Array) -> DrivenModes:
+    """Return how a track moves under the force, as one that presses against its normal."""
     body = bridge.point.body
     across = float(in_space(body.axes[1]) @ bridge.along)
     if abs(across) < ACROSS:
@@ -141,7 +141,7 @@ def _pressed(bridge: Bridge, panel: Panel, start: float, interval: float, force:
     at = replace(panel, place=lambda abscissa: (np.full_like(abscissa, x), np.full_like(abscissa, y)))
     # Samples stand at the ends of intervals; each is what one impulse in an interval is.
     still = np.zeros((1, force.size))
-    return Pressing(start, interval, 1, -across * force[None], still, interval), at
+    return DrivenModes(at, Pressing(start, interval, 1, -across * force[None], still, interval))
 
 
 def _moved(bridge: Bridge, name: str, start: float, interval: float, force: Array) -> Moved:

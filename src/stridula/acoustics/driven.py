@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from scipy.signal import lfilter
@@ -104,6 +104,50 @@ def modal_forces(panel: Panel, pressing: Pressing) -> Array:
             shapes = panel.shapes(*panel.place(np.pad(position, LEAD, mode="edge")))
             found -= (shapes * force[:, None]).T
     return found
+
+
+class DrivenModes:
+    """Modes of a track that recorded forces drive again, at rest before them.
+
+    Parameters
+    ----------
+    panel : Panel
+        Its modes.
+    pressing : Pressing
+        The forces.
+
+    Attributes
+    ----------
+    start, interval : float
+        When the record begins, and its sample interval [s].
+    samples : int
+        Number of its samples.
+    first : float
+        Time of the first acceleration [s].
+    begins : float or None
+        When the sample interval begins in which it is first pressed [s from the start], None if it is not.
+    notes : list of str
+        What is missing, in words.
+    """
+
+    words = "driven again"
+
+    def __init__(self, panel: Panel, pressing: Pressing) -> None:
+        self._panel, self._pressing = panel, pressing
+        self.start, self.interval, self.samples = pressing.start, pressing.interval, pressing.samples
+        self.first = first_time(pressing)
+        presses = np.flatnonzero(pressing.force.any(axis=0))
+        self.begins = float(presses[0]) * pressing.interval if presses.size else None
+        continues = "the record continues another one; vibration left from that one is not included"
+        self.notes = [continues] if pressing.start > 0.5 * pressing.interval else []
+
+    def carried(self, angular_frequency: Array) -> Array:
+        """Return the numbers of the modes that samples can carry."""
+        return np.flatnonzero(angular_frequency * self.interval < FASTEST)
+
+    def accelerations(self, modes: Any) -> Array:
+        """Return the accelerations of modes, by their numbers, shape (modes, samples + 2 LEAD) [m kg^(1/2) / s²]."""
+        return accelerations(self._panel.only(modes), self._pressing)
 
 
 class Oscillators(Protocol):

@@ -10,7 +10,7 @@ import xarray as xr
 
 from ..arrays import Array, in_space
 from ..bodies.body_surfaces import BodySurface
-from ..checks import ArgumentError, at_least, instance, listed
+from ..checks import ArgumentError, at_least, listed
 from ..system import System
 from .air import Air
 from .convolution import Convolution
@@ -18,6 +18,7 @@ from .delays import Response
 from .flat_patches import patch_integrals
 from .free_responses import LEFT, Sent, free_responses
 from .listeners import HEIGHT, SPACING, listeners_of
+from .recorded_motion import recorded_motion
 from .redriven import Moved, redriven
 from .resampling import bandwidth_of, ratio_of, resample
 
@@ -43,10 +44,10 @@ def check_in_open_air(baffled: bool | None) -> None:
 def free_sound(
     run: xr.Dataset,
     system: System,
-    listener: Any = None,
-    bodies: Sequence[Any] | None = None,
-    air: Air | None = None,
-    sample_rate: float | None = None,
+    listener: Any,
+    bodies: Sequence[Any] | None,
+    air: Air,
+    sample_rate: float | None,
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
     """Return pressures (listeners, samples), their times, the listeners and attributes; arguments are as in `radiate`.
 
@@ -59,7 +60,12 @@ def free_sound(
     normal, tangent = map(in_space, system.contacts[0].frame[:2])
     named = {system.body_name(body): body for body in heard}
     pressure, time, places, attributes, moved = bodies_sound(
-        lambda: redriven(run, system), named, (normal, tangent), listener, air, sample_rate
+        lambda: recorded_motion(run, system, heard) or redriven(run, system),
+        named,
+        (normal, tangent),
+        listener,
+        air,
+        sample_rate,
     )
     notes = [attributes["notes"], *lacks(system, heard, silent, moved)]
     return pressure, time, places, attributes | {"notes": "; ".join(filter(None, notes))}
@@ -70,7 +76,7 @@ def bodies_sound(
     heard: dict[str, Any],
     above: tuple[Array, Array],
     listener: Any,
-    air: Air | None,
+    air: Air,
     sample_rate: float | None,
 ) -> tuple[Array, Array, Array, dict[str, Any], Moved]:
     """Return pressures (listeners, samples), their times, the listeners, attributes and the motion, of bodies by name.
@@ -83,8 +89,6 @@ def bodies_sound(
     ValueError
         If a listener is in a body, or there is no such motion.
     """
-    air = Air() if air is None else air
-    instance("air", air, Air)
     surfaces = [body.surface() for body in heard.values()]
     places = listeners_of(_ears(above, surfaces) if listener is None else listener)
     distances = np.array([distances_to(surface, places) for surface in surfaces])
@@ -97,9 +101,12 @@ def bodies_sound(
     for (name, body), surface, away in zip(heard.items(), surfaces, distances, strict=True):
         first, _ = moved.spans[name]
         modes = first + np.flatnonzero(~body.modes().massless)
-        sent = free_responses(surface, places, away, air, moved.interval, shift, bandwidth)
+        frequency = body.modes().frequency[: modes.size]
+        # A body that does not vibrate moves as a whole up to any frequency.
+        highest = float(frequency.max(initial=0.0)) or np.inf
+        sent = free_responses(surface, places, away, air, moved.interval, shift, bandwidth, highest)
         pressure += convolved(sent.responses, moved, modes)
-        said, worst = _doubts(name, body.modes().frequency[: modes.size], sent)
+        said, worst = _doubts(name, frequency, sent)
         notes += said
         errors[name] = worst
     sounding = resample(pressure, ratio)
@@ -117,6 +124,7 @@ def bodies_sound(
         "distance": distances.min(axis=0).tolist(),
         "bodies": list(heard),
         "fit_error": list(errors.values()),
+        "motion": moved.words,
         **air.attributes,
         "notes": "; ".join(notes),
     }
@@ -218,6 +226,8 @@ def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], moved: Mo
     if silent:
         notes.append(f"without a surface and not heard: {listed(silent)}")
     notes += ends_of({system.body_name(body): body for body in heard}, moved)
+    if moved.is_recorded:
+        return notes
     if moved.start > 0.5 * moved.interval:
         notes.append("the record continues another one; vibration left from that one is not included")
     elif started := [str(drive) for drive in system.drives if drive.starts_motion]:

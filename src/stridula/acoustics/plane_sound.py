@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from ..checks import ArgumentError, instance, listed
+from ..checks import ArgumentError, listed
 from ..lines import Outline, outlines_of
 from ..records.checked import record
 from ..system import System
@@ -23,10 +23,12 @@ from .free_bodies import chosen, convolved, lacks
 from .listeners import HEIGHT, SPACING, check_in_front, ears, listeners_of
 from .panels import panel_of
 from .recorded import sampled
+from .recorded_motion import RecordedModes, recorded_motion
 from .redriven import redriven
 from .resampling import bandwidth_of, ratio_of, resample
+from .responses import slim_below
 from .slim_beams import SlimBeam, slim_beam
-from .track_sound import slim_below, track_sound
+from .track_sound import track_sound
 
 # Tracks whose heights differ by less lie in one plane [m].
 LEVEL = 1e-9
@@ -57,11 +59,11 @@ class _Axes:
 def plane_sound(
     run: xr.Dataset,
     system: System,
-    listener: Any = None,
-    bodies: Sequence[Any] | None = None,
-    baffled: bool | None = None,
-    air: Air | None = None,
-    sample_rate: float | None = None,
+    listener: Any,
+    bodies: Sequence[Any] | None,
+    baffled: bool | None,
+    air: Air,
+    sample_rate: float | None,
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
     """Return pressures (listeners, samples), their times, the listeners and attributes; arguments are as in `radiate`.
 
@@ -70,8 +72,6 @@ def plane_sound(
     ValueError
         If nothing can be heard, a listener is where it cannot be heard, or the record is not usable.
     """
-    air = Air() if air is None else air
-    instance("air", air, Air)
     run = record("run", run)
     tracks, beams = _tracks(system), _beams(system)
     heard, silent = chosen(system, bodies, [*tracks, *beams])
@@ -184,8 +184,10 @@ def _of_track(
         pressing = pressing.assign(normal_force=pressing["normal_force"] - pressing["normal_force"].isel(time=0))
     places = _axes(track).listeners(seen - [outline.place[0], 0.0, outline.place[1]])
     silence = (f"{name} is silent", "its forces never change" if starts else "the contact never presses")
-    pressure, time, _, attributes = track_sound(pressing, track, places, baffled, air, sample_rate, silence)
-    if any(contact.touched_point and contact.touched_point.body == track for contact in system.contacts):
+    pressure, time, _, attributes = track_sound(pressing, track, places, baffled, air, sample_rate, silence, name)
+    if attributes["motion"] != RecordedModes.words and any(
+        contact.touched_point and contact.touched_point.body == track for contact in system.contacts
+    ):
         attributes["notes"] += f"; what touches {name} at one point does not drive it here"
     return pressure, time, attributes
 
@@ -202,7 +204,7 @@ def _of_beams(
     silent: Sequence[str],
 ) -> Part:
     """Return the sound of slim beams, with that of their images behind a wall."""
-    moved = redriven(run, system, beams)
+    moved = recorded_motion(run, system, beams) or redriven(run, system, beams)
     recorded = 1.0 / moved.interval
     ratio = ratio_of(sample_rate, recorded, moved.samples)
     bandwidth, shift = bandwidth_of(ratio, recorded), (moved.first - moved.start) / moved.interval
@@ -227,7 +229,7 @@ def _of_beams(
     sounding[times < nearest[:, None] / air.speed] = 0.0
     modes = sum(last - first for first, last in (moved.spans[system.body_name(body)] for body in beams))
     notes += lacks(system, beams, silent, moved)
-    attributes = {"bandwidth": bandwidth, "modes": modes, "baffled": int(wall is not None)}
+    attributes = {"bandwidth": bandwidth, "modes": modes, "baffled": int(wall is not None), "motion": moved.words}
     return sounding, moved.start + times, {**attributes, "distance": nearest.tolist(), "notes": "; ".join(notes)}
 
 
@@ -257,6 +259,7 @@ def _added(parts: Sequence[Part]) -> tuple[Array, dict[str, Any]]:
     """Return the sum of sounds and what is known of all of them together."""
     attributes = dict(parts[0][2])
     attributes["modes"] = sum(one["modes"] for *_, one in parts)
+    attributes["motion"] = " or ".join(dict.fromkeys(one["motion"] for *_, one in parts))
     attributes["distance"] = np.min([one["distance"] for *_, one in parts], axis=0).tolist()
     notes = [note for *_, one in parts for note in one["notes"].split("; ") if note]
     attributes["notes"] = "; ".join(dict.fromkeys(notes))

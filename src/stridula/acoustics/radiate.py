@@ -39,6 +39,8 @@ def radiate(
     system, and are heard in open air by equivalent sources within them. Bodies are at rest before the record, and the
     air does not act back on them.
 
+    Bodies whose motion the record has, see `ModalMotion`, move as that says and are not driven again.
+
     Of a system in the plane its tracks are heard so, and its beams, such as the slider, as lines of dipoles driven
     again by all forces at their contacts and by the drives; a baffle that tracks are flush with reflects their sound.
 
@@ -72,10 +74,10 @@ def radiate(
     xarray.DataArray, shape (time, listener)
         Pressure [Pa]. Time starts where the record starts, when the first sound is sent; before it can arrive the
         pressure is zero. ``attrs`` have the bandwidth [Hz], up to which the sound is whole and above which it is cut
-        off, the air, the distances [m] to the nearest point of the track, and notes on what is missing. Of a system
-        they have the names of the bodies heard and, as ``fit_error``, the largest relative error with which the sources
-        of each meet the normal motion of a mode all over the surface, at the mode's own frequency; notes say it where
-        it is above 5 %.
+        off, the air, the distances [m] to the nearest point of the track, and notes on what is missing. ``motion`` is
+        "recorded", "driven again", or both. Of a system they have the names of the bodies heard and, as ``fit_error``,
+        the largest relative error with which the sources of each meet the normal motion of a mode all over the surface,
+        at the mode's own frequency; notes say it where it is above 5 %.
 
     Raises
     ------
@@ -87,6 +89,8 @@ def radiate(
     """
     if baffled is not None:
         instance("baffled", baffled, bool)
+    air = Air() if air is None else air
+    instance("air", air, Air)
     return _labelled(*_sound(track, run, listener, bodies, baffled, air, sample_rate))
 
 

@@ -53,6 +53,8 @@ class Moved:
         When the first force acts [s from the start], None if none does.
     spans : dict
         First mode of each body and the one after its last, by the body's name.
+    is_recorded : bool
+        Whether it is that of the march itself.
     """
 
     start: float
@@ -63,6 +65,12 @@ class Moved:
     left_out: Array
     pushed: float | None
     spans: dict[str, tuple[int, int]]
+    is_recorded: bool = False
+
+    @property
+    def words(self) -> str:
+        """Where it is from, in words."""
+        return "recorded" if self.is_recorded else "driven again"
 
 
 def redriven(run: xr.Dataset, system: System, bodies: Sequence[Any] | None = None) -> Moved:

@@ -1,58 +1,99 @@
-"""What a track sends to a listener: an impulse response for each of its modes."""
+"""What a track sends to a listener in each way in which it is heard: an impulse response for each of its modes."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from ..arrays import Array
-from ..bodies import ModalBeam, ModalPlate
 from .air import Air
-from .delays import Interpolation, Response, interpolation
+from .delays import Response, interpolation
 from .dipoles import dipole_response, moved_area
 from .listeners import check_in_front, check_off_beam
-from .panels import Panel
+from .panels import Panel, line_of, panel_of
 from .rayleigh import baffled_response
 from .surfaces import surface_of
 
 
-def check_listeners(listeners: Array, track: ModalBeam | ModalPlate, baffled: bool) -> None:
-    """Raise ValueError if a listener is where a track cannot be heard."""
-    if baffled:
+class Way(Protocol):
+    """How a track is heard."""
+
+    @property
+    def panel(self) -> Panel:
+        """Its surface and the modes that bend it."""
+
+    def check(self, listeners: Array) -> None:
+        """Raise ValueError if a listener is where it cannot be heard."""
+
+    def responses(
+        self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float
+    ) -> list[Response]:
+        """Return what modes, by their numbers in the panel, send to every listener, `shift` samples later."""
+
+    def notes(self, air: Air) -> list[str]:
+        """Return what is to be said of it, in words."""
+
+
+def way_of(track: Any, baffled: bool) -> Way:
+    """Return how a track is heard: in a baffle, or as a slim beam in free air.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be heard so.
+    """
+    return Baffled(panel_of(track)) if baffled else SlimLine(track, line_of(track))
+
+
+class Baffled:
+    """A track that is flush with a rigid endless wall."""
+
+    def __init__(self, panel: Panel) -> None:
+        self.panel = panel
+
+    def check(self, listeners: Array) -> None:
+        """Raise ValueError if a listener is in the wall or behind it."""
         check_in_front(listeners)
-        return
-    section: Any = track.section  # type: ignore[union-attr]
-    moved_area(section)
-    check_off_beam(listeners, track.length, section.across / 2.0)
+
+    def responses(
+        self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float
+    ) -> list[Response]:
+        """Return what is sent to every listener."""
+        panel, kernel = self.panel.only(modes), interpolation(bandwidth * interval)
+        surfaces = [surface_of(panel, listener, 2.0 * np.pi * bandwidth / air.speed) for listener in listeners]
+        return [
+            baffled_response(surface, listener, air, interval, kernel, shift)
+            for surface, listener in zip(surfaces, listeners, strict=True)
+        ]
+
+    def notes(self, air: Air) -> list[str]:
+        """Return nothing: it holds for whatever is heard."""
+        return []
 
 
-def responses(
-    panel: Panel,
-    track: Any,
-    baffled: bool,
-    listeners: Array,
-    air: Air,
-    interval: float,
-    shift: float,
-    bandwidth: float,
-) -> list[Response]:
-    """Return the impulse responses of the modes at every listener, `shift` samples later."""
-    kernel = interpolation(bandwidth * interval)
-    if baffled:
-        return [_of_panel(panel, listener, air, interval, kernel, shift, bandwidth) for listener in listeners]
-    area = moved_area(track.section)
-    return [dipole_response(panel, area, listener, air, interval, kernel, shift) for listener in listeners]
+class SlimLine:
+    """A beam in free air as a line of dipoles."""
+
+    def __init__(self, beam: Any, panel: Panel) -> None:
+        self.beam, self.panel, self.area = beam, panel, moved_area(beam.section)
+
+    def check(self, listeners: Array) -> None:
+        """Raise ValueError if a listener is on the beam."""
+        check_off_beam(listeners, self.beam.length, self.beam.section.across / 2.0)
+
+    def responses(
+        self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float
+    ) -> list[Response]:
+        """Return what is sent to every listener."""
+        panel, kernel = self.panel.only(modes), interpolation(bandwidth * interval)
+        return [dipole_response(panel, self.area, one, air, interval, kernel, shift) for one in listeners]
+
+    def notes(self, air: Air) -> list[str]:
+        """Return up to where it holds, in words."""
+        return [f"a line of dipoles: the beam is slim below {slim_below(self.beam, air):.4g} Hz"]
 
 
-def _of_panel(
-    panel: Panel,
-    listener: Array,
-    air: Air,
-    interval: float,
-    kernel: Interpolation,
-    shift: float,
-    bandwidth: float,
-) -> Response:
-    surface = surface_of(panel, listener, 2.0 * np.pi * bandwidth / air.speed)
-    return baffled_response(surface, listener, air, interval, kernel, shift)
+def slim_below(beam: Any, air: Air) -> float:
+    """Return the frequency [Hz] below which a beam is slim: its width is a sixth of the wavelength."""
+    return float(air.speed / (6.0 * beam.section.largest_side))

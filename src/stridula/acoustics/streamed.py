@@ -15,7 +15,7 @@ from .driven import DEGREE, FASTEST, LEAD, filters, undo_mean
 from .listeners import listeners_of
 from .panels import panel_of
 from .resampling import ATTENUATION, BANDWIDTH, bandwidth_of
-from .responses import check_listeners, responses
+from .responses import Baffled
 from .sample_rates import low_pass
 
 # What a mode sends to the listener, relative to the loudest, that rounding may make.
@@ -61,14 +61,14 @@ class StreamedSound:
         steps: int,
         air: Air | None = None,
     ) -> None:
-        panel, air = panel_of(track), Air() if air is None else air
+        way, air = Baffled(panel_of(track)), Air() if air is None else air
         listeners = listeners_of(listener)
-        check_listeners(listeners, track, True)
-        kept = np.flatnonzero(panel.angular_frequency * interval < FASTEST)
-        panel = panel.only(kept)
+        way.check(listeners)
+        kept = np.flatnonzero(way.panel.angular_frequency * interval < FASTEST)
+        panel = way.panel.only(kept)
         self.taps = undo_mean(steps)
         bandwidth = bandwidth_of(Fraction(1), 1.0 / interval)
-        (path,) = responses(panel, track, True, listeners, air, interval, EARLY - 0.5 / steps, bandwidth)
+        (path,) = way.responses(kept, listeners, air, interval, EARLY - 0.5 / steps, bandwidth)
         taps = low_pass(Fraction(1), 2.0 * BANDWIDTH, ATTENUATION)
         first = path.first - len(taps) // 2
         # An acceleration is known DEGREE samples after its force.

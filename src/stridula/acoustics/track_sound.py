@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import xarray as xr
 
 from ..arrays import Array
 from ..bodies import ModalBeam, ModalPlate
-from ..checks import instance
 from ..records.changes import check_one_track
 from .air import Air
 from .convolution import Convolution
 from .delays import Response
-from .driven import FASTEST, accelerations, first_time
+from .driven import DrivenModes
 from .listeners import ears, listeners_of
-from .panels import Panel, line_of, panel_of
-from .recorded import Pressing, pressing
+from .panels import Panel
+from .recorded import pressing
+from .recorded_motion import recorded_modes
 from .resampling import bandwidth_of, ratio_of, resample
-from .responses import check_listeners, responses
+from .responses import way_of
 
 # Bytes of modal motion held at once.
 MEMORY = 64e6
@@ -30,18 +30,37 @@ REACH = 40.0
 AUDIBLE = 16e3
 
 
+class Motion(Protocol):
+    """How the modes of a track move."""
+
+    words: str
+    start: float
+    interval: float
+    samples: int
+    first: float
+    begins: float | None
+    notes: list[str]
+
+    def carried(self, angular_frequency: Array) -> Array:
+        """Return the numbers of the modes that are heard, of all by their frequencies [rad/s]."""
+
+    def accelerations(self, modes: Any) -> Array:
+        """Return the accelerations of modes, by their numbers, shape (modes, samples or more)."""
+
+
 def track_sound(
     run: xr.Dataset,
     track: ModalBeam | ModalPlate,
     listener: Any,
     baffled: bool,
-    air: Air | None,
+    air: Air,
     sample_rate: float | None,
     silence: tuple[str, str] = ("silence", "the contact never presses"),
+    name: str | None = None,
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
     """Return pressures (listeners, samples), their times, the listeners and attributes; arguments are as in `radiate`.
 
-    `silence` are the words for one, and why there is one without a force.
+    `silence` are the words for one, and why there is one without a force; `name` is that of the track in its system.
 
     Raises
     ------
@@ -49,79 +68,72 @@ def track_sound(
         If the record is not usable, the track cannot be heard so, or a listener is where it cannot be heard.
     """
 
-    def pressed(panel: Panel) -> tuple[Pressing, Panel]:
-        found = pressing(run, panel)
+    def moved(panel: Panel) -> Motion:
+        found = recorded_modes(run, track, name) or DrivenModes(panel, pressing(run, panel))
         check_one_track(run)
-        return found, panel
+        return found
 
-    return panel_sound(pressed, track, listener, baffled, air, sample_rate, silence)
+    return panel_sound(moved, track, listener, baffled, air, sample_rate, silence)
 
 
 def panel_sound(
-    press: Callable[[Panel], tuple[Pressing, Panel]],
+    moved: Callable[[Panel], Motion],
     track: ModalBeam | ModalPlate,
     listener: Any,
     baffled: bool,
-    air: Air | None,
+    air: Air,
     sample_rate: float | None,
     silence: tuple[str, str],
 ) -> tuple[Array, Array, Array, dict[str, Any]]:
-    """Return the sound of a track under forces: `press` takes its panel and returns them with the panel they press on.
+    """Return the sound of a track that moves: `moved` takes its panel and returns how.
 
     Other arguments, results and errors are those of `track_sound`.
     """
-    air = Air() if air is None else air
-    instance("air", air, Air)
-    surface: Callable[[Any], Panel] = panel_of if baffled else line_of
-    panel = surface(track)
+    way = way_of(track, baffled)
     listeners = listeners_of(ears(track) if listener is None else listener)
-    check_listeners(listeners, track, baffled)
-    pressed, panel = press(panel)
-    recorded = 1.0 / pressed.interval
-    ratio = ratio_of(sample_rate, recorded, pressed.samples)
+    way.check(listeners)
+    panel, motion = way.panel, moved(way.panel)
+    recorded = 1.0 / motion.interval
+    ratio = ratio_of(sample_rate, recorded, motion.samples)
     bandwidth = bandwidth_of(ratio, recorded)
-    kept = np.flatnonzero(panel.angular_frequency * pressed.interval < FASTEST)
+    kept = motion.carried(panel.angular_frequency)
     # Modes that share a sine stand together.
     kept = kept[np.argsort(panel.wavenumbers[kept, 0], kind="stable")]
-    heard = panel.only(kept)
-    shift = (first_time(pressed) - pressed.start) / pressed.interval
-    paths = responses(heard, track, baffled, listeners, air, pressed.interval, shift, bandwidth)
-    pressure = resample(_sum(heard, pressed, paths), ratio)
-    time = np.arange(pressure.shape[1]) * pressed.interval / float(ratio)
+    shift = (motion.first - motion.start) / motion.interval
+    paths = way.responses(kept, listeners, air, motion.interval, shift, bandwidth)
+    pressure = resample(_sum(kept, motion, paths), ratio)
+    time = np.arange(pressure.shape[1]) * motion.interval / float(ratio)
     distances = _distances(listeners, panel)
-    arrival = _first_press(pressed) + distances / air.speed
+    arrival = (motion.begins or 0.0) + distances / air.speed
     # Beyond the reach of the low-pass, what comes before the first force can be heard is rounding.
-    early = np.maximum(arrival - REACH * pressed.interval / float(ratio), distances / air.speed)
+    early = np.maximum(arrival - REACH * motion.interval / float(ratio), distances / air.speed)
     pressure[time < early[:, None]] = 0.0
-    notes = _notes(pressed, len(kept), len(panel.wavenumbers), time[-1], arrival, silence)
+    notes = _notes(motion, len(kept), len(panel.wavenumbers), time[-1], arrival, silence)
     if bandwidth < AUDIBLE:
         notes.append(f"whole up to {bandwidth:.4g} Hz only, for the record's sample rate")
-    if not baffled:
-        notes.append(f"a line of dipoles: the beam is slim below {slim_below(track, air):.4g} Hz")
     attributes = {
         "bandwidth": bandwidth,
         "modes": len(kept),
         "baffled": int(baffled),
         "distance": distances.tolist(),
+        "motion": motion.words,
         **air.attributes,
-        "notes": "; ".join(notes),
+        "notes": "; ".join([*notes, *way.notes(air)]),
     }
-    return pressure, pressed.start + time, listeners, attributes
+    return pressure, motion.start + time, listeners, attributes
 
 
-def _sum(panel: Panel, pressed: Pressing, responses: list[Response]) -> Array:
+def _sum(modes: Array, motion: Motion, responses: list[Response]) -> Array:
     """Return the pressures at the samples of the record, shape (listeners, samples)."""
-    modes = len(panel.wavenumbers)
-    if not modes or not pressed.force.any():
-        return np.zeros((len(responses), pressed.samples))
-    several = max(1, int(MEMORY / 8 / (3 * pressed.samples)))
-    first = accelerations(panel.only(slice(0, several)), pressed)
+    if not modes.size or motion.begins is None:
+        return np.zeros((len(responses), motion.samples))
+    several = max(1, int(MEMORY / 8 / (3 * motion.samples)))
+    first = motion.accelerations(modes[:several])
     sound = Convolution(responses, first.shape[1])
     sound.add(first, slice(0, several))
-    for begin in range(several, modes, several):
-        part = slice(begin, begin + several)
-        sound.add(accelerations(panel.only(part), pressed), part)
-    return sound.signals()[:, : pressed.samples]
+    for begin in range(several, modes.size, several):
+        sound.add(motion.accelerations(modes[begin : begin + several]), slice(begin, begin + several))
+    return sound.signals()[:, : motion.samples]
 
 
 def _distances(listeners: Array, panel: Panel) -> Array:
@@ -131,28 +143,15 @@ def _distances(listeners: Array, panel: Panel) -> Array:
     return np.asarray(np.hypot(np.hypot(away[:, 0], away[:, 1]), listeners[:, 2]))
 
 
-def slim_below(beam: Any, air: Air) -> float:
-    """Return the frequency [Hz] below which a beam is slim: its width is a sixth of the wavelength."""
-    return float(air.speed / (6.0 * beam.section.largest_side))
-
-
-def _first_press(pressed: Pressing) -> float:
-    """Return when the sample interval begins in which a contact first presses [s from the start], 0 if none does."""
-    presses = np.flatnonzero(pressed.force.any(axis=0))
-    return float(presses[0]) * pressed.interval if presses.size else 0.0
-
-
 def _notes(
-    pressed: Pressing, kept: int, modes: int, duration: float, arrival: Array, silence: tuple[str, str]
+    motion: Motion, kept: int, modes: int, duration: float, arrival: Array, silence: tuple[str, str]
 ) -> list[str]:
     """Return what is to be said of a sound, in words."""
     notes = []
-    if not pressed.force.any():
+    if motion.begins is None:
         notes.append(": ".join(silence))
     elif (arrival > duration).any():
         notes.append(f"{silence[0]}: the sound does not arrive within the record")
     if kept < modes:
         notes.append(f"{modes - kept} modes above what the record's sample rate carries are left out")
-    if pressed.start > 0.5 * pressed.interval:
-        notes.append("the record continues another one; vibration left from that one is not included")
-    return notes
+    return [*notes, *motion.notes]

@@ -13,6 +13,7 @@ import scipy.linalg
 from ..arrays import Array
 from ..checks import ArgumentError, instance, within
 from ..declared import Angle, Choice, Count, Frequency, Length, Name, Own, check_declared
+from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .cards import HasCard
 from .damping import DampingLaw, checked_damping, damping_rates
 from .drawn_lines import places_between
@@ -26,6 +27,7 @@ from .finite_elements import (
 )
 from .modes import BodyPoint, Modes, hashed_once
 from .ordinary import check_overflow, of_ordinary_size
+from .prism_surfaces import beam_surface
 from .sections import Circle, Material, Rectangle, Section
 
 LARGEST_ELEMENTS = 500
@@ -176,6 +178,18 @@ class FiniteElementBeam(HasCard):
                 known.traces[position] = found
         return found.copy()
 
+    def surface(self, frequency: float = HIGHEST) -> PointSurface:
+        """Return the outer surface as points, fine enough for sound up to a frequency [Hz], and how modes move it.
+
+        Its tip is at the origin of the world; nothing holds its root along x.
+
+        Raises
+        ------
+        ValueError
+            If its section is known by its two properties only.
+        """
+        return _surface(self, largest_part(frequency))
+
     def node_traces(self, held_x: bool = False) -> Array:
         """Return the rows that give x, y and slope of every node, tip first, from the modes, shape (3 nodes, modes)."""
         return _reduced(self, held_x).shapes
@@ -309,3 +323,8 @@ def _rigid_shapes(beam: FiniteElementBeam, mass: Array, fixed: Array) -> Array:
         motions = motions @ np.linalg.inv(np.linalg.cholesky(motions.T @ mass @ motions)).T
     motions[fixed] = 0.0
     return motions
+
+
+@lru_cache(maxsize=4)
+def _surface(beam: FiniteElementBeam, largest: float) -> PointSurface:
+    return beam_surface(beam, beam.elements, largest)

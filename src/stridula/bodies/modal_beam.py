@@ -11,12 +11,14 @@ import numpy as np
 
 from ..checks import ArgumentError, at_least, instance, within
 from ..declared import Count, CountFrom0, Frequency, Length, Name, Own, Tension, check_declared
+from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .drawn_lines import places_between
 from .modes import Array, BodyPoint, Modes, hashed_once
 from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .paths import Path, along_one_angle
 from .planes import InPlane, checked_plane
+from .prism_surfaces import beam_surface
 from .sections import Circle, Material, Rectangle, Section
 
 
@@ -172,6 +174,18 @@ class ModalBeam(InPlane):
         """Return the path along which other bodies slide: its axis."""
         return _path(self)
 
+    def surface(self, frequency: float = HIGHEST) -> PointSurface:
+        """Return the outer surface as points, fine enough for sound up to a frequency [Hz], and how modes move it.
+
+        Its axis begins at the origin of the world.
+
+        Raises
+        ------
+        ValueError
+            If its section is known by its two properties only.
+        """
+        return _surface(self, largest_part(frequency))
+
     def support_force(self, end: str) -> Array:
         """Return the rows that give the force along its normal on the support of an end from the modes, shape (modes,).
 
@@ -222,3 +236,8 @@ def _modes(beam: ModalBeam) -> Modes:
     translation[1, : bending.size] = line * mean_bending
     translation[0, bending.size :] = line * mean_axial
     return Modes(angular, damping_rates(beam.damping, angular), beam.in_the_world(translation))
+
+
+@lru_cache(maxsize=4)
+def _surface(beam: ModalBeam, largest: float) -> PointSurface:
+    return beam_surface(beam, max(beam.harmonics), largest)

@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, choice, count, instance, listed
 from ..histories import Constant, History
-from .body_surfaces import PointSurface, RingSurface, check_surface
+from .body_surfaces import HIGHEST, BodySurface, PointSurface, RingSurface, check_surface
 from .circular_path import CircularPath
 from .drawn_surfaces import Drawn, DrawnSurface, drawn_of, drawn_table
 from .half_space import half_space_shapes, surface_frame
@@ -260,8 +260,8 @@ class ModalBody(NamedPoints):
         """Whether its outer surface is known."""
         return self.outer_surface is not None
 
-    def surface(self) -> PointSurface | RingSurface:
-        """Return the outer surface with its mode shapes.
+    def surface(self, frequency: float = HIGHEST) -> BodySurface:
+        """Return the outer surface, as fine as it was given, with its mode shapes.
 
         Raises
         ------

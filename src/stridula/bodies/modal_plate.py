@@ -10,14 +10,17 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ..arrays import Array, in_space
 from ..checks import ArgumentError, at_least, at_most, count, finite, instance, positive, within
+from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .drawn_lines import places_between
-from .modes import Array, BodyPoint, Modes
+from .modes import BodyPoint, Modes
 from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .paths import Path, Waves, along_one_angle
 from .plane_stress import PlaneStress, lowest, plane_stress, rigid
 from .planes import InPlane, checked_plane
+from .prism_surfaces import cells_of, plate_mesh, prism_surface
 from .sections import Material
 
 # Largest sine or cosine of a right angle due to rounding.
@@ -335,6 +338,21 @@ class ModalPlate(InPlane):
         return Path(self.ends, rate, phase, bending, Waves(in_plane, moved))
 
     @property
+    def frame(self) -> Array:
+        """World components of the directions along its length and width and along its normal, shape (3, 3)."""
+        cosine, sine = self.track_line.tangent
+        line, normal = (in_space(axis) for axis in self.axes)
+        across = np.cross(normal, line)
+        return np.array([cosine * line - sine * across, sine * line + cosine * across, normal])
+
+    def surface(self, frequency: float = HIGHEST) -> PointSurface:
+        """Return the outer surface as points, fine enough for sound up to a frequency [Hz], and how modes move it.
+
+        Both faces and the edges; abscissa 0 of its line, in its middle plane, is the origin of the world.
+        """
+        return _surface(self, largest_part(frequency))
+
+    @property
     def in_plane_shares(self) -> Array:
         """Coefficients of the products of sines S and cosines C, of kx x times of ky y, in each mode in the plane.
 
@@ -454,3 +472,20 @@ def _modes(plate: ModalPlate) -> Modes:
 
 def _mean_of_sine(half_waves: Array) -> Array:
     return np.asarray((1.0 - (-1.0) ** half_waves) / (np.maximum(half_waves, 1) * np.pi))
+
+
+@lru_cache(maxsize=4)
+def _surface(plate: ModalPlate, largest: float) -> PointSurface:
+    bending, in_plane = plate.harmonics
+    most = np.concatenate([plate.numbers, plate.in_plane_numbers]).max(axis=0)
+    sides, frame = (plate.length, plate.width), plate.frame
+
+    def moved(places: Array) -> Array:
+        x, y, _ = places.T
+        found = np.zeros((len(places), 3, bending + in_plane))
+        found[:, :2, bending:] = plate.in_plane_shapes(x, y)
+        found[:, 2, :bending] = plate.shapes(x, y)
+        return np.einsum("aw,nam->nwm", frame, found)
+
+    mesh = plate_mesh(sides, plate.thickness, (cells_of(most[0]), cells_of(most[1])))
+    return prism_surface(mesh, frame, -np.array([*plate.track_line.origin, 0.0]) @ frame, moved, largest)

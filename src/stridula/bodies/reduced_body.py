@@ -83,6 +83,7 @@ class ReducedBody(NamedPoints):
     """
 
     kind: ClassVar[str] = "reduced"
+    without_surface: ClassVar[str] = "whose matrices do not tell where it is"
     mass: Array
     stiffness: Array
     points: Mapping[str, Any]

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from ..arrays import Array
-
-HALF_SPAN = 8
-CUTOFF = 0.75
-KAISER = 6.2
+from ..records.low_pass import reach_of, taps_of
 
 
 class Decimator:
@@ -38,10 +33,10 @@ class Decimator:
 
     def __init__(self, ratio: int, before: Array | None = None) -> None:
         self.ratio = ratio
-        self.reach = HALF_SPAN * ratio if ratio > 1 else 0
+        self.reach = reach_of(ratio)
         self.memory = max(self.reach - ratio, 0)
         self.lookahead = self.reach + 1
-        self.taps = _taps(ratio, self.reach)
+        self.taps = taps_of(ratio)
         self.tail = before
         self.last = None if before is None or not before.size else before[-1:]
         self._pending = before
@@ -62,12 +57,3 @@ class Decimator:
         if count == 0:
             return np.empty((count, raw.shape[1]))
         return np.asarray(sliding_window_view(joined, self.taps.size, axis=0)[:: self.ratio] @ self.taps)
-
-
-@lru_cache(maxsize=32)
-def _taps(ratio: int, reach: int) -> Array:
-    if ratio == 1:
-        return np.ones(1)
-    steps = np.arange(-reach, reach + 1)
-    taps = np.sinc(CUTOFF / ratio * steps) * np.kaiser(2 * reach + 1, KAISER)
-    return np.asarray(taps / taps.sum())

@@ -295,7 +295,7 @@ class LiveMarch:
         self._described, self.step, self.ratio = arrays, timing.step, timing.ratio
 
     def _begin_probes(self) -> None:
-        self._decimator, self._waiting = Decimator(self.ratio), np.zeros((0, len(self.probes)))
+        self._decimator, self._waiting = Decimator(self.ratio), np.zeros((0, len(self._described.probes)))
 
     def _lay_out(self, arrays: Assembly) -> None:
         """Set the system, as flat arrays, that marches."""
@@ -315,7 +315,7 @@ class LiveMarch:
         """Return as many samples of the probes as of the rest; the first or zero before the low-pass gives any."""
         waiting = np.concatenate([self._waiting, self._decimator.feed(raw[: samples * self.ratio])])
         missing = max(0, samples - len(waiting))
-        first = waiting[:1] if len(waiting) else np.zeros((1, len(self.probes)))
+        first = waiting[:1] if len(waiting) else np.zeros((1, len(self._described.probes)))
         waiting = np.concatenate([np.repeat(first, missing, axis=0), waiting])
         self._waiting = waiting[samples:]
         return waiting[:samples]

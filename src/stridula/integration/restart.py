@@ -71,14 +71,16 @@ def state_of(
         raise ArgumentError(
             "start", f"have the same number of modes as this system, {arrays.mode_count}", start, got=_count(modes)
         )
-    if columns != (len(probes),):
-        raise ArgumentError("start", f"have the same number of probes, {len(probes)}", start, got=_count(columns))
+    if columns != (len(arrays.probes),):
+        raise ArgumentError(
+            "start", f"have the same number of probes, {len(arrays.probes)}", start, got=_count(columns)
+        )
     instance("start.scenario", attributes["scenario"], str)
     before, now = (tomllib.loads(text) for text in (attributes["scenario"], scenario_toml(system, probes, {})))
     knows_motion = "state_motion" in start
     _check_frozen(_frozen(before, knows_motion), _frozen(now, knows_motion))
     _check_whole(start)
-    _check_state(start, arrays, timing, len(probes))
+    _check_state(start, arrays, timing, len(arrays.probes))
     return State(*(np.array(start[f"state_{name}"].values, dtype=float, order="C") for name in STATE))
 
 

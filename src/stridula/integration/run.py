@@ -97,7 +97,11 @@ class Run:
         self.surfaces = surfaces
         self.firsts = arrays.firsts if surfaces is None else surfaces.firsts
         self.contact_record = np.empty((at.COLUMNS, len(self.firsts), timing.samples))
-        self.probe_record = np.empty((timing.samples, len(probes)))
+        # Of all modes of a body there are many, and what is heard of them takes no more digits.
+        self.in_single = np.array([one.is_of_body for one in arrays.probes], dtype=bool)
+        of_bodies = int(self.in_single.sum())
+        self.probe_record = np.empty((timing.samples, len(arrays.probes) - of_bodies))
+        self.motion_record = np.empty((timing.samples, of_bodies), dtype=np.float32)
         self.wanted: Collection[str] = RECORDED
         self.columns: tuple[int, ...] = ALL_COLUMNS
         self.done = self.filled = 0
@@ -147,18 +151,20 @@ class Run:
         self.state, self.tail = state, self.decimator.tail
         if not self.probes or self.filled >= self.done:
             return
-        raw = np.empty((0, len(self.probes))) if ahead is None else ahead.raw[: ahead.completed * self.timing.ratio]
+        raw = np.empty((0, self.in_single.size)) if ahead is None else ahead.raw[: ahead.completed * self.timing.ratio]
         missing = self.decimator.lookahead - raw.shape[0]
         if missing > 0:
             last = raw[-1:] if raw.shape[0] else self.decimator.last
-            last = np.zeros((1, len(self.probes))) if last is None else last
+            last = np.zeros((1, self.in_single.size)) if last is None else last
             raw = np.concatenate([raw, np.repeat(last, missing + self.timing.ratio, axis=0)])
         self._keep_probes(raw)
 
     def _keep_probes(self, raw: Array) -> None:
         samples = self.decimator.feed(raw)
         count = min(samples.shape[0], self.timing.samples - self.filled)
-        self.probe_record[self.filled : self.filled + count] = samples[:count]
+        here = slice(self.filled, self.filled + count)
+        self.probe_record[here] = samples[:count, ~self.in_single]
+        self.motion_record[here] = samples[:count, self.in_single]
         self.filled += count
 
     def why_diverged(self) -> str:
@@ -182,10 +188,10 @@ class Run:
             self._time(),
             *self._over_time(),
             self.probes,
-            self.probe_record[:done],
+            (self.probe_record[:done], self.motion_record[:done]),
             self.state,
             np.concatenate([motion_about(self.described, last_step, timing.step), self.offset[None]]),
-            np.empty((0, len(self.probes))) if self.tail is None else self.tail,
+            np.empty((0, self.in_single.size)) if self.tail is None else self.tail,
             self._attributes(interrupted, {"scenario": self._scenario()} if provenance else {}),
             None if surfaces is None else dict(zip(surfaces.shown, surfaces.names, strict=True)),
         )

@@ -68,8 +68,8 @@ def simulate(
         Samples per second to record [Hz]; with a step given, the nearest rate at which a sample is a whole number
         of steps.
     probes : sequence of probes, optional
-        Further quantities to record: Displacement, Velocity, Acceleration, Reaction, SupportForce, ModalDisplacement or
-        ModalVelocity; the acceleration of the track's centre along y if left out and the track is a beam.
+        Further quantities to record: Displacement, Velocity, Acceleration, Reaction, SupportForce, ModalDisplacement,
+        ModalVelocity or ModalMotion; the acceleration of the track's centre along y if left out and the track is a beam.
     contact_solve : GaussSeidel, optional
         Settings of the simultaneous solution of several contacts; a single contact is solved exactly.
     start : xarray.Dataset, optional
@@ -203,7 +203,9 @@ class Asked:
             points = sum(map(bool, system.surface_names))
             more = bytes_of(timing.ratio) * points if self.surface_rate is None else 0
             rows = len(groups(system.contact_names, system.surface_names)) + -(-rows // every)
-        size = 8 * (len(arrays.probes) + ENERGIES + COLUMNS * rows) + more
+        in_single = sum(one.is_of_body for one in arrays.flat.probes)
+        plain = len(arrays.flat.probes) - in_single
+        size = 8 * (plain + ENERGIES + COLUMNS * rows) + 4 * in_single + more
         if size > LARGEST_RECORD / max(timing.samples, 1):
             raise ArgumentError(
                 "duration",

@@ -109,7 +109,8 @@ def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
     if "assembly" not in system.kept:
         system.kept["assembly"] = _assembled(system)
     flat, coordinates, loads = system.kept["assembly"]
-    return replace(flat, probes=[probe_rows(probe, coordinates, loads) for probe in probes]) if probes else flat
+    rows = [one for probe in probes for one in probe_rows(probe, coordinates, loads)]
+    return replace(flat, probes=rows) if rows else flat
 
 
 def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:

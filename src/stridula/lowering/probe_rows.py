@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import singledispatch
 from typing import Any
 
@@ -28,18 +28,25 @@ class ProbeRows:
         Shares of the signals.
     contact : ndarray, shape (contacts, 2)
         Shares of the normal and of the tangential force of each contact.
+    is_of_body : bool
+        Whether it is one of those of all modes of a body.
     """
 
     rows: Array
     direct: Array
     contact: Array
+    is_of_body: bool = False
 
 
-def probe_rows(probe: Probe, coordinates: Coordinates, loads: list[Load]) -> ProbeRows:
-    """Return the rows of a probe, checked against the system."""
+def probe_rows(probe: Probe, coordinates: Coordinates, loads: list[Load]) -> list[ProbeRows]:
+    """Return the rows of a probe, of one of all modes for each of them, checked against the system."""
     if not isinstance(probe, Reaction) and probe.body not in coordinates.system.bodies:
         raise ArgumentError("probe", "be on a body of this system", probe, got=f"one on {brief(probe.body)}")
-    return _rows_of(probe, coordinates, loads, np.zeros(len(loads) + 3), np.zeros((coordinates.pairs, 2)))
+    nothing = np.zeros(len(loads) + 3), np.zeros((coordinates.pairs, 2))
+    if hasattr(probe, "of_each"):
+        modes = probe.of_each(coordinates.modes(probe.body).count)
+        return [replace(_rows_of(one, coordinates, loads, *nothing), is_of_body=True) for one in modes]
+    return [_rows_of(probe, coordinates, loads, *nothing)]
 
 
 @singledispatch

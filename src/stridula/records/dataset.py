@@ -9,8 +9,9 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
+from ..bodies.modes import Body
 from ..system import System
-from .probes import Probe
+from .probes import ModalMotion, Probe
 from .state import State
 from .variables import (
     CONTACT,
@@ -40,7 +41,7 @@ def to_dataset(
     status_share: Array,
     energies: dict[str, Array],
     probes: Sequence[Probe],
-    probe_values: Array,
+    probe_values: tuple[Array, Array],
     state: State,
     motion: Array,
     raw: Array,
@@ -51,8 +52,9 @@ def to_dataset(
 
     Arrays of the contacts have the shapes (contacts, samples), and (samples, contacts, 3) for the status. `motion` is
     the motion imposed on each contact a step before the end and at the end, and its displacement beyond these, shape
-    (3, contacts, 3). `raw` are the last values of the probes at every step, which the low-pass still needs, shape
-    (steps, probes). `shown` has the names of rows that represent several contacts, by the number of one of these.
+    (3, contacts, 3). `probe_values` are those of probes and those of all modes of bodies. `raw` are the last values of
+    both at every step, which the low-pass still needs, shape (steps, values). `shown` has the names of rows that
+    represent several contacts, by the number of one of these.
     """
     words = described("s", "time at the end of the sample interval")
     coordinates: dict[str, Any] = {
@@ -69,12 +71,18 @@ def to_dataset(
         coordinates["surface"] = ("contact", [system.surface_names[number] for number in numbers])
     if system.has_two_tangents:
         coordinates["tangent"] = ("tangent", list(TANGENTS))
+    values, motion_values = probe_values
+    plain = [probe for probe in probes if not hasattr(probe, "of_each")]
     for kind, variable in PROBES.items():
-        chosen = [k for k, probe in enumerate(probes) if probe.quantity == kind]
+        chosen = [k for k, probe in enumerate(plain) if probe.quantity == kind]
         if chosen:
             dimension = f"{kind}_probe"
-            coordinates[dimension] = (dimension, [probe_label(probes[k], system) for k in chosen])
-            data[kind] = (("time", dimension), probe_values[:, chosen], attributes_of(variable))
+            coordinates[dimension] = (dimension, [probe_label(plain[k], system) for k in chosen])
+            data[kind] = (("time", dimension), values[:, chosen], attributes_of(variable))
+    if len(plain) < len(probes):
+        kind = ModalMotion.quantity
+        coordinates |= _of_modes(system, [probe.body for probe in probes if probe not in plain])
+        data[kind] = (("time", f"{kind}_probe"), motion_values, attributes_of(PROBES[kind]))
     for name, dimensions, values, meaning in (
         ("state_modal", ("state_kind", "mode"), state.modal, "modal positions and increments at the end"),
         ("state_remainder", ("state_kind", "mode"), state.remainder, "rounding remainders of state_modal"),
@@ -155,6 +163,23 @@ def _attributes(name: str, system: System) -> dict[str, Any]:
     return attributes_of(OVER_TIME[name])
 
 
-def probe_label(probe: Probe, system: System) -> str:
+def _of_modes(system: System, bodies: Sequence[Body]) -> dict[str, Any]:
+    """Return the coordinates of all modes of bodies: labels, names of the bodies, and frequencies [Hz]."""
+    kind = ModalMotion.quantity
+    modes = [body.modes(system.is_held(body)) for body in bodies]
+    names = [system.body_name(body) for body, own in zip(bodies, modes, strict=True) for _ in range(own.count)]
+    labels = [
+        f"{system.body_name(body)} mode {k}" for body, own in zip(bodies, modes, strict=True) for k in range(own.count)
+    ]
+    frequencies = np.concatenate([own.frequency for own in modes])
+    found = {
+        "probe": (labels, {}),
+        "body": (names, {}),
+        "frequency": (frequencies, described("Hz", "natural frequency")),
+    }
+    return {f"{kind}_{word}": (f"{kind}_probe", *given) for word, given in found.items()}
+
+
+def probe_label(probe: Any, system: System) -> str:
     """Return the label of a probe: body, place and direction."""
     return f"{system.body_name(probe.body)} {probe.place}"

@@ -185,8 +185,7 @@ class _OfMode:
     mode: int
 
     def __post_init__(self) -> None:
-        if isinstance(self.body, type) or not hasattr(self.body, "modes"):
-            raise ArgumentError("body", "be a body of stridula", self.body)
+        check_body(self.body)
         count("mode", self.mode, low=0, high=self.body.modes().count - 1)
 
     @property
@@ -230,7 +229,44 @@ class ModalVelocity(_OfMode):
     derivative = 1
 
 
-Probe = Displacement | Velocity | Acceleration | Reaction | SupportForce | ModalDisplacement | ModalVelocity
+@dataclass(frozen=True)
+class ModalMotion:
+    """Velocities of all modes of a body [kg^(1/2) m/s], in single precision: what `radiate` makes its sound of.
+
+    Centred differences over two steps.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    """
+
+    quantity: ClassVar[str] = "modal_motion"
+    of_slider: ClassVar[bool] = False
+    body: Body
+
+    def __post_init__(self) -> None:
+        check_body(self.body)
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """What a scenario says of it, beside quantity and body."""
+        return {}
+
+    def of_each(self, modes: int) -> list[ModalVelocity]:
+        """Return a probe of each of its body's modes."""
+        return [ModalVelocity(self.body, mode) for mode in range(modes)]
+
+
+Probe = (
+    Displacement | Velocity | Acceleration | Reaction | SupportForce | ModalDisplacement | ModalVelocity | ModalMotion
+)
+
+
+def check_body(body: Any) -> None:
+    """Raise ValueError unless this is a body."""
+    if isinstance(body, type) or not hasattr(body, "modes"):
+        raise ArgumentError("body", "be a body of stridula", body)
 
 
 def _words(point: BodyPoint) -> str:

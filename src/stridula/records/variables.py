@@ -86,6 +86,7 @@ PROBES = {
     "reaction": Variable("reaction", "N", "force of the root's support (its moment in N m)", "low-pass"),
     "modal_displacement": Variable("modal_displacement", "kg^(1/2) m", "displacement of modes", "low-pass"),
     "modal_velocity": Variable("modal_velocity", "kg^(1/2) m/s", "velocity of modes", "low-pass"),
+    "modal_motion": Variable("modal_motion", "kg^(1/2) m/s", "velocities of all modes of bodies", "low-pass"),
     "support_force": Variable("support_force", "N", "force along y on the supports of the ends", "low-pass"),
 }
 # Of the equilibrium of linear theory, without free rigid motions.

@@ -41,6 +41,7 @@ from ..records import (
     Acceleration,
     Displacement,
     ModalDisplacement,
+    ModalMotion,
     ModalVelocity,
     Probe,
     Reaction,
@@ -435,6 +436,8 @@ class Builder:
             body = self._named_body((*path, "body"), name)
             if table["quantity"] == "support_force":
                 return SupportForce(body, table.get("end", "left"))
+            if table["quantity"] == ModalMotion.quantity:
+                return ModalMotion(body) if body is not None else None
             if table["quantity"] in OF_MODES:
                 return OF_MODES[table["quantity"]](body, table["mode"]) if body is not None else None
             point = self._point((*path, "point"), body, table.get("point"), "tip")

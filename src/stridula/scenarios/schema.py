@@ -18,7 +18,7 @@ from .schema_drives import Drive
 
 class Motion(Table):
     quantity: Literal["displacement", "velocity", "acceleration"]
-    """displacement, velocity, acceleration, reaction, support_force, modal_displacement or modal_velocity"""
+    """displacement, velocity, acceleration, reaction, support_force or modal_displacement, _velocity or _motion"""
     body: str | None = None
     """body: slider, track or its name; the track if left out, the slider on a rigid track"""
     point: is_.Point | None = None
@@ -29,14 +29,14 @@ class Motion(Table):
 
 class Reaction(Table):
     quantity: Literal["reaction"]
-    """displacement, velocity, acceleration, reaction, support_force, modal_displacement or modal_velocity"""
+    """displacement, velocity, acceleration, reaction, support_force or modal_displacement, _velocity or _motion"""
     direction: Literal["x", "y", "moment"] = "moment"
     """x, y or moment"""
 
 
 class SupportForce(Table):
     quantity: Literal["support_force"]
-    """displacement, velocity, acceleration, reaction, support_force, modal_displacement or modal_velocity"""
+    """displacement, velocity, acceleration, reaction, support_force or modal_displacement, _velocity or _motion"""
     body: str | None = None
     """modal beam: track or its name; the track if left out, the slider on a rigid track"""
     end: Literal["left", "right"] = "left"
@@ -45,14 +45,21 @@ class SupportForce(Table):
 
 class MotionOfMode(Table):
     quantity: Literal["modal_displacement", "modal_velocity"]
-    """displacement, velocity, acceleration, reaction, support_force, modal_displacement or modal_velocity"""
+    """displacement, velocity, acceleration, reaction, support_force or modal_displacement, _velocity or _motion"""
     body: str | None = None
     """body: slider, track or its name; the track if left out, the slider on a rigid track"""
     mode: Annotated[int, is_.Whole(0)]
     """number of the mode from 0, by rising frequency, residual shapes last"""
 
 
-Probe = Annotated[Motion | Reaction | SupportForce | MotionOfMode, Field(discriminator="quantity")]
+class MotionOfBody(Table):
+    quantity: Literal["modal_motion"]
+    """displacement, velocity, acceleration, reaction, support_force or modal_displacement, _velocity or _motion"""
+    body: str | None = None
+    """body: slider, track or its name; the track if left out, the slider on a rigid track"""
+
+
+Probe = Annotated[Motion | Reaction | SupportForce | MotionOfMode | MotionOfBody, Field(discriminator="quantity")]
 
 
 class ContactSolve(Table):

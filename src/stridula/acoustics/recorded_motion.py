@@ -1,0 +1,151 @@
+"""Accelerations of modes from their velocities, where a record has those of all modes of a body.
+
+A recorded velocity is a centred difference over two steps, low-passed. One short antisymmetric filter derives it in
+time and makes up for both, up to 5/12 of the sample rate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.signal import oaconvolve
+
+from ..arrays import Array
+from ..checks import ArgumentError
+from ..records.changes import check_one_system
+from ..records.low_pass import gain
+from ..records.probes import ModalMotion
+from ..system import System
+from .driven import UNDONE
+from .recorded import sampled
+from .redriven import Moved
+
+VARIABLE = ModalMotion.quantity
+MODES, BODY, FREQUENCY = (f"{VARIABLE}_{word}" for word in ("probe", "body", "frequency"))
+# Samples on each side of which an acceleration is made, and frequencies at which that is fitted.
+REACH, FITTED = 32, 400
+# Relative error of frequencies that are the same.
+SAME = 1e-9
+
+
+class RecordedModes:
+    """Modes of a track whose velocities are in a record.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        The record.
+    columns : slice
+        Where they are among those recorded.
+
+    Attributes
+    ----------
+    start, interval : float
+        When the record begins, and its sample interval [s].
+    samples : int
+        Number of its samples.
+    first : float
+        Time of the first acceleration [s].
+    begins : float or None
+        When the track is first moved [s from the start], None if it is not.
+    notes : list of str
+        What is missing, in words.
+    """
+
+    words = "recorded"
+
+    def __init__(self, run: xr.Dataset, columns: slice) -> None:
+        self.start, self.interval, self.steps, _ = sampled(run)
+        self._velocities = _velocities(run)[columns]
+        self.samples, self.first = self._velocities.shape[1], self.start + self.interval
+        self.begins = 0.0 if self._velocities.any() else None
+        self.notes: list[str] = []
+
+    def carried(self, angular_frequency: Array) -> Array:
+        """Return the numbers of the modes that are heard, all of them."""
+        return np.arange(angular_frequency.size)
+
+    def accelerations(self, modes: Any) -> Array:
+        """Return the accelerations of modes, by their numbers, shape (modes, samples) [m kg^(1/2) / s²]."""
+        return accelerations(self._velocities[modes], self.interval, self.steps)
+
+
+def recorded_modes(run: xr.Dataset, track: Any, name: str | None = None) -> RecordedModes | None:
+    """Return the motion of a track, of a name or of any, if a record has it."""
+    if VARIABLE not in getattr(run, "variables", ()):
+        return None
+    frequency = track.modes().frequency
+    names = dict.fromkeys(run[BODY].values.tolist()) if name is None else [name]
+    found = (_columns(run, one, frequency) for one in names)
+    columns = next((one for one in found if one is not None), None)
+    return None if columns is None else RecordedModes(run, columns)
+
+
+def recorded_motion(run: Any, system: System, bodies: Sequence[Any]) -> Moved | None:
+    """Return how the modes of bodies of a system move if a record has it of all of them."""
+    if VARIABLE not in getattr(run, "variables", ()):
+        return None
+    spans, parts, last = {}, [], 0
+    for body in bodies:
+        name = system.body_name(body)
+        frequency = body.modes(system.is_held(body)).frequency
+        columns = _columns(run, name, frequency)
+        if columns is None:
+            return None
+        parts.append(columns)
+        spans[name] = (last, last := last + frequency.size)
+    check_one_system(run)
+    start, interval, steps, _ = sampled(run)
+    values = _velocities(run)
+    found = np.concatenate([accelerations(values[columns], interval, steps) for columns in parts])
+    pushed = 0.0 if found.any() else None
+    left_out = np.zeros(len(found), dtype=bool)
+    return Moved(start, interval, found.shape[1], start + interval, found, left_out, pushed, spans, is_recorded=True)
+
+
+def accelerations(velocities: Array, interval: float, steps: int) -> Array:
+    """Return the accelerations at the samples of recorded velocities, shape (modes, samples) each.
+
+    Parameters
+    ----------
+    velocities : ndarray, shape (modes, samples)
+        Velocities; constant before the first sample and after the last one.
+    interval : float
+        Sample interval [s].
+    steps : int
+        Steps of the march in it.
+    """
+    padded = np.pad(velocities.astype(float), ((0, 0), (REACH, REACH)), mode="edge")
+    return np.asarray(oaconvolve(padded, _derivative(steps)[None, :], mode="valid", axes=1) / interval)
+
+
+@lru_cache(maxsize=16)
+def _derivative(steps: int) -> Array:
+    """Return the filter that makes accelerations, times the interval, of velocities, shape (2 REACH + 1,)."""
+    turned = 2.0 * np.pi * np.linspace(0.0, UNDONE, FITTED + 1)[1:]
+    # Of the centred difference, then of the low-pass.
+    recorded = np.sinc(turned / steps / np.pi) * gain(turned / (2.0 * np.pi), steps)
+    wanted = turned / recorded
+    sines = 2.0 * np.sin(np.outer(turned, np.arange(1, REACH + 1)))
+    half = np.linalg.lstsq(sines / wanted[:, None], np.ones(FITTED), rcond=1e-12)[0]
+    return np.concatenate([half[::-1], [0.0], -half])[::-1] * -1.0
+
+
+def _velocities(run: xr.Dataset) -> Array:
+    """Return all velocities recorded, shape (modes, samples)."""
+    found = np.asarray(run[VARIABLE].transpose(MODES, "time").values)
+    if not np.isfinite(found).all():
+        raise ArgumentError(VARIABLE, "be finite", got=f"{found[~np.isfinite(found)][0]}")
+    return found
+
+
+def _columns(run: xr.Dataset, name: str, frequency: Array) -> slice | None:
+    """Return where all modes of a body are among those recorded, None if they are not."""
+    found = np.flatnonzero(run[BODY].values == name)
+    if found.size != frequency.size or not np.allclose(run[FREQUENCY].values[found], frequency, rtol=SAME, atol=0.0):
+        return None
+    return slice(int(found[0]), int(found[0]) + found.size) if found.size else None

@@ -1,0 +1,143 @@
+"""Sound from the motion of modes as the march recorded it, beside what forces make of it again."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stridula as st
+from stridula.acoustics.recorded_motion import VARIABLE, recorded_motion
+from stridula.acoustics.redriven import redriven
+
+from .test_turning import disc, struck
+
+PLACE = (0.3, 0.1, 0.5)
+# Middles of thirds of an octave [Hz].
+BANDS = (500.0, 1e3, 2e3, 4e3, 8e3)
+
+
+def motions(*bodies):
+    return [st.ModalMotion(body) for body in bodies]
+
+
+def levels(signal, interval, bands=BANDS):
+    """Levels of the later half of a signal in bands [dB]."""
+    late = signal[len(signal) // 2 :]
+    power = np.abs(np.fft.rfft(late * np.hanning(len(late)))) ** 2
+    frequency = np.fft.rfftfreq(len(late), interval)
+    edge = 2.0 ** (1.0 / 6.0)
+    return np.array([10.0 * np.log10(power[(frequency > f / edge) & (frequency < f * edge)].sum()) for f in bands])
+
+
+@pytest.fixture(scope="module")
+def squeal():
+    """The squealing pair, its motion recorded at 50 kHz, and the sound that forces at every step make of it."""
+    scenario = st.load_scenario("squeal", {"duration": "60 ms", "step": "5 us"})
+    system = scenario.system
+    run = scenario.simulate(sample_rate=50e3, probes=motions(system.slider, system.track))
+    full = scenario.simulate(sample_rate=200e3, probes=[])
+    known = st.radiate(full, system, PLACE, sample_rate=50e3)
+    return system, run, known.values[:, 0]
+
+
+def test_a_squealing_pair_sounds_as_its_forces_at_every_step_make_it(squeal):
+    system, run, known = squeal
+    found = st.radiate(run, system, PLACE)
+    again = st.radiate(run.drop_vars(VARIABLE), system, PLACE)
+    assert [one.attrs["motion"] for one in (found, again)] == ["recorded", "driven again"]
+    true = levels(known, 2e-5)
+    assert np.abs(levels(found.values[:, 0], 2e-5) - true).max() < 0.1
+    # Means over four steps fold what they hold above 25 kHz.
+    assert np.abs(levels(again.values[:, 0], 2e-5) - true).max() > 0.2
+
+
+def test_it_is_kept_in_single_precision_with_whose_modes_they_are(squeal):
+    system, run, _ = squeal
+    counts = {"slider": system.slider.modes(system.is_held(system.slider)).count, "track": system.track.modes().count}
+    assert run[VARIABLE].dtype == np.float32
+    assert run[VARIABLE].nbytes == 4 * run.sizes["time"] * sum(counts.values())
+    assert run.modal_motion_body.values.tolist() == [name for name, count in counts.items() for _ in range(count)]
+    assert run.modal_motion_probe.values[counts["slider"]] == "track mode 0"
+    one = st.simulate(
+        system, 2e-3, step=5e-6, sample_rate=50e3, probes=[st.ModalVelocity(system.track, 3), *motions(system.track)]
+    )
+    known = one.modal_velocity.values[:, 0]
+    np.testing.assert_allclose(one[VARIABLE].values[:, 3], known, atol=1e-6 * np.abs(known).max())
+    assert st.load_scenario(run).probes == tuple(motions(system.slider, system.track))
+
+
+def test_only_a_track_of_the_same_modes_is_heard_so(squeal):
+    system, run, _ = squeal
+    own, other = system.track, replace(system.track, length=1.01 * system.track.length)
+    assert st.radiate(run, own, PLACE).attrs["motion"] == "recorded"
+    assert st.radiate(run, other, PLACE).attrs["motion"] == "driven again"
+    # The motion of one of two bodies is not that of both.
+    less = run.isel({f"{VARIABLE}_probe": run.modal_motion_body.values == "track"})
+    assert recorded_motion(less, system, [system.slider]) is None
+    assert st.radiate(less, system, PLACE).attrs["motion"] == "recorded or driven again"
+
+
+@pytest.mark.parametrize("turning", [0.0, 100.0])
+def test_a_disc_moves_as_its_forces_make_it_whether_it_turns_or_not(turning):
+    system, plate = struck(turning)
+    run = st.simulate(system, 0.03, step=1.0 / 480e3, sample_rate=48e3, probes=motions(plate))
+    found, known = recorded_motion(run, system, [plate]), redriven(run, system)
+    first, last = known.spans[system.body_name(plate)]
+    bands = (500.0, 800.0, 1600.0, 2500.0)
+    # At the same times, to half a sample.
+    ahead = round((found.first - known.first) / found.interval)
+    rows = found.accelerations, known.accelerations[first:last, ahead : ahead + found.samples]
+    direction = np.where(plate.modes().massless, 0.0, plate.trace((0.1, 2.0, 0.01))[2])
+    heard, again = (levels(direction @ row, found.interval, bands) for row in rows)
+    np.testing.assert_allclose(heard, again, atol=0.1)
+
+
+def test_vibration_before_a_record_and_at_its_start_is_heard():
+    """That of a record that goes on, beside the same time of one that was not cut; and of a body struck beforehand."""
+    scenario = st.load_scenario("squeal", {"duration": "20 ms"})
+    track = scenario.system.track
+    words = {"probes": motions(track), "sample_rate": 50e3, "step": 5e-6}
+    whole, first = scenario.simulate(**words), scenario.simulate(duration=0.01, **words)
+    later = scenario.simulate(duration=0.01, start=first, **words)
+    np.testing.assert_array_equal(later[VARIABLE], whole[VARIABLE].values[len(first.time) :])
+    known, found = (st.radiate(run, track, PLACE).values[-400:, 0] for run in (whole, later))
+    again = st.radiate(later.drop_vars(VARIABLE), track, PLACE)
+    size = np.abs(known).max()
+    # What the first record sent late is missing only as long as it travels along the track.
+    assert np.abs(found - known)[120:].max() < 0.01 * size
+    assert np.abs(again.values[-400:, 0] - known)[120:].max() > 0.1 * size
+    assert "continues another" in again.attrs["notes"]
+    assert "continues another" not in st.radiate(later, track, PLACE).attrs["notes"]
+
+
+def test_a_body_in_space_that_starts_in_motion_is_heard():
+    plate = disc(0.0, cutoff=800.0)
+    apart = st.RigidBody(1.0, points={"tip": (0.0, 0.0, 0.0)})
+    contact = st.PointContact(apart.at("tip"), plate.at((0.1, 0.0, 0.01)), gap=1.0, normal=(0.0, 0.0, 1.0))
+    system = st.System(contact, [st.InitialVelocity(plate, z=0.1)])
+    run = st.simulate(system, 4e-3, sample_rate=1e4, probes=motions(plate))
+    heard = st.radiate(run, system, (0.3, 0.3, 0.5))
+    assert heard.values.any()
+    assert heard.attrs["motion"] == "recorded"
+    assert "starts with" not in heard.attrs["notes"]
+    assert not st.radiate(run.drop_vars(VARIABLE), system, (0.3, 0.3, 0.5)).values.any()
+
+
+def test_runs_side_by_side_record_it_too():
+    scenario = st.load_scenario("squeal", {"duration": "2 ms"})
+    system = scenario.system
+    probes = motions(system.track)
+    runs = st.simulate_many([system] * 2, 2e-3, probes=probes)
+    alone = st.simulate(system, 2e-3, probes=probes)
+    np.testing.assert_allclose(runs[1][VARIABLE], alone[VARIABLE], atol=1e-4 * np.abs(alone[VARIABLE]).max())
+
+
+def test_only_bodies_have_modes_and_numbers_are_finite(squeal):
+    system, run, _ = squeal
+    broken = run.assign({VARIABLE: run[VARIABLE].where(run.time > 0.01)})
+    with pytest.raises(ValueError, match=r"^modal_motion must be finite, got nan"):
+        st.radiate(broken, system, PLACE)
+    with pytest.raises(ValueError, match=r"^body must be a body of stridula"):
+        st.ModalMotion("track")
