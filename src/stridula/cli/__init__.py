@@ -6,7 +6,7 @@ import atexit
 import gc
 import sys
 
-from .commands import app
+from ..extras import named_extras
 from .consoles import print_anything
 from .doings import doings_shown
 from .exits import GOOD, INTERRUPTED, failed, say, terminated_as_interrupted
@@ -29,7 +29,9 @@ def main() -> None:
 
 def _run() -> int:
     try:
-        with doings_shown():
+        with doings_shown(), named_extras():
+            from .commands import app
+
             result = app(standalone_mode=False)
     except SystemExit as stop:
         # Rich leaves this way when its output is closed.

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import io
 import sys
-
-from rich.console import Console
+from typing import TYPE_CHECKING
 
 from ..disk import write
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 # Of a file or a pipe; a terminal has its own.
 WIDTH = 150
@@ -15,6 +17,8 @@ WIDTH = 150
 
 def wide_console() -> Console:
     """Return standard output, wide enough for tables where it is no terminal."""
+    from rich.console import Console
+
     console = Console()
     return console if console.is_terminal else Console(width=WIDTH)
 
