@@ -53,9 +53,11 @@ def named_extras() -> Iterator[None]:
     """Import what an extra brings, or raise `MissingPackage`."""
     try:
         yield
+    except MissingPackage:
+        raise
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
-        if isinstance(error, MissingPackage) or package not in NEEDED:
+        if package not in NEEDED:
             raise
         raise missing(package) from None
 

@@ -6,10 +6,10 @@ import atexit
 import gc
 import sys
 
-from ..extras import named_extras
+from ..extras import MissingPackage, named_extras
 from .consoles import print_anything
 from .doings import doings_shown
-from .exits import GOOD, INTERRUPTED, failed, say, terminated_as_interrupted
+from .exits import BAD_INPUT, GOOD, INTERRUPTED, failed, say, terminated_as_interrupted
 
 
 def main() -> None:
@@ -38,6 +38,8 @@ def _run() -> int:
         return GOOD if stop.code == 1 else int(stop.code or GOOD)
     except KeyboardInterrupt:
         result = INTERRUPTED
+    except MissingPackage as error:
+        return say(str(error), BAD_INPUT)
     except Exception as error:
         return failed(error)
     return say("interrupted; nothing was kept", INTERRUPTED) if result == INTERRUPTED else int(result or GOOD)

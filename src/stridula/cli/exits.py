@@ -10,8 +10,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 
-from ..extras import MissingPackage
-
 GOOD, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 # What befalls a file on the way; any other OSError is a path that was wrong from the start.
 DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
@@ -39,7 +37,7 @@ def failed(error: Exception) -> int:
         return _failed_file(error)
     if isinstance(error, MemoryError):
         return say("not enough memory for this run", FAILED)
-    if isinstance(error, (ValueError, MissingPackage)):
+    if isinstance(error, ValueError):
         return say(str(error), BAD_INPUT)
     raise error
 
