@@ -24,11 +24,11 @@ import numpy as np
 import stridula as st
 from ratios import WARM_UP, Ratio, must_agree, show, sized
 from stridula._kernels import layout as at
-from stridula.assembly import assemble
-from stridula.integration.blocks import blocks_of
 from stridula.integration.marches import Imposed, March
-from stridula.integration.packing import aligned
 from stridula.integration.start import state_at_start
+from stridula.lowering import assemble
+from stridula.lowering.blocks import blocks_of
+from stridula.lowering.packing import aligned
 from systems import REGIMES, SCHEME, SIZES, beams
 
 TITLE = "time of a step over that of hand-written C"

@@ -23,12 +23,12 @@ from ratios import Ratio, must_agree, over, peak_memory, seconds, show, sized
 from space import IRON, LINING
 from stridula._kernels import contacts as kernel
 from stridula._kernels import layout as at
-from stridula.assembly import assemble
-from stridula.integration.blocks import blocks_of
 from stridula.integration.equilibrium_start import in_equilibrium
 from stridula.integration.marches import March, imposed_on
-from stridula.integration.packing import aligned, scale_of
 from stridula.integration.start import state_at_start
+from stridula.lowering import assemble
+from stridula.lowering.blocks import blocks_of
+from stridula.lowering.packing import aligned, scale_of
 from systems import SCHEME, Case
 
 TITLE = "a brake of two pads on a disc that turns"

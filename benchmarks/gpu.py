@@ -37,11 +37,11 @@ import numpy as np
 import stridula as st
 from ratios import REPEATS, SHORT, Ratio, arguments, must_agree, show, sized
 from stridula._kernels.vectors import LANES
-from stridula.assembly import assemble
-from stridula.integration.blocks import Blocks, blocks_of
 from stridula.integration.cuda_march import CudaMarch, require_cuda
 from stridula.integration.marches import Imposed, March, imposed_on
 from stridula.integration.start import state_at_start
+from stridula.lowering import assemble
+from stridula.lowering.blocks import Blocks, blocks_of
 from systems import FORCES, TOLERANCE, Case, squeal
 
 TITLE = "runs per second on a GPU over those on all cores"

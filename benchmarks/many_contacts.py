@@ -20,7 +20,7 @@ from ratios import Ratio, must_agree, over, seconds, show, sized
 from stridula._kernels import contacts as kernel
 from stridula._kernels import layout as at
 from stridula.integration.marches import March
-from stridula.integration.packing import aligned, scale_of
+from stridula.lowering.packing import aligned, scale_of
 from systems import case_of, limit_of, slab
 
 TITLE = "time of a step of many contacts over that of hand-written C"

@@ -13,10 +13,10 @@ import xarray as xr
 import stridula as st
 from ratios import must_agree, sized
 from stridula._kernels import layout as at
-from stridula.assembly import assemble
-from stridula.integration.blocks import Blocks, blocks_of
 from stridula.integration.marches import Imposed, March, imposed_on
 from stridula.integration.start import state_at_start
+from stridula.lowering import assemble
+from stridula.lowering.blocks import Blocks, blocks_of
 from stridula.records.state import State
 from stridula.scenarios import load_scenario
 

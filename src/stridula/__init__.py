@@ -84,6 +84,7 @@ _HOME = {
     "acoustics.sensation": ("loudness", "loudness_over_time", "roughness", "sharpness"),
     "acoustics.listening": ("PlayableSound", "listen"),
     "acoustics.wav": ("SoundFile", "read_wav", "write_wav"),
+    "analysis.mobilities": ("mobility",),
     "analysis.stability": ("sliding_stability",),
     "analysis": ("regime",),
     "analysis.record_card": ("RecordCard", "card"),
@@ -106,13 +107,28 @@ _HOME = {
     ),
 }
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
-# Modules that are public as they stand.
-_PUBLIC = ("analysis", "papers", "plot", "scenarios", "studies", "verification")
+# Modules that are public themselves.
+_PUBLIC = (
+    "acoustics",
+    "analysis",
+    "bodies",
+    "connections",
+    "contact",
+    "drives",
+    "histories",
+    "integration",
+    "papers",
+    "plot",
+    "records",
+    "scenarios",
+    "studies",
+    "verification",
+)
 __all__ = ["__version__", *_MODULE]
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public module, or a public name from its home, on first use, so that `import stridula` stays quick."""
+    """Import a public module, or a public name from its module, on first use, so that `import stridula` is fast."""
     if name in _PUBLIC:
         with named_extras():
             return import_module(f".{name}", __name__)

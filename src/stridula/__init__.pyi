@@ -1,8 +1,16 @@
 """Types of the public names, which `__init__.py` imports on first use."""
 
+from . import acoustics as acoustics
 from . import analysis as analysis
+from . import bodies as bodies
+from . import connections as connections
+from . import contact as contact
+from . import drives as drives
+from . import histories as histories
+from . import integration as integration
 from . import papers as papers
 from . import plot as plot
+from . import records as records
 from . import scenarios as scenarios
 from . import studies as studies
 from . import verification as verification
@@ -24,6 +32,7 @@ from .acoustics.wav import SoundFile as SoundFile
 from .acoustics.wav import read_wav as read_wav
 from .acoustics.wav import write_wav as write_wav
 from .analysis import regime as regime
+from .analysis.mobilities import mobility as mobility
 from .analysis.record_card import RecordCard as RecordCard
 from .analysis.record_card import card as card
 from .analysis.stability import sliding_stability as sliding_stability

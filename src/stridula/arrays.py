@@ -1,4 +1,4 @@
-"""Arrays of numbers, as annotations name them."""
+"""Types of arrays for annotations."""
 
 from __future__ import annotations
 
@@ -11,6 +11,6 @@ Array = NDArray[Any]
 
 
 def in_space(vector: Array) -> Array:
-    """Return a vector in the plane with a third component of zero, one in space as it is, shape (3,)."""
+    """Return a vector with three components, shape (3,): one in the plane gets a third of zero."""
     found: Array = np.pad(vector, (0, 3))[:3]
     return found

@@ -1,9 +1,9 @@
-"""What takes long to find, kept on disk from one process to the next; never in the way of what it is kept for.
+"""Cache on disk for results that take long to compute, shared between processes.
 
-In the folder that systems have for what programs can find again: ``stridula`` in ``$XDG_CACHE_HOME`` or ``~/.cache``,
-in ``~/Library/Caches`` on macOS, in ``%LOCALAPPDATA%`` on Windows. ``STRIDULA_CACHE_DIR`` names another folder, or is
-``off``. Files are written whole or not at all, those not asked for longest go when there are too many, and what cannot
-be read or written is found again.
+It lies in the cache folder of the operating system: ``stridula`` in ``$XDG_CACHE_HOME`` or ``~/.cache``, in
+``~/Library/Caches`` on macOS, in ``%LOCALAPPDATA%`` on Windows. ``STRIDULA_CACHE_DIR`` names another folder, or is
+``off``. Files are written whole or not at all, the least recently used ones are deleted when there are too many, and
+results that cannot be read or written are computed again.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from .disk import read, write
 
 FOLDER, OFF = "STRIDULA_CACHE_DIR", "off"
 ENDING = ".kept"
-# Bytes of all files, at most, and of the digest that a file begins with.
+# Most bytes of all files together, and bytes of the digest at the beginning of a file.
 MOST, DIGEST = 500_000_000, 16
 
 
 def folder() -> Path | None:
-    """Return the folder where things are kept, whether there is one yet or not; None if nothing is."""
+    """Return the folder of the cache, whether it exists yet or not; None if the cache is off."""
     chosen = os.environ.get(FOLDER)
     if chosen:
         return None if chosen.lower() == OFF else Path(chosen)
@@ -40,16 +40,16 @@ def folder() -> Path | None:
 
 
 def key(parts: Iterable[bytes]) -> str:
-    """Return the name under which something is kept, by all that decides about it."""
+    """Return the name of an entry: a digest of everything that its content depends on."""
     found = hashlib.blake2b(digest_size=DIGEST)
     for part in parts:
-        # With its length: parts that are cut at another place are others.
+        # With its length, so that the same bytes divided otherwise differ.
         found.update(len(part).to_bytes(8, "little") + part)
     return found.hexdigest()
 
 
 def recall(name: str) -> dict[str, Array] | None:
-    """Return arrays by their names as they were kept; None if they are not there, or not whole."""
+    """Return the arrays of an entry by name; None if it does not exist or is damaged."""
     place = folder()
     if place is None:
         return None
@@ -61,14 +61,14 @@ def recall(name: str) -> dict[str, Array] | None:
     if _digest(content[DIGEST:]) != content[:DIGEST]:
         return None
     with suppress(OSError):
-        # It has been asked for.
+        # Marks it as recently used.
         os.utime(path)
     with np.load(io.BytesIO(content[DIGEST:]), allow_pickle=False) as arrays:
         return dict(arrays)
 
 
 def keep(name: str, arrays: Mapping[str, Array]) -> None:
-    """Keep arrays under a name, if that can be done."""
+    """Store arrays under a name, if possible."""
     place = folder()
     if place is None:
         return
@@ -88,7 +88,7 @@ def _digest(content: bytes) -> bytes:
 
 
 def _make_room(place: Path, most: int) -> None:
-    """Delete what has not been asked for longest, until files have `most` bytes together."""
+    """Delete the least recently used files until the rest have at most `most` bytes together."""
     files = sorted(((path.stat(), path) for path in place.glob(f"*{ENDING}")), key=lambda one: one[0].st_mtime)
     size = sum(found.st_size for found, _ in files)
     for found, path in files:

@@ -1,4 +1,4 @@
-"""What notebooks show of things: a small drawing and a table of facts, in the colours of the notebook."""
+"""Cards for notebooks: a small drawing and a table of facts, in the colours of the notebook."""
 
 from __future__ import annotations
 
@@ -10,30 +10,30 @@ import numpy as np
 
 from .arrays import Array
 
-# Largest width and height of a drawing, the least height, and the room round it [px].
+# Largest width and height of a drawing, its least height, and the margin [px].
 WIDTH, HEIGHT, LOWEST, ROOM = 260.0, 180.0, 24.0, 8.0
-# Seen on light and on dark pages.
+# Visible on light and on dark pages.
 TOUCH = "#e8743b"
 # Elevation above the plane across y and azimuth from z towards x [rad].
 VIEW = (np.pi / 6.0, 7.0 * np.pi / 36.0)
-# Cosine of the angle between two polygons below which the edge between them is drawn, and how many edges at most.
+# Cosine of the angle between two polygons below which the edge between them is drawn, and the most edges drawn.
 CREASE, MOST_EDGES = 0.9, 3000
-# Lines of a list that are shown.
+# Most lines of a list that are shown.
 MOST_LINES = 8
 
 
 @dataclass(frozen=True)
 class Stroke:
-    """Lines drawn alike, or dots.
+    """Lines in the same style, or dots.
 
     Attributes
     ----------
     lines : sequence of ndarray, shape (points, 2)
         Places along each, x to the right and y up, in any unit.
     width : float
-        Their width [px].
+        Width [px].
     opacity : float
-        From 0 to 1.
+        Opacity, from 0 to 1.
     dots : bool
         Whether the places are drawn as dots instead.
     """
@@ -50,9 +50,9 @@ def card(title: str, facts: Mapping[str, str | Sequence[str]], picture: str = ""
     Parameters
     ----------
     title : str
-        Its title.
+        Title.
     facts : mapping
-        What is known, by name, in a line or several; of many lines the first ones are shown.
+        Facts by name, in one line or several; of many lines only the first ones are shown.
     picture : str, optional
         A drawing.
     """
@@ -74,14 +74,14 @@ def _row(name: str, lines: Sequence[str]) -> str:
 
 
 def drawing(strokes: Sequence[Stroke], words: str) -> str:
-    """Return strokes as an SVG to scale, in the colour of the text round it; empty where there is nothing to see.
+    """Return strokes as an SVG to scale, in the colour of the surrounding text; empty where there is nothing to see.
 
     Parameters
     ----------
     strokes : sequence of Stroke
-        What is drawn, the last one on top.
+        Strokes, the last one on top.
     words : str
-        What it shows, for those who hear the page.
+        Description for screen readers.
     """
     lines = [line for stroke in strokes for line in stroke.lines]
     if not lines:
@@ -116,28 +116,28 @@ def _stroke(stroke: Stroke, lines: Sequence[Array]) -> str:
 
 
 def flattened(places: Array) -> Array:
-    """Return places of space as they are seen, y up, shape (..., 2)."""
+    """Return places in space projected onto the view, y up, shape (..., 2)."""
     return np.asarray(places @ _view()[:2].T)
 
 
 def edges_seen(place: Array, polygons: Array, normals: Array) -> Array:
-    """Return the edges that make out a body in space: where it ends for the eye, and where it has a crease.
+    """Return the visible edges of a body in space: its outline in the view, and its creases.
 
-    Edges of polygons that face away are left out; what other bodies hide is not.
+    Edges of polygons that face away are left out; those hidden by other bodies are not.
 
     Parameters
     ----------
     place : ndarray, shape (points, 3)
         Corners of the polygons.
     polygons : ndarray of int, shape (polygons, corners)
-        Corners of each, round its outward normal.
+        Corners of each, counter-clockwise about its outward normal.
     normals : ndarray, shape (polygons, 3)
-        Outward unit normals, zero of polygons without an area.
+        Outward unit normals, zero for polygons without an area.
 
     Returns
     -------
     ndarray, shape (edges, 2, 2)
-        Both ends of each, as they are seen.
+        Both ends of each, projected onto the view.
     """
     ends = np.sort(np.stack([polygons, np.roll(polygons, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     owner = np.repeat(np.arange(len(polygons)), polygons.shape[1])
@@ -164,14 +164,14 @@ def _view() -> Array:
 
 
 def eye_of(view: tuple[float, float]) -> Array:
-    """Return the direction from which the eye looks; y is up."""
+    """Return the direction towards the eye; y is up."""
     elevation, azimuth = view
     across = np.cos(elevation)
     return np.array([across * np.sin(azimuth), np.sin(elevation), across * np.cos(azimuth)])
 
 
 def spoken(number: float, unit: str) -> str:
-    """Return a quantity with a prefix to its unit, such as ``210 GPa``."""
+    """Return a quantity with a prefixed unit, such as ``210 GPa``."""
     for prefix, size in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
         if abs(number) >= size:
             return f"{number / size:.4g} {prefix}{unit}"
@@ -179,6 +179,6 @@ def spoken(number: float, unit: str) -> str:
 
 
 def band(frequencies: Array) -> str:
-    """Return from where to where frequencies [Hz] go, in words."""
+    """Return the range of frequencies [Hz] in words."""
     low, high = (spoken(float(one), "Hz") for one in (frequencies.min(), frequencies.max()))
     return f"at {low}" if low == high else f"from {low} to {high}"

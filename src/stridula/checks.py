@@ -1,4 +1,4 @@
-"""Checks of arguments: each says in one line what was wrong, its value and what is allowed."""
+"""Checks of arguments: messages name in one line the argument, what is allowed and the value."""
 
 from __future__ import annotations
 
@@ -10,37 +10,37 @@ from numbers import Integral, Real
 from typing import Any, TypeVar
 
 T = TypeVar("T")
-# What a contact does, as numbers from 0 on in records.
+# States of a contact, as numbers from 0 on in records.
 STATUS_WORDS = ("separated", "sticking", "sliding")
-# Longest value that a message shows as it is written.
+# Longest value that a message shows in full.
 LONGEST = 80
-# Longest list of names in a message, but for one that is longer.
+# Longest list of names in a message, unless the first name alone is longer.
 LONGEST_LIST = 160
 _UNSAID: Any = object()
 
 
 class ArgumentError(ValueError):
-    """An argument that is refused: ``"<argument> must <allowed>, got <value>"``.
+    """An argument with a value that is not allowed: ``"<argument> must <allowed>, got <value>"``.
 
     Parameters
     ----------
     argument : str
-        Its name.
+        Name of the argument.
     allowed : str
-        What it must do or be, the words after "must".
+        Requirement, the words after "must".
     value : object, optional
-        What was given; left out where there is nothing to show.
+        Given value; left out where there is nothing to show.
     got : object, optional
-        What the message shows in place of the value.
+        Text that the message shows in place of the value.
     where : str, optional
-        Where the argument is, one of several that have it: a prefix of the message.
+        Owner of the argument, where several have it: a prefix of the message.
 
     Attributes
     ----------
     argument, allowed, got, where : str
         As given; `got` is empty where there is nothing to show.
     value : object
-        What was given, None if the message does not say.
+        Given value, None if the message does not show one.
     """
 
     def __init__(self, argument: str, allowed: str, value: Any = _UNSAID, *, got: Any = None, where: str = "") -> None:
@@ -51,16 +51,16 @@ class ArgumentError(ValueError):
         super().__init__(f"{where}: {words}" if where else words)
 
     def renamed(self, argument: str) -> ArgumentError:
-        """Return the same under another name: that of an option, a key or the argument of another function."""
+        """Return the same error under another name: that of an option, a key or the argument of another function."""
         return ArgumentError(argument, self.allowed, self.value, got=self.got, where=self.where)
 
     def inside(self, where: str) -> ArgumentError:
-        """Return the same, of one of several things that have such an argument."""
+        """Return the same error with its owner, one of several that have such an argument."""
         inner = f"{where}: {self.where}" if self.where else where
         return ArgumentError(self.argument, self.allowed, self.value, got=self.got, where=inner)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # A value that another process may not be able to read goes as its words.
+        # A value that another process may not be able to read is passed on as text.
         value = self.value if isinstance(self.value, (str, Real, type(None))) else self.got
         return _argument_error, (self.argument, self.allowed, value, self.got, self.where)
 
@@ -71,7 +71,7 @@ def _argument_error(argument: str, allowed: str, value: Any, got: str, where: st
 
 def finite(name: str, value: Any) -> float:
     """Return `value` as a float if it is a finite real number."""
-    # Asking whether a thing is a Real takes ten times as long.
+    # The check for a Real takes ten times as long.
     if type(value) is not float and (isinstance(value, bool) or not isinstance(value, Real)):
         raise ArgumentError(name, "be a number", value)
     if not _is_finite(value):
@@ -133,7 +133,7 @@ def choice(name: str, value: Any, allowed: Sequence[str]) -> str:
 
 
 def one_or_each(name: str, value: Any, check: Callable[[str, Any], T], size: int | None = None) -> T | tuple[T, ...]:
-    """Return `value` as `check` does, or each of a sequence of them, which holds `size` if that is given."""
+    """Return `value` as `check` does, or each of a sequence of values, of length `size` if that is given."""
     if isinstance(value, str) or not (hasattr(value, "__len__") and hasattr(value, "__getitem__")):
         return check(name, value)
     if size is not None and len(value) != size:
@@ -149,7 +149,7 @@ def instance(name: str, value: Any, kinds: type | tuple[type, ...]) -> None:
 
 
 def by_key(name: str, value: Any) -> Mapping[str, Any]:
-    """Return values by key, none of them for None."""
+    """Return values by key, an empty mapping for None."""
     if value is None:
         return {}
     if not isinstance(value, Mapping):
@@ -161,11 +161,11 @@ def by_key(name: str, value: Any) -> Mapping[str, Any]:
 
 
 def brief(value: Any) -> str:
-    """Return a value as it is written, a long text cut, or its kind and its name where that would be long."""
+    """Return the repr of a value; a long text cut, any other long value as its kind and name."""
     try:
         text = repr(value)
     except Exception:
-        # A whole number of 5000 digits has no text, and what others wrote may raise anything.
+        # A whole number of 5000 digits has no repr, and the repr of other classes may raise anything.
         text = ""
     if text and "\n" not in text and len(text) <= LONGEST:
         return text
@@ -176,17 +176,17 @@ def brief(value: Any) -> str:
 
 
 def at_most(limit: float, digits: int = 6) -> str:
-    """Return a limit in few digits, not above it: what must be below or at most that is so."""
+    """Return a limit in few digits, rounded down: a value that satisfies it also satisfies the limit."""
     return _rounded(limit, digits, ROUND_FLOOR)
 
 
 def at_least(limit: float, digits: int = 6) -> str:
-    """Return a limit in few digits, not below it: what must be above or at least that is so."""
+    """Return a limit in few digits, rounded up: a value that satisfies it also satisfies the limit."""
     return _rounded(limit, digits, ROUND_CEILING)
 
 
 def bounds(low: float, high: float, digits: int = 6) -> tuple[str, str]:
-    """Return the ends of a range in few digits, rounded inwards; in more where that would leave nothing between."""
+    """Return the ends of a range in few digits, rounded inwards; in more digits where nothing would be left."""
     for enough in (digits, 9, 12):
         least, most = at_least(low, enough), at_most(high, enough)
         if float(least) < float(most):
@@ -195,13 +195,13 @@ def bounds(low: float, high: float, digits: int = 6) -> tuple[str, str]:
 
 
 def _rounded(limit: float, digits: int, way: str) -> str:
-    # The shortest decimal that is the number, so that 0.1 is 0.1 either way.
+    # Rounds the shortest decimal of the number, so that 0.1 stays 0.1 either way.
     near = Context(prec=digits, rounding=way).plus(Decimal(repr(float(limit))))
     return f"{float(near):.{digits}g}"
 
 
 def listed(words: Iterable[str], joint: str = ", ", longest: int = LONGEST_LIST) -> str:
-    """Return the first few of many words, and how many others there are; ``none`` if there is none."""
+    """Return the first few of many words and the number of the others; ``none`` if there is none."""
     every = list(words) or ["none"]
     shown = every[:1]
     for word in every[1:]:
@@ -222,7 +222,7 @@ def _article(word: str) -> str:
 
 
 def suggestion(word: Any, known: Sequence[str]) -> str:
-    """Return ``"; did you mean 'x'?"`` for the known word nearest to `word`, or nothing; a long text is no word."""
+    """Return ``"; did you mean 'x'?"`` for the known word nearest to `word`, or nothing; long texts are ignored."""
     nearest = get_close_matches(word, known, n=1, cutoff=0.6) if _is_word(word) else []
     return f"; did you mean {nearest[0]!r}?" if nearest else ""
 
@@ -232,6 +232,6 @@ def _is_word(value: Any) -> bool:
 
 
 def in_one_line(error: BaseException, longest: int = LONGEST_LIST) -> str:
-    """Return what an exception says in one line, cut if it is long; its kind where it says nothing."""
+    """Return the message of an exception in one line, cut if it is long; its kind if the message is empty."""
     words = " ".join(str(error).split()) or type(error).__name__
     return words if len(words) <= longest else f"{words[: longest - 3]}..."

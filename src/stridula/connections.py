@@ -1,4 +1,4 @@
-"""What joins bodies for good: springs and dashpots."""
+"""Connections between bodies: springs and dashpots."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from .histories import HISTORIES, Constant, History
 class Spring:
     """A massless linear spring between two points, or between a point and the ground.
 
-    Its force is the stiffness times what the displacement of the first end against the other one lacks to the offset:
-    without one it is unstressed at the start, with one it presses as an actuator does, or its support moves.
+    Its force is the stiffness times the offset minus the displacement of the first end relative to the other: without
+    an offset it is unstressed at the start, with one it acts as an actuator or as a moving support.
 
     Parameters
     ----------
@@ -30,8 +30,8 @@ class Spring:
     direction : {"x", "y", "z"} or sequence of float, optional
         World direction along which it acts: x, y, z, or its three components, of any length.
     offset : float, optional
-        Displacement of the first end against the other one at which it carries no force [m]; by how much the ground
-        moves where that is the other end.
+        Displacement of the first end relative to the other at which it carries no force [m]; the displacement of the
+        ground where that is the other end.
     history : Constant, Ramp, Harmonic or Sampled, optional
         Factor on the offset over time.
     """
@@ -51,7 +51,7 @@ class Spring:
 
     @property
     def moved_by(self) -> float:
-        """Force on the first end with both at rest where they were [N], times the history."""
+        """Force on the first end with both ends undisplaced [N], times the history."""
         return self.stiffness * self.offset
 
     @property
@@ -79,8 +79,8 @@ class Dashpot:
     direction : {"x", "y", "z"} or sequence of float, optional
         World direction along which it acts: x, y, z, or its three components, of any length.
     velocity : float, optional
-        Velocity of the first end against the other one at which it carries no force [m/s]; that of the ground where
-        that is the other end.
+        Velocity of the first end relative to the other at which it carries no force [m/s]; the velocity of the ground
+        where that is the other end.
     history : Constant, Ramp, Harmonic or Sampled, optional
         Factor on the velocity over time.
     """
@@ -123,7 +123,7 @@ def unit(connection: Connection) -> Array:
 
 
 def pushes(connection: Connection) -> list[tuple[History, BodyPoint, Array]]:
-    """Return the forces of a connection that is moved, as those of drives: history, point, and x, y and z [N]."""
+    """Return the forces of a connection with an offset or a velocity: history, point, and x, y and z [N]."""
     if not connection.moved_by:
         return []
     force = connection.moved_by * unit(connection)
@@ -140,7 +140,7 @@ def _along(connection: Connection) -> str:
 
 
 def ends(connection: Connection) -> tuple[BodyPoint, ...]:
-    """Return the points that a connection joins, the ground left out."""
+    """Return the points that a connection joins, without the ground."""
     return (connection.first,) if connection.second is None else (connection.first, connection.second)
 
 

@@ -1,4 +1,4 @@
-"""What the fields of a description may be: declared in `Annotated` beside each, checked here, read elsewhere."""
+"""Kinds of fields of a description: declared in `Annotated` beside each, checked here, read elsewhere."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class Number:
     unit : str
         SI unit, "1" for a ratio.
     above, least, below : float or None
-        Strictly above, from here on, strictly below; no bound where None.
+        Exclusive lower bound, inclusive lower bound, exclusive upper bound; no bound where None.
     meaning : str
-        What `below` is, for messages.
+        Meaning of `below`, for messages.
     """
 
     unit: str = "1"
@@ -54,7 +54,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Choice:
-    """A word of a choice.
+    """One of several words.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class Each:
     Attributes
     ----------
     one : Number
-        What each is.
+        Kind of each number.
     """
 
     one: Number
@@ -95,19 +95,19 @@ class OneOrEach:
     Attributes
     ----------
     one : Number or Choice
-        What each is.
+        Kind of each entry.
     """
 
     one: Number | Choice
 
     def check(self, name: str, value: Any) -> Any:
-        """Return one, or a sequence as a tuple, if each is what it may be."""
+        """Return one, or a sequence as a tuple, if each is allowed."""
         return one_or_each(name, value, self.one.check)
 
 
 @dataclass(frozen=True)
 class NumberOrWord:
-    """A whole number from 0 on, or a word of a choice.
+    """A whole number from 0 on, or one of several words.
 
     Attributes
     ----------
@@ -124,12 +124,12 @@ class NumberOrWord:
 
 @dataclass(frozen=True)
 class Way:
-    """A direction: a word for one of the world's axes, or its three components, of any length.
+    """A direction: a word for one of the world's axes, or three components, of any length.
 
     Attributes
     ----------
     words : tuple of str
-        The words, of which a description may have more.
+        The words; a description may have more.
     """
 
     words: tuple[str, ...] = ("x", "y", "z")
@@ -167,7 +167,7 @@ class Whole:
     least: int = 1
 
     def check(self, name: str, value: Any) -> int:
-        """Return a value as an int if it is such a number."""
+        """Return a value as an int if it is a whole number of at least `least`."""
         return count(name, value, low=self.least)
 
 
@@ -183,12 +183,12 @@ class Text:
 
 @dataclass(frozen=True)
 class Own:
-    """What a description checks itself.
+    """A field that the description checks itself.
 
     Attributes
     ----------
     what : str
-        What it is, for those who read it.
+        Name of its kind, for readers.
     """
 
     what: str
@@ -199,24 +199,24 @@ class Own:
 
 
 Kind = Number | Choice | Each | OneOrEach | NumberOrWord | Way | Whole | Text | Own
-# What is kept as it was checked: sequences as tuples, numbers of NumPy as Python's.
+# Kinds whose checked value replaces the given one: sequences become tuples, NumPy numbers Python numbers.
 _KEPT = (Each, OneOrEach, NumberOrWord, Way)
 
 
 @dataclass(frozen=True)
 class Declared:
-    """A field of a description, as it is declared.
+    """A declared field of a description.
 
     Attributes
     ----------
     name : str
-        Its name.
+        Name.
     kind : Number, Choice, Each, OneOrEach, NumberOrWord, Way, Whole, Text or Own
-        What it may be.
+        Allowed values.
     is_optional : bool
-        Whether it may be None, too.
+        Whether it may also be None.
     default : object
-        Its default, `dataclasses.MISSING` if it must be given.
+        Default, `dataclasses.MISSING` if it must be given.
     """
 
     name: str
@@ -227,7 +227,7 @@ class Declared:
 
 @cache
 def declared(description: type) -> tuple[Declared, ...]:
-    """Return the fields of a dataclass that are declared, in order."""
+    """Return the declared fields of a dataclass, in order."""
     hints = get_type_hints(description, include_extras=True)
     found = []
     for field in dataclasses.fields(description):
@@ -239,7 +239,7 @@ def declared(description: type) -> tuple[Declared, ...]:
 
 
 def check_declared(record: object) -> None:
-    """Raise ArgumentError at the first declared field of a record that is not what it may be; make lists tuples."""
+    """Raise ArgumentError at the first declared field of a record that is not allowed; make lists tuples."""
     description: Any = type(record)
     for field in declared(description):
         value = getattr(record, field.name)
@@ -250,7 +250,7 @@ def check_declared(record: object) -> None:
 
 
 def texts(description: type) -> dict[str, str]:
-    """Return what each parameter of a class is, in a few words: the beginning of its entry in the docstring.
+    """Return a short description of each parameter of a class: the beginning of its entry in the docstring.
 
     Up to a semicolon or the end of the first sentence, the unit last.
     """
@@ -259,7 +259,7 @@ def texts(description: type) -> dict[str, str]:
     _, _, parameters = (inspect.getdoc(description) or "").partition("Parameters\n----------\n")
     for line in parameters.splitlines():
         if line.startswith("---"):
-            # What was taken for text was the title of the next section.
+            # The line before was the title of the next section.
             break
         if not line.startswith(" ") and " : " in line:
             names = line.partition(" : ")[0].split(", ")
@@ -277,7 +277,7 @@ def _in_a_few_words(text: str) -> str:
     return words if _NAMED_AFTER.match(words) else words[:1].lower() + words[1:]
 
 
-# Numbers that several descriptions have.
+# Numbers that several descriptions share.
 Ratio = Annotated[float, Number()]
 PositiveRatio = Annotated[float, Number(above=0.0)]
 DAMPING_RATIO = Number(least=0.0, below=1.0, meaning="critical")

@@ -1,4 +1,4 @@
-"""Files read and written: whole or not at all, and what fails said in one line."""
+"""Reading and writing of files: whole or not at all, with errors in one line."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ except ImportError:
     # Windows has none.
     fcntl = None  # type: ignore[assignment]
 
-# Longest name of a file that a message shows as it is.
+# Longest name of a file that a message shows in full.
 LONGEST_NAME = 200
 LEFT_OVER = re.compile(r"\.stridula-(\d+)-\d+\.part")
 
 
 def read(path: str | Path, size: int = -1) -> bytes:
-    """Return what a file holds, its first `size` bytes if given."""
+    """Return the content of a file, or its first `size` bytes."""
     check_path("path", path)
     with one_line(f"cannot read {named(path)}"), open(path, "rb") as file:
         return file.read(size)
 
 
 def check_path(name: str, path: object) -> None:
-    """Raise ValueError unless `path` names a file: a number would be taken for an open one."""
+    """Raise ValueError unless `path` is the name of a file: a number would be taken for an open file."""
     text = os.fspath(path) if isinstance(path, (str, os.PathLike)) else None
     if not isinstance(text, str) or "\0" in text:
         got = repr(path) if isinstance(path, (str, float)) else f"a {type(path).__name__}"
@@ -38,7 +38,7 @@ def check_path(name: str, path: object) -> None:
 
 
 def is_there(path: str | os.PathLike[str]) -> bool:
-    """Return whether there is something at `path`; nothing is at a name that the system does not take."""
+    """Return whether `path` exists; False for a name that the operating system refuses."""
     try:
         return os.path.exists(path)
     except (OSError, ValueError):
@@ -46,13 +46,13 @@ def is_there(path: str | os.PathLike[str]) -> bool:
 
 
 def named(path: str | os.PathLike[str]) -> str:
-    """Return the name of a file as it goes into a message, without its beginning where it is long."""
+    """Return the name of a file for messages, without its beginning where it is long."""
     text = str(path)
     return repr(text) if len(text) <= LONGEST_NAME else f"'...{text[-LONGEST_NAME:]}'"
 
 
 def check_writable(path: str | Path) -> None:
-    """Raise OSError if no file can be written at `path`; leave everything as it is."""
+    """Raise OSError if no file can be written at `path`; change nothing on disk."""
     check_path("path", path)
     target = _target(path)
     cannot = f"cannot write {named(path)}"
@@ -71,7 +71,7 @@ def check_writable(path: str | Path) -> None:
 
 
 def write(path: str | os.PathLike[str], content: bytes | memoryview) -> None:
-    """Write a file beside its place under a temporary name, then move it there; a device is written directly."""
+    """Write a file under a temporary name in the same folder, then rename it; write directly to a device."""
     check_path("path", path)
     target = _target(path)
     with one_line(f"cannot write {named(path)}"):
@@ -103,27 +103,27 @@ def _target(path: str | os.PathLike[str]) -> Path:
 
 
 def _sweep(folder: Path) -> None:
-    """Remove what processes left that were killed while they wrote; what cannot be removed stays."""
+    """Remove temporary files of processes that were killed while writing, where that is possible."""
     with suppress(OSError):
         for name in os.listdir(folder):
             found = LEFT_OVER.fullmatch(name)
             if found and not _is_running(int(found[1])):
                 with suppress(OSError), open(folder / name, "rb") as file:
-                    # Where machines share a folder, the process may run on another one.
+                    # Where machines share a folder, the process may run on another machine.
                     _lock(file)
                     (folder / name).unlink()
 
 
 def _lock(file: IO[bytes]) -> None:
-    """Lock a file until it is closed; raise OSError if another process has."""
+    """Lock a file until it is closed; raise OSError if another process holds the lock."""
     if fcntl is not None:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def _is_running(process: int) -> bool:
-    """Return whether a process is there, as far as can be told: one that is not ours is."""
+    """Return whether a process is running; True for processes of other users."""
     if os.name == "nt":
-        # There a signal of 0 would end it.
+        # On Windows a signal of 0 would end it.
         return True
     try:
         os.kill(process, 0)
@@ -140,7 +140,7 @@ def _beside(target: Path) -> Path:
 
 @contextmanager
 def one_line(doing: str) -> Iterator[None]:
-    """Turn an OSError into one of the same kind that says in one line what failed and why."""
+    """Turn an OSError into one of the same kind with a message of one line: the action and the reason."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""What pushes: forces, an imposed velocity, gravity; and how a system starts."""
+"""Drives: forces, an imposed velocity, gravity; and the initial conditions of a system."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ MOST_UNSTABLE = "most unstable"
 
 
 class Drive:
-    """What every drive says of itself: a frozen dataclass with range and unit beside each number.
+    """Base class of drives: a frozen dataclass with range and unit beside each number.
 
     Attributes
     ----------
     kind : str
-        Its name in scenarios.
+        Name in scenarios.
     place : str
         Where it acts: a ``body``, a ``point`` of one, the ``root`` of one, or empty for the whole system.
     """
@@ -63,17 +63,17 @@ class Drive:
 
     @property
     def uniform_velocity(self) -> Array | None:
-        """Velocity of its body at the start, along world x, y and z [m/s]."""
+        """Velocity of the body at the start, along world x, y and z [m/s]."""
         return None
 
     @property
     def vectors(self) -> dict[str, Sequence[float]]:
-        """Displacement and velocity of every degree of freedom of its body at the start, by name."""
+        """Displacement and velocity of every degree of freedom of the body at the start, by name."""
         return {}
 
     @property
     def starts_motion(self) -> bool:
-        """Whether on its account bodies are away from their equilibrium at the start."""
+        """Whether it moves bodies away from their equilibrium at the start."""
         moved = self.uniform_velocity
         return any(np.any(values) for values in [*self.vectors.values(), () if moved is None else moved])
 
@@ -85,7 +85,7 @@ class Drive:
 
 @dataclass(frozen=True)
 class Force(Drive):
-    """A force at a point of a body, the sum of its components, times its history.
+    """A force at a point of a body: the sum of its components times its history.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class Force(Drive):
     axial : float, optional
         Component along the body's axis [N], tip to root: a push towards the track is negative.
     transverse : float, optional
-        Component along the body's transverse direction [N], of a slider (cos angle, -sin angle).
+        Component along the body's transverse direction [N]; for a slider (cos angle, -sin angle).
     x : float, optional
         Component along world x [N].
     y : float, optional
@@ -203,7 +203,7 @@ class Gravity(Drive):
     acceleration : float, optional
         Acceleration of free fall [m/s²].
     direction : sequence of float, optional
-        World components along x, y and z of what points downwards, of any length; -y if left out.
+        World components along x, y and z of the downward direction, of any length; -y if left out.
     """
 
     kind: ClassVar[str] = "gravity"
@@ -240,7 +240,7 @@ class InitialVelocity(Drive):
     y : float, optional
         Velocity along world y [m/s].
     z : float, optional
-        Velocity along world z [m/s], of a body in space.
+        Velocity along world z [m/s], for a body in space.
     """
 
     kind: ClassVar[str] = "initial velocity"
@@ -288,8 +288,8 @@ class InitialState(Drive):
     body : PointMass, ReducedBody or RigidBody
         The body.
     displacement, velocity : sequence of float, optional
-        One entry per degree of freedom [m, m/s], along x and y of a PointMass, along, then about x, y and z of a
-        RigidBody; zero if left out. What modes above the body's cutoff would carry is left out.
+        One entry per degree of freedom [m, m/s]: along x and y for a PointMass; along, then about x, y and z for a
+        RigidBody; zero if left out. The share of modes above the body's cutoff is left out.
     """
 
     kind: ClassVar[str] = "initial state"
@@ -316,12 +316,12 @@ class InitialState(Drive):
 
     @property
     def acted_on(self) -> Any:
-        """Body that starts so."""
+        """Body that starts in this state."""
         return self.body
 
     @property
     def vectors(self) -> dict[str, Sequence[float]]:
-        """What is given of displacement and velocity."""
+        """The given ones of displacement and velocity."""
         given = {"displacement": self.displacement, "velocity": self.velocity}
         return {name: values for name, values in given.items() if values is not None}
 
@@ -331,26 +331,26 @@ class InitialState(Drive):
 
 @dataclass(frozen=True)
 class InitialEquilibrium(Drive):
-    """The whole system starts in equilibrium, as it is or with a mode of its vibration on top.
+    """The whole system starts in equilibrium, alone or with a mode of vibration on top.
 
-    The equilibrium is the one of `sliding_stability` under the drives as they are at the start: bodies are deflected,
-    move as a whole as belts, tracks and `velocity` have them move, and laws of friction have the state of steady
-    sliding. A slider that a force accelerates starts at rest, deflected as it is while it accelerates, unless
-    `velocity` is given. Other initial displacements and velocities are added.
+    The equilibrium is that of `sliding_stability` under the drives at the start: bodies are deflected and move as a
+    whole as belts, tracks and `velocity` prescribe, and friction laws are in the state of steady sliding. A slider
+    that a force accelerates starts at rest, deflected as during the acceleration, unless `velocity` is given. Other
+    initial displacements and velocities are added.
 
     Parameters
     ----------
     status : str or sequence of str, optional
-        Separated, sticking or sliding, one for all contacts or a list with one for each, all slide if left out.
+        Separated, sticking or sliding, one for all contacts or a list with one for each; all slide if left out.
     velocity : float or sequence of float, optional
         Slip velocity at the start where nothing prescribes it [m/s], one for all contacts or a list with one for each;
-        0 for those that are prescribed. Its sign is the sense of sliding.
+        0 for contacts where it is prescribed. Its sign is the sense of sliding.
     mode : int or "most unstable", optional
-        Mode of vibration on top: its number from 0 on, by rising frequency, or most unstable, none if left out. The
-        number is that of `sliding_stability` at time 0; most unstable is the one with the largest growth rate among
-        those that vibrate, though it be below 0. Of more than 600 degrees of freedom it is among the lowest 100.
+        Mode of vibration on top: its number from 0 on, by rising frequency, or most unstable; none if left out. The
+        number is that of `sliding_stability` at time 0; most unstable is the mode with the largest growth rate among
+        those that vibrate, even if it is negative. With more than 600 degrees of freedom it is among the lowest 100.
     amplitude : float, optional
-        Largest displacement of a contact point in that mode [m]; of the tips and of the points of the tracks that they
+        Largest displacement of a contact point in that mode [m]; among the tips and the points of the tracks that they
         touch, along x or along y.
     phase : float, optional
         Phase of that displacement at the start [rad]; at 0 it is at its positive peak, at pi/2 it falls through zero.
@@ -358,7 +358,7 @@ class InitialEquilibrium(Drive):
     Raises
     ------
     ValueError
-        If an argument is out of its range. Where there is no such equilibrium a run says so.
+        If an argument is out of its range. A run raises it if there is no such equilibrium.
     """
 
     kind: ClassVar[str] = "initial equilibrium"
@@ -373,11 +373,11 @@ class InitialEquilibrium(Drive):
         if self.mode is not None:
             positive("amplitude", self.amplitude)
         elif self.amplitude:
-            raise ArgumentError("amplitude", "be 0 without a mode that has it", self.amplitude)
+            raise ArgumentError("amplitude", "be 0 without a mode", self.amplitude)
 
     @property
     def starts_motion(self) -> bool:
-        """Whether there is a mode of vibration on top."""
+        """Whether a mode of vibration is added."""
         return self.mode is not None
 
     @property

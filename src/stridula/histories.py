@@ -1,4 +1,4 @@
-"""How a drive's amplitude goes in time: a factor on its stated value, its integral and the integral of that."""
+"""Amplitude of a drive over time: a factor on its stated value, its integral and its double integral."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .arrays import Array
 from .checks import ArgumentError, brief, finite
 from .declared import Angle, Each, Frequency, Number, Ratio, Time, check_declared
 
-# Share of a time within which it is that of a jump: a step is a whole division of it only up to rounding.
+# Relative distance within which a time counts as that of a jump: steps divide a time exactly only up to rounding.
 ROUND_OFF = 1e-12
 
 
@@ -34,7 +34,7 @@ class History(Protocol):
 
     @property
     def settled(self) -> float | None:
-        """Time [s] from which it no longer varies, None if it always does."""
+        """Time [s] from which it is constant, None if it always varies."""
         ...
 
     kind: ClassVar[str]
@@ -48,7 +48,7 @@ class Constant:
 
     @property
     def settled(self) -> float:
-        """Time [s] from which it no longer varies: 0."""
+        """Time [s] from which it is constant: 0."""
         return 0.0
 
     def factor(self, time: Array) -> Array:
@@ -66,12 +66,12 @@ class Constant:
 
 @dataclass(frozen=True)
 class Ramp:
-    """A straight rise from zero to the stated value, which then stays.
+    """A linear rise from zero to the stated value, which then stays constant.
 
     Parameters
     ----------
     duration : float
-        Length of the straight rise from zero [s].
+        Duration of the linear rise from zero [s].
     """
 
     kind: ClassVar[str] = "ramp"
@@ -82,7 +82,7 @@ class Ramp:
 
     @property
     def settled(self) -> float:
-        """Time [s] from which it no longer varies: the end of the rise."""
+        """Time [s] from which it is constant: the end of the rise."""
         return self.duration
 
     def factor(self, time: Array) -> Array:
@@ -127,7 +127,7 @@ class Harmonic:
 
     @property
     def settled(self) -> float | None:
-        """None, since it always varies, unless its amplitude is 0."""
+        """None, since it always varies; 0 if its amplitude is 0."""
         return None if self.amplitude else 0.0
 
     def factor(self, time: Array) -> Array:
@@ -140,7 +140,7 @@ class Harmonic:
         return self.mean * time + self.amplitude * swing
 
     def second_integral(self, time: Array) -> Array:
-        """Return the integral of that: the sine leaves a drift behind unless it starts as a cosine."""
+        """Return the integral of the integral: the sine leaves a drift unless it starts as a cosine."""
         angular = 2.0 * np.pi * self.frequency
         swing = (angular * time * np.cos(self.phase) - np.sin(self._angle(time)) + np.sin(self.phase)) / angular**2
         return np.asarray(self.mean * time**2 / 2.0 + self.amplitude * swing)
@@ -151,15 +151,15 @@ class Harmonic:
 
 @dataclass(frozen=True)
 class Sampled:
-    """Any history given at points in time, straight between them, level before the first and after the last.
+    """A history given at points in time, linear between them, constant before the first and after the last.
 
-    Two points at the same time are a jump, from the first to the second. At that very time the factor is their mean, so
-    that a load that is taken at the steps gives the impulse that it should.
+    Two points at the same time are a jump, from the first to the second. At exactly that time the factor is their mean,
+    so that a load sampled at the steps gives the right impulse.
 
     Parameters
     ----------
     time : tuple of float
-        Times [s], rising from 0 on, the same twice at a jump, but not 0.
+        Times [s], rising from 0 on; the same twice at a jump, which must be above 0.
     value : tuple of float
         Factors at those times [1].
     """
@@ -199,11 +199,11 @@ class Sampled:
 
     @property
     def settled(self) -> float:
-        """Time [s] after which it no longer varies: its last."""
+        """Time [s] after which it is constant: the last one."""
         return self.time[-1]
 
     def factor(self, time: Array) -> Array:
-        """Return the interpolated value, at a jump the mean of its two."""
+        """Return the interpolated value; at a jump the mean of both values."""
         values = np.interp(time, self.time, self.value)
         times, means = self._jumps
         if times.size:
@@ -233,7 +233,7 @@ class Sampled:
 
     @cached_property
     def _sums(self) -> tuple[Array, Array, Array, Array]:
-        """Return the points from 0 on, with the integrals up to each."""
+        """Return the points from 0 on with the integrals up to each."""
         late = self.time[0] > 0.0
         knots = np.array([0.0, *self.time] if late else self.time)
         values = np.array([self.value[0], *self.value] if late else self.value)
@@ -243,7 +243,7 @@ class Sampled:
         return knots, values, areas, np.concatenate([[0.0], np.cumsum(grown)])
 
     def _piece(self, knots: Array, time: Array) -> tuple[Array, Array, Array]:
-        """Return the last point before each time, how long ago it was and the value now, after a jump the second."""
+        """Return the last point before each time, the time since then and the value now; after a jump the second."""
         piece = np.clip(np.searchsorted(knots, time, side="right") - 1, 0, knots.size - 1)
         return piece, time - knots[piece], np.interp(time, self.time, self.value)
 

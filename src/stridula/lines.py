@@ -1,8 +1,8 @@
-"""Bodies in the plane as lines, or as points where no more is known of them: where they are, how modes move them."""
+"""Bodies in the plane as lines, or as points if they have no line: their places and mode shapes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,17 +24,17 @@ class Line:
     name : str
         Name of the body.
     along : ndarray, shape (points,)
-        Abscissas of its points on the body [m]: first those of the line in their order, then others.
+        Abscissas of its points on the body [m]: first those of the line in order, then others.
     place : ndarray, shape (points, 2)
         World places at rest [m].
     shapes : ndarray, shape (points, 2, modes)
         World displacement of each point for unit modes [kg^(-1/2)].
     count : int
-        How many of the points make the line.
+        Number of points that make the line.
     rows : mapping
-        Which of the points is at a position of the body, for those where it touches or is joined.
+        Number of the point at a position of the body, for positions in contact or joined.
     is_held : bool
-        Whether it also moves along x as its imposed velocity says.
+        Whether it also moves along x by its imposed velocity.
     is_cut : bool
         Whether it is the cut through a plate.
     """
@@ -62,9 +62,9 @@ class Touch:
     contact : PointContact
         The contact.
     tip : tuple of int
-        Number of the line of its tip, and of the tip among its points.
+        Number of the line of its tip, and number of the tip among its points.
     touched : tuple of int or None
-        The same of the point that it touches at rest, None of a rigid track.
+        The same for the point that it touches at rest, None for a rigid track.
     """
 
     contact: PointContact
@@ -73,13 +73,13 @@ class Touch:
 
     @property
     def fixed(self) -> tuple[int, int] | None:
-        """The point that it touches wherever the tip goes, None of a track along which the tip slides."""
+        """The point that it touches wherever the tip goes, None for a track along which the tip slides."""
         return self.touched if self.contact.path_body is None else None
 
 
 @dataclass(frozen=True, eq=False)
 class _Joint:
-    """Two points of which the first is away from the second at rest [m]; away from the origin without a second."""
+    """Two points and the offset at rest of the first from the second, or from the origin without a second [m]."""
 
     first: BodyPoint
     second: BodyPoint | None
@@ -95,7 +95,7 @@ class Outline:
     body : object
         The body.
     place : ndarray, shape (2,)
-        Where the abscissa 0 of a line is, or a point of a body that has no line [m].
+        Place of the abscissa 0 of a line, or of the point if the body has no line [m].
     ends : ndarray, shape (points, 2)
         World places of both ends of a line, or of the point [m].
     """
@@ -106,9 +106,9 @@ class Outline:
 
 
 def outlines_of(system: Any) -> tuple[list[Outline], Array]:
-    """Return where the lines and the points of a system in the plane are, and its tips [m], shape (contacts, 2).
+    """Return the places of the lines and points of a system in the plane, and of its tips [m], shape (contacts, 2).
 
-    As `lines_of` has them, without looking for modes.
+    The same as in `lines_of`, without a search for modes.
     """
     origins = _origins(list(_joints(system)))
     outlines = []
@@ -120,11 +120,25 @@ def outlines_of(system: Any) -> tuple[list[Outline], Array]:
     return outlines, np.array(tips)
 
 
-def lines_of(system: Any) -> tuple[list[Line], list[Touch]]:
-    """Return the lines and the points of a system in the plane, and where they touch.
+def places_in(system: Any) -> Callable[[BodyPoint], Array | None]:
+    """Return what says where a point of a system in the plane is at rest [m], shape (2,), as `lines_of` has it.
 
-    The track of the first contact is where it says itself, along x, all others are where contacts and connections have
-    them. Bodies that have no line are points, each where it touches another body, or is joined to one.
+    None of a point that touches nothing, is joined to nothing and lies on no line.
+    """
+    origins = _origins(list(_joints(system)))
+
+    def place(point: BodyPoint) -> Array | None:
+        origin = origins.get(_thing(point))
+        return None if origin is None else np.asarray(origin + _offset(point))
+
+    return place
+
+
+def lines_of(system: Any) -> tuple[list[Line], list[Touch]]:
+    """Return the lines and points of a system in the plane, and the contacts between them.
+
+    The track of the first contact is where it is defined, along x; all others are where contacts and connections put
+    them. Bodies without a line are points, one for each place where they touch another body or are joined to one.
 
     Raises
     ------
@@ -159,7 +173,7 @@ def check_in_plane(system: Any) -> None:
 
 
 def _touched(contact: PointContact) -> BodyPoint | None:
-    """Return the point that a contact touches at rest, None of a rigid track."""
+    """Return the point that a contact touches at rest, None for a rigid track."""
     return contact.touched_point if contact.path_body is None else BodyPoint(contact.path_body, contact.at)
 
 
@@ -174,28 +188,28 @@ def _joints(system: Any) -> Iterator[_Joint]:
 
 
 def _thing(point: BodyPoint) -> Any:
-    """Return what is drawn of a point's body: the body itself where it has a line, else the point."""
+    """Return the thing drawn for a point: its body if that has a line, else the point."""
     return point.body if hasattr(point.body, "drawn_places") else point
 
 
 def _abscissa(point: BodyPoint) -> float:
-    """Return how far along its body's line a point is [m]."""
+    """Return the abscissa of a point on the line of its body [m]."""
     body: Any = point.body
     position: Any = point.position
     return float(body.abscissa(position) if hasattr(body, "abscissa") else position)
 
 
 def _offset(point: BodyPoint) -> Array:
-    """Return where a point is on what is drawn of its body [m]."""
+    """Return the place of a point relative to the drawn thing that it belongs to [m]."""
     return _abscissa(point) * point.body.axes[0] if _thing(point) is point.body else np.zeros(2)
 
 
 def _origins(joints: list[_Joint]) -> dict[Any, Array]:
-    """Return where everything is that is drawn [m]."""
+    """Return the places of all drawn things [m]."""
     found: dict[Any, Array] = {}
     left = list(joints)
     while left:
-        # What is in no known place yet begins anew, where it would be alone.
+        # A group that is joined to nothing placed so far starts where it would be alone.
         known = (
             k
             for k, one in enumerate(left)
@@ -213,7 +227,7 @@ def _origins(joints: list[_Joint]) -> dict[Any, Array]:
 
 
 def _line(thing: Any, origin: Array, points: list[BodyPoint], system: Any) -> Line:
-    """Return what is drawn of a body, or a point alone, with its points that touch or are joined."""
+    """Return the line of a body, or a point alone, with its points in contact or joined."""
     is_line = hasattr(thing, "drawn_places")
     body = thing if is_line else thing.body
     drawn = thing.drawn_places.tolist() if is_line else []
@@ -222,7 +236,7 @@ def _line(thing: Any, origin: Array, points: list[BodyPoint], system: Any) -> Li
     held = system.is_held(body)
     shapes = np.array([body.trace(position, held) for position in (*drawn, *(point.position for point in ours))])
     if any(contact.path_body == body for contact in system.contacts):
-        # A tip is where it is along its track, whatever the track does along itself.
+        # The place of a tip along its track does not depend on the track's motion along itself.
         shapes[:, 0] = 0.0
     place = origin + along[:, None] * body.axes[0]
     rows = {point.position: len(drawn) + number for number, point in enumerate(ours)}

@@ -21,22 +21,22 @@ PLACES = (PointContact, SurfaceContact)
 
 @dataclass(frozen=True)
 class System:
-    """Bodies in contact, what joins them and what drives them.
+    """Bodies in contact, with their connections and drives.
 
     Parameters
     ----------
     contact : PointContact, SurfaceContact or sequence of these
-        Where they touch. The first one names the slider (its tip's body) and the track.
+        Contacts between the bodies. The first one defines the slider (its tip's body) and the track.
     drives : sequence of Force, ImposedVelocity, Gravity, InitialVelocity, InitialState or InitialEquilibrium, optional
-        What pushes, and how it starts.
+        Loads, prescribed motion and initial conditions.
     connections : sequence of Spring or Dashpot, optional
-        What joins bodies for good.
+        Springs and dashpots between bodies.
 
     Raises
     ------
     ValueError
-        If a drive acts on a body that is in no contact and no connection, if more than one velocity is imposed or more
-        than one equilibrium asked for, or if a body is supported so that its root cannot follow an imposed velocity.
+        If a drive acts on a body that is in no contact and no connection, if there is more than one imposed velocity or
+        initial equilibrium, or if the supports of a body keep its root from following an imposed velocity.
     """
 
     contact: PointContact | SurfaceContact | Sequence[PointContact | SurfaceContact]
@@ -62,13 +62,13 @@ class System:
 
     @cached_property
     def contacts(self) -> tuple[PointContact, ...]:
-        """All contacts, those of surfaces point by point."""
+        """All contacts; those of surfaces point by point."""
         given = (self.contact,) if isinstance(self.contact, PLACES) else tuple(self.contact)
         return tuple(point for one in given for point in one.contacts)
 
     @cached_property
     def faces(self) -> tuple[SurfaceContact | SurfacePoints, ...]:
-        """The surfaces of which places and areas of all points are known: those given as such, then those of points."""
+        """Surfaces with known places and areas of all points: those given as surfaces, then those of points."""
         given = (self.contact,) if isinstance(self.contact, PLACES) else tuple(self.contact)
         whole: list[Any] = [one for one in given if hasattr(one, "areas")]
         alone: list[Any] = [one for one in given if not hasattr(one, "areas")]
@@ -76,7 +76,7 @@ class System:
 
     @cached_property
     def bodies(self) -> tuple[Any, ...]:
-        """The bodies that vibrate: those of the contacts in turn, then those that only connections name."""
+        """Bodies that vibrate: those of the contacts in order, then those that only connections name."""
         found: list[Any] = []
         for contact in self.contacts:
             found += [contact.tip.body, contact.track_body]
@@ -85,12 +85,12 @@ class System:
 
     @property
     def is_spatial(self) -> bool:
-        """Whether a body in space is among the bodies."""
+        """Whether any of the bodies is in space."""
         return any(body.is_spatial for body in self.bodies)
 
     @property
     def has_two_tangents(self) -> bool:
-        """Whether a contact is one of a body in space."""
+        """Whether any of the contacts is that of a body in space."""
         return any(contact.is_spatial for contact in self.contacts)
 
     @property
@@ -100,11 +100,11 @@ class System:
 
     @cached_property
     def kept(self) -> dict[str, Any]:
-        """What has been made of the system, by whom: it never changes, and is asked for in several places."""
+        """Cache of results derived from the system, by the function that made them; systems never change."""
         return {}
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return what makes the system, for copies and other processes."""
+        """Return the fields alone, for copies and other processes."""
         return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @property
@@ -114,7 +114,7 @@ class System:
 
     @property
     def track(self) -> Any:
-        """What it slides on: a beam, a rigid track, or the body of the point it touches."""
+        """Track of the slider: a beam, a rigid track, or the body of the point it touches."""
         first = self.contacts[0]
         return first.track if first.touched_point is None else first.touched_point.body
 
@@ -125,11 +125,11 @@ class System:
 
     @cached_property
     def initial_equilibrium(self) -> InitialEquilibrium | None:
-        """The equilibrium in which it starts, if it does."""
+        """The equilibrium in which it starts, if there is one."""
         return next(iter(self._of_kind(InitialEquilibrium)), None)
 
     def is_held(self, body: object) -> bool:
-        """Return whether a body's root follows an imposed velocity."""
+        """Return whether the root of a body follows an imposed velocity."""
         imposed = self.imposed_velocity
         return imposed is not None and imposed.point.body == body
 
@@ -140,12 +140,12 @@ class System:
 
     @cached_property
     def surface_names(self) -> tuple[str, ...]:
-        """Name of the surface that each of several contacts is a point of, empty for none; nothing without surfaces."""
+        """Name of the surface of each contact, empty for none; an empty tuple for one contact or without surfaces."""
         names = tuple(contact.surface for contact in self.contacts)
         return names if len(names) > 1 and any(names) else ()
 
     def body_name(self, body: Any) -> str:
-        """Return what a body is called: its own name, slider or track, or ``body 3`` in the order of `bodies`."""
+        """Return the name of a body: its own, slider or track, or ``body 3`` in the order of `bodies`."""
         if body.name:
             return str(body.name)
         if body == self.slider:
@@ -214,7 +214,7 @@ class System:
                     )
 
     def _repr_html_(self) -> str:
-        """Return a card with its bodies where they are and what it is made of, without a long search for modes."""
+        """Return a card with a drawing of its bodies and a list of its parts, without a long search for modes."""
         return card_of(self)
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""What notebooks show of a system: its bodies where they are, and what it is made of."""
+"""Cards of systems in notebooks: a drawing of the bodies and a list of all parts."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from .cards import Stroke, card, drawing, flattened
 from .connections import ends
 from .lines import outlines_of
 
-# Share of the extent of the bodies that a rigid track is drawn long to either side of its tip.
+# Length to which a rigid track is drawn to either side of a tip, as a share of the extent of the bodies.
 REACH = 0.25
-# Gaps that rounding leaves [m].
+# Largest gap that is due to rounding [m].
 CLOSED = 1e-12
 
 
@@ -38,7 +38,7 @@ def _body_words(body: Any) -> str:
 
 
 def _contacts(system: Any) -> list[str]:
-    """Return the contacts, those of a surface as one."""
+    """Return a line for each contact; those of a surface share one."""
     lines, surfaces = [], set()
     for name, contact in zip(system.contact_names, system.contacts, strict=True):
         if contact.surface:
@@ -53,7 +53,7 @@ def _contacts(system: Any) -> list[str]:
 
 
 def _touched(contact: Any, system: Any) -> str:
-    """Return what touches what, where, and under which law."""
+    """Return both sides of a contact, its place and its friction law, in words."""
     other = "a rigid track" if contact.track_body is None else system.body_name(contact.track_body)
     where = f" at {contact.at:.4g} m" if contact.path_body is not None or contact.circle is not None else ""
     gap = f", gap {contact.gap:.3g} m" if abs(contact.gap) > CLOSED else ""
@@ -65,7 +65,7 @@ def _drive_words(drive: Any, system: Any) -> str:
 
 
 def connection_words(connection: Any, system: Any) -> str:
-    """Return a connection and what it joins, in words."""
+    """Return a connection and its bodies in words."""
     names = [system.body_name(point.body) for point in ends(connection)]
     return f"{connection} from {names[0]} to {names[1] if len(names) > 1 else 'the ground'}"
 

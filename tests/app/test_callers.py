@@ -96,7 +96,7 @@ def test_a_socket_on_which_nothing_is_said_makes_room(hurried):
         assert '"hello"' in silent.recv(WAIT)
         with pytest.raises(ConnectionClosed) as closed:
             silent.recv(WAIT)
-    assert (closed.value.rcvd.code, closed.value.rcvd.reason) == (4408, "a page must speak within 1 s")
+    assert (closed.value.rcvd.code, closed.value.rcvd.reason) == (4408, "a page must send a message within 1 s")
     # Who spoke once may be silent.
     with connect(f"ws://127.0.0.1:{hurried}/socket", **words) as one:
         one.recv(WAIT)

@@ -53,6 +53,6 @@ def test_it_reads_as_a_line(tmp_path):
     assert result_of(tmp_path, READING, given) == [
         "A4",
         "F♯7 −6 cents",
-        "F♯7 +12 cents, near the mode that grows at 2.93 kHz",
-        "E4 −41 cents, near the mode that grows at 320 Hz",
+        "F♯7 +12 cents, near the growing mode at 2.93 kHz",
+        "E4 −41 cents, near the growing mode at 320 Hz",
     ]

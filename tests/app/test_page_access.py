@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 
 from .browsing import Browsing, plays_on, stats, until
 
-AXE = (Path(__file__).parent / "vendor" / "axe.min.js").read_text(encoding="utf-8")
+AXE = Axe()
 FRICTION, ANGLE = "contact.friction.coefficient", "slider.angle"
 PHONE = {"viewport": {"width": 390, "height": 800}}
 REACHED = "button, select, input, textarea, summary, a[href], canvas[tabindex]"
@@ -18,8 +17,7 @@ SEEN = f"""() => [...document.querySelectorAll('{REACHED}')].filter((one) =>
 
 def grave(page) -> list[str]:
     """Return what axe calls serious or critical, with where it is."""
-    page.evaluate(AXE)
-    found = page.evaluate("axe.run(document, { resultTypes: ['violations'] })")
+    found = AXE.run(page).response
     return [
         f"{one['id']}: {node['target']} {node['failureSummary']}"
         for one in found["violations"]

@@ -255,7 +255,7 @@ def test_what_sounds_is_recorded_from_press_to_press(browsing):
     plays_on(page, 40)
     record.click()
     assert page.locator("#recording").is_hidden()
-    assert page.locator("#unrecorded").text_content() == "Nothing sounded, so nothing was recorded."
+    assert page.locator("#unrecorded").text_content() == "There was no sound, so nothing was recorded."
     assert page.locator("#unrecorded").is_visible()
 
 
@@ -305,4 +305,4 @@ def test_what_is_silent_has_words_in_place_of_a_spectrogram(browsing):
     assert "frequency [kHz]" in page.evaluate(draw, True)
     # What is computed slower than it sounds says how much, first of all.
     page.evaluate("stridula.keepUp(0.1)")
-    assert page.locator("#speed option:checked").text_content() == "Slow, 1 : 11, as fast as it can"
+    assert page.locator("#speed option:checked").text_content() == "Slow, 1 : 11, as fast as possible"

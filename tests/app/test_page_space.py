@@ -138,7 +138,7 @@ def test_only_what_is_in_space_takes_what_draws_there(browsing):
 def test_what_is_slow_is_heard_over_and_over_and_has_no_map_unless_one_asks(browsing):
     page = opened(browsing, "#case=pad-on-disc")
     assert page.locator("#map-on").is_checked() is False
-    assert page.locator("#map-words").text_content() == "not computed by itself: this system takes long"
+    assert page.locator("#map-words").text_content() == "computed only on request: this system is slow"
     loop = page.locator("#loop")
     until(page, "stridula.loop.isLongEnough")
     loop.click()

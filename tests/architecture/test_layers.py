@@ -106,8 +106,8 @@ IDS = [module_of(path) or "stridula" for path in FILES]
 
 
 @pytest.mark.parametrize("path", FILES, ids=IDS)
-def test_only_assembly_and_integration_see_the_kernels(path):
-    if module_of(path).split(".")[0] not in ("assembly", "integration", "_kernels"):
+def test_only_lowering_and_integration_see_the_kernels(path):
+    if module_of(path).split(".")[0] not in ("lowering", "integration", "_kernels"):
         assert not sees_kernels(imports(path))
 
 
@@ -216,6 +216,19 @@ def modules_that_docs_name() -> set[str]:
 def test_modules_that_docs_name_are_there_in_a_fresh_interpreter(name):
     code = f"import stridula as st; st.{name}; assert {name.partition('.')[0]!r} in dir(st)"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_what_the_api_page_names_is_there_after_a_plain_import():
+    """Folders and modules that names come from are attributes, and have these names, too."""
+    code = "import stridula as st; print(*(f'{name}:{hasattr(st, name)}' for name in dir(st)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    found = dict(one.split(":") for one in done.stdout.split())
+    assert set(found.values()) == {"True"}
+    assert {"acoustics", "analysis", "bodies", "contact", "drives", "integration", "plot", "records"} <= set(found)
+    for home in ("acoustics", "acoustics.levels", "acoustics.sensation", "acoustics.wav"):
+        assert set(stridula._HOME[home]) <= set(stridula.acoustics.__all__)
+    for name in stridula.acoustics.__all__:
+        assert getattr(stridula.acoustics, name) is getattr(stridula, name)
 
 
 def test_docs_name_modules():

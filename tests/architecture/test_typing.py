@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import inspect
 import os
 import runpy
 import subprocess
@@ -13,11 +14,12 @@ from pathlib import Path
 import pytest
 
 import stridula
+from stridula.integration.many import Options
 
 ROOT = Path(stridula.__file__).parent
 SCRIPT = Path(__file__).with_name("user_script.py")
 # Packages whose names are imported on first use.
-LAZY = ["stridula", "stridula.plot", "stridula.scenarios", "stridula.studies"]
+LAZY = ["stridula", "stridula.acoustics", "stridula.plot", "stridula.scenarios", "stridula.studies"]
 WRONG = {
     "a name that is not there": "import stridula as st\nst.simulat",
     "an argument of another kind": "import stridula as st\nst.Coulomb('much')",
@@ -36,7 +38,9 @@ def homes_in_stub(text: str) -> dict[str, str]:
 def homes_at_run_time(package: str) -> dict[str, str]:
     """Return the same of what is imported on first use."""
     if package != "stridula":
-        return dict(import_module(package)._HOME)
+        found = import_module(package)
+        at_once = [name for name in found.__all__ if name not in found._HOME]
+        return found._HOME | {name: getattr(found, name).__module__.rpartition(".")[2] for name in at_once}
     return stridula._MODULE | dict.fromkeys(stridula._PUBLIC, "") | {"__version__": "version"}
 
 
@@ -64,6 +68,13 @@ def cache(tmp_path_factory):
 def test_stubs_name_what_is_imported_on_first_use(package):
     stub = Path(import_module(package).__file__).with_suffix(".pyi")
     assert homes_in_stub(stub.read_text(encoding="utf-8")) == homes_at_run_time(package)
+
+
+def test_kinds_of_results_are_told_for_every_argument():
+    """Options that do not change the kind are listed once more, for those that do are told one by one."""
+    given = inspect.signature(stridula.simulate_many).parameters.values()
+    named = {one.name for one in given if one.kind is inspect.Parameter.KEYWORD_ONLY} - {"errors", "labelled"}
+    assert named == set(Options.__annotations__)
 
 
 def test_every_package_that_imports_on_first_use_has_a_stub():

@@ -158,7 +158,7 @@ def test_the_face_of_a_run():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda found: plot.surface(found.drop_vars("place")), "found must be what analysis.surface returned"),
+        (lambda found: plot.surface(found.drop_vars("place")), "found must be the result of analysis.surface"),
         (lambda found: plot.surface(None), "found must be a Dataset"),
         (lambda found: plot.surface(found.isel(point=slice(2))), "found must have at least 3 points, got 2"),
         (lambda found: plot.surface(found, "heat"), "quantity must be one of pressure, slip_velocity, shear, status"),

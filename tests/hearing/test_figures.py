@@ -148,7 +148,7 @@ def test_a_tone_stands_in_its_band():
         (lambda: plot.spectrum(np.zeros(9)), "signal must be a DataArray"),
         (lambda: plot.spectrum(tone(), resolution=-1.0), "resolution must be above 0"),
         (lambda: plot.spectrum(tone(), "squeal"), "system must be a System"),
-        (lambda: plot.directivity(heard(np.zeros((999, 3)))), "pressure must say where its listeners are"),
+        (lambda: plot.directivity(heard(np.zeros((999, 3)))), "pressure must have the places of its listeners"),
         (lambda: plot.directivity(circle(), plane="yx"), "plane must be one of xy, xz, yz, got 'yx'"),
         (lambda: plot.directivity(circle(2, 0.1)), "pressure must have at least 3 listeners"),
         (lambda: plot.directivity(0.0 * circle()), "pressure must hold a sound, got silence"),

@@ -436,7 +436,7 @@ def test_modes_that_are_not_there_are_refused(rig, tmp_path):
     other = on_plane(block())
     with pytest.raises(ValueError, match=r"^theory must have the modes of this system, "):
         plot.animate_mode(other, theory, 0, tmp_path / "a.gif")
-    with pytest.raises(ValueError, match=r"^theory must be what sliding_stability returned"):
+    with pytest.raises(ValueError, match=r"^theory must be the result of sliding_stability"):
         plot.animate_mode(rig.system, theory.drop_vars("mode_shape"), 0, tmp_path / "a.gif")
     slow = theory.assign(frequency=0.0 * theory.frequency)
     with pytest.raises(ValueError, match=r"^number must be that of a mode that oscillates"):

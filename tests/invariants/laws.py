@@ -6,7 +6,7 @@ import numpy as np
 from kernels.general_twin import curve, has_state, held_up_to, ratio_with_state
 
 import stridula as st
-from stridula.assembly import assemble
+from stridula.lowering import assemble
 
 EPS = np.finfo(float).eps
 SEPARATED, STICKING, SLIDING = 0, 1, 2

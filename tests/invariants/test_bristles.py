@@ -14,7 +14,7 @@ from physics.cases import SCHEMES
 import stridula as st
 from invariants.laws import EPS, TOLERANCE
 from invariants.recipes import laws, number, span
-from stridula.assembly import assemble
+from stridula.lowering import assemble
 
 STEP, STEPS = 5e-5, 600
 DIRECTIONS = some.tuples(number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)).filter(

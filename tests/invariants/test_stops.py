@@ -10,10 +10,10 @@ from physics.cases import SCHEME_NAMES, SCHEMES
 
 import stridula as st
 from stridula._kernels import layout
-from stridula.integration import blocks as blocks_module
 from stridula.integration import together as together_module
 from stridula.integration.marches import March
 from stridula.integration.stops import CAUSE, ENDED, WHAT, energy_created
+from stridula.lowering import blocks as blocks_module
 
 BOTH = pytest.mark.parametrize("scheme", SCHEMES, ids=SCHEME_NAMES)
 STEP = 1e-4

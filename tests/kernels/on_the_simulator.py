@@ -13,11 +13,11 @@ from physics.test_circular_paths import on_a_circle, riders
 
 import stridula as st
 from stridula._kernels import layout as at
-from stridula.assembly import assemble
-from stridula.integration.blocks import blocks_of
 from stridula.integration.cuda_march import CudaMarch
 from stridula.integration.marches import March, imposed_on
 from stridula.integration.start import state_at_start
+from stridula.lowering import assemble
+from stridula.lowering.blocks import blocks_of
 
 STEP, RATIO = 5e-6, 3
 # Two chunks of samples, of unlike lengths.

@@ -19,7 +19,7 @@ from physics.cases import CASES, SCHEMES, STEP, every_step
 import stridula as st
 from kernels import twin
 from stridula._kernels import layout
-from stridula.integration.blocks import Recurrence
+from stridula.lowering.blocks import Recurrence
 
 STEPS = 1500
 BOTH = [pytest.param(SCHEMES[0], twin.central, id="central"), pytest.param(SCHEMES[1], twin.exact, id="exact")]

@@ -7,8 +7,8 @@ import pytest
 
 import stridula as st
 from stridula.acoustics.redriven import redriven
-from stridula.assembly import assemble
 from stridula.bodies import Turning
+from stridula.lowering import assemble
 
 from .test_equilibrium_starts import growth, starting
 from .test_space import SCHEMES, reference

@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 
 import stridula as st
 from stridula._kernels import layout as at
-from stridula.assembly import assemble
 from stridula.integration.live import LiveMarch
+from stridula.lowering import assemble
 
 from .into_space import IntoSpace
 from .test_paths_in_space import BEAM, rubbed

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stridula as st
-from stridula.assembly import assemble
+from stridula.lowering import assemble
 
 G, MASS, STEP = 9.80665, 2.0, 1e-4
 BOTH = pytest.mark.parametrize("scheme", [st.ExactModal(), st.CentralDifference()], ids=lambda scheme: scheme.name)

@@ -19,11 +19,11 @@ from stridula.acoustics.free_responses import free_responses
 from stridula.acoustics.redriven import redriven
 from stridula.acoustics.ring_sources import RingSources
 from stridula.acoustics.surface_pressures import SurfacePressures
-from stridula.assembly import assemble
 from stridula.bodies import ring_surfaces
 from stridula.bodies.body_surfaces import RingSurface, surface_of
 from stridula.bodies.cut_elements import cut_into_tetrahedra
 from stridula.bodies.solid_surfaces import cut_faces
+from stridula.lowering import assemble
 from stridula.verification import open_air
 
 from .test_turning import HERE, disc, rubbed, struck

@@ -10,7 +10,7 @@ import pytest
 import scipy.linalg
 
 import stridula as st
-from stridula.integration.stepping import KEPT, STIFFNESS
+from stridula.lowering.stepping import KEPT, STIFFNESS
 
 from .lattice import lattice, matrices, on_feet, rows
 from .test_equilibrium_starts import SCHEMES, change, growth, starting

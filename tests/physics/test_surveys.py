@@ -245,7 +245,10 @@ def test_a_run_that_fails_is_the_message_of_its_point(monkeypatch):
         ({"workers": 0}, "workers must be at least 1"),
         ({"watchers": 3}, "watchers must be a list"),
         ({"client": 3}, "client must be a client of dask.distributed"),
-        ({"points": {"mode": [1, 2]}}, "key must not be called as a result of the survey, got 'mode': write its full"),
+        (
+            {"points": {"mode": [1, 2]}},
+            "key must not have the name of a result of the survey, got 'mode': write its full",
+        ),
         ({"points": {"speed": [1.0]}}, r"flutter must take the parameters speed, got one of"),
         ({"points": []}, "points must hold at least one point"),
     ],

@@ -177,7 +177,10 @@ def call(ranges=None, targets=None, source=valley, **options):
         (call(targets={"far": (2.0, 1.0)}), "targets['far']: low and high must be a range with an end"),
         (call(targets={"far": (1.0, 1.0)}), "targets['far']: scale must be given for a target at one value"),
         (call(targets={"far": (None, 1.0)}), "targets['far']: low must be a number, got None"),
-        (call(targets={"miss": (0.0, 1.0)}), "targets must not be called as what a calibration says, got 'miss'"),
+        (
+            call(targets={"miss": (0.0, 1.0)}),
+            "targets must not have the name of a result of the calibration, got 'miss'",
+        ),
         (call(start={"length": "4 mm"}), "start must have the keys of ranges, length, stiffness, got length"),
         (call(start={"length": "4 mm", "stiffness": 1e5}), "start must lie in the ranges, got stiffness = 100000.0"),
         (call(start={"length": "4 mm", "stiffness": -1.0}), "start must lie in the ranges, got stiffness = -1.0"),

@@ -16,10 +16,10 @@ from stridula import analysis
 from stridula._kernels import layout as at
 from stridula.acoustics.pressures import check_length, check_rate
 from stridula.acoustics.resampling import LOWEST, ratio_of
-from stridula.assembly import assemble
 from stridula.checks import at_least, at_most, listed, within
 from stridula.integration.simulate import choose_timing
 from stridula.integration.stops import CAUSE, Diverged, contact_words
+from stridula.lowering import assemble
 
 NUMBER = r"(-?[0-9][0-9.]*(?:e[-+]?[0-9]+)?)"
 numbers = some.floats(-1e12, 1e12, allow_subnormal=False)

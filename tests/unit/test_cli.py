@@ -18,8 +18,10 @@ import scipy.io
 
 import stridula as st
 from stridula.analysis.record_card import facts_of as card
-from stridula.cli import bars, running
+from stridula.cli import running
 from stridula.cli.doubts import doubts
+from stridula.cli.running import how_to_get_the_level
+from stridula.integration import rich_bars
 from stridula.plot.colours import REGIME_COLOURS
 from stridula.studies.measures import MEASURES, Column, Measure
 
@@ -128,7 +130,7 @@ def test_run_writes_record_and_figure_and_says_what_came_of_it(stridula, tmp_pat
         "run.nc",
         "run.png",
     )
-    for word in (*words, "regime", "(confidence 0.50)"):
+    for word in (*words, "squeals", "(confidence 0.50)", "`stridula sound run.nc` prints it at 1 m"):
         assert word in out
     assert st.load_scenario("run.nc").system.contact.friction == st.Coulomb(0.4)
     assert (tmp_path / "run.png").read_bytes().startswith(b"\x89PNG")
@@ -248,7 +250,8 @@ def test_the_card_of_the_violin_says_its_motion(stridula):
     code, out, _ = stridula("run", "violin")
     assert code == 0
     lines = " ".join(out.replace("│", " ").split())
-    assert "regime stick-slip at 195" in lines
+    assert "squeals no, stick-slip (confidence" in lines
+    assert "pitch 195" in lines
     assert "bowed string Helmholtz at 195" in lines
     assert "slips in a period of 196 Hz" in lines
 
@@ -340,7 +343,7 @@ def terminate(*arguments, **fields):
 
 @pytest.mark.parametrize("stop", [interrupt, terminate])
 def test_ctrl_c_and_sigterm_keep_what_was_recorded(stridula, monkeypatch, stop):
-    monkeypatch.setattr(bars.Progress, "update", stop)
+    monkeypatch.setattr(rich_bars.Progress, "update", stop)
     code, out, err = stridula("run", "squeal", "--duration", "0.25", "--out", "part.nc")
     assert code == 130
     assert err.startswith("stridula: interrupted at t = ")
@@ -391,13 +394,13 @@ def test_a_failed_run_is_drawn_as_far_as_it_went(stridula, monkeypatch, tmp_path
     assert (code, err.count("\n")) == (1, 1)
     assert (tmp_path / "part.png").exists() == (samples > 1)
     words = (
-        "it is drawn in part.png" if samples > 1 else f"no figure was drawn: a figure takes two samples, got {samples}"
+        "it is drawn in part.png" if samples > 1 else f"no figure was drawn: a figure needs two samples, got {samples}"
     )
-    assert err.endswith(f"; nothing was asked to be kept (no --out); {words}\n")
+    assert err.endswith(f"; nothing was kept (no --out); {words}\n")
 
 
 def test_an_interrupted_run_says_that_nothing_was_drawn(stridula, monkeypatch, tmp_path):
-    monkeypatch.setattr(bars.Progress, "update", interrupt)
+    monkeypatch.setattr(rich_bars.Progress, "update", interrupt)
     code, _, err = stridula("run", "squeal", "--duration", "0.25", "--plot", "part.png")
     assert (code, err.endswith("; no figure was drawn\n")) == (130, True)
     assert list(tmp_path.iterdir()) == []
@@ -464,28 +467,39 @@ def test_the_card_begins_with_what_is_heard():
     """The swing of the normal force at 23 Hz, which is not the squeal, comes later."""
     record = st.load_scenario("squeal").simulate()
     rows = card(record)
-    assert list(rows)[:3] == ["regime", "normal force", "dominant frequency"]
+    assert list(rows)[:5] == ["squeals", "pitch", "sound level", "normal force", "dominant frequency"]
     found = st.regime(record)
-    assert rows["regime"] == f"squeal at {float(found.frequency):.4g} Hz (confidence {float(found.confidence):.2f})"
+    assert rows["squeals"] == f"yes (confidence {float(found.confidence):.2f})"
+    assert rows["pitch"] == f"{float(found.frequency):.4g} Hz"
     assert rows["normal force"].startswith(f"mean {float(record.normal_force.mean()):.4g} N, fluctuation ")
     assert (rows["simulated"], "ended" in rows) == ("1 s", False)
 
 
 @pytest.mark.parametrize(
-    ("regime", "frequency", "words"),
+    ("regime", "frequency", "answer", "pitch"),
     [
-        ("squeal", 896.04, "squeal at 896 Hz"),
-        ("squeal", 1e5, "squeal at 100000 Hz or more"),
-        ("stick-slip", 0.2733, "stick-slip at 0.2733 Hz"),
-        ("judder", 329.68, "judder, loudest at 329.7 Hz"),
-        ("stable sliding", np.nan, "stable sliding"),
+        ("squeal", 896.04, "yes", "896 Hz"),
+        ("squeal", 1e5, "yes", "100000 Hz or more"),
+        ("stick-slip", 0.2733, "no, stick-slip", "0.2733 Hz"),
+        ("judder", 329.68, "no, judder", "loudest at 329.7 Hz"),
+        ("stable sliding", np.nan, "no, stable sliding", None),
     ],
 )
-def test_the_card_says_at_which_frequency(monkeypatch, regime, frequency, words):
+def test_the_card_says_at_which_frequency(monkeypatch, regime, frequency, answer, pitch):
     record = st.load_scenario("squeal", {"duration": "2 ms"}).simulate()
     found = {"regime": regime, "frequency": frequency, "confidence": 1.0}
     monkeypatch.setattr("stridula.analysis.record_card.regime_of", lambda run: found)
-    assert card(record)["regime"] == f"{words} (confidence 1.00)"
+    rows = card(record)
+    assert (rows["squeals"], rows.get("pitch")) == (f"{answer} (confidence 1.00)", pitch)
+
+
+def test_the_card_says_how_to_get_the_level():
+    squeal = st.load_scenario("squeal", {"duration": "2 ms"})
+    record, belt = squeal.simulate(), st.load_scenario("belt")
+    assert how_to_get_the_level(record, squeal, "a.nc") == "not computed: `stridula sound a.nc` prints it at 1 m"
+    assert how_to_get_the_level(record, squeal, None) == "not computed: --wav FILE.wav computes it at 1 m"
+    assert how_to_get_the_level(record, belt, None) == "none: no body of the system can be heard"
+    assert how_to_get_the_level(record.assign_attrs(ended="energy created"), squeal, None) == ""
 
 
 def test_the_card_names_an_early_end_first_and_a_later_start():
@@ -495,7 +509,7 @@ def test_the_card_names_an_early_end_first_and_a_later_start():
     assert rows["simulated"] == "0.05 s, from t = 0.05 s to 0.1 s"
     first.attrs |= {"ended": "energy created", "modes": 1}
     rows = card(first)
-    assert next(iter(rows.items())) == ("ended", "failed: energy came from nowhere at t = 0.05 s")
+    assert next(iter(rows.items())) == ("ended", "failed: energy was created without a source at t = 0.05 s")
     assert rows["step"].endswith(", 1 mode")
     assert rows["normal force"] == "10 N, constant"
 
@@ -613,7 +627,7 @@ def test_a_sweep_needs_a_file_and_a_measure(stridula, option):
 def test_ctrl_c_in_a_sweep_says_what_is_safe_and_the_same_command_goes_on(stridula, monkeypatch, tmp_path):
     many = (*SWEEP, "--vary", "friction=0.2:2:100")
     with monkeypatch.context() as patch:
-        patch.setattr(bars.Progress, "update", interrupt)
+        patch.setattr(rich_bars.Progress, "update", interrupt)
         code, out, err = stridula(*many)
     assert (code, out) == (130, "")
     found = re.fullmatch(

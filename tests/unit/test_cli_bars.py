@@ -11,8 +11,8 @@ import pytest
 from rich.progress import Progress
 
 import stridula as st
-from stridula.cli import bars
 from stridula.cli.doings import doings_shown
+from stridula.integration import bars, rich_bars
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
 
@@ -21,13 +21,13 @@ STEEL = st.Material(2.1e11, 7800.0, 0.3)
 def said(monkeypatch):
     """Return what is said beside a bar."""
     words: list[str] = []
-    show = bars.Progress.update
+    show = rich_bars.Progress.update
 
     def update(self, *arguments, **fields):
         words.append(fields["words"])
         show(self, *arguments, **fields)
 
-    monkeypatch.setattr(bars.Progress, "update", update)
+    monkeypatch.setattr(rich_bars.Progress, "update", update)
     return words
 
 
@@ -66,7 +66,7 @@ def test_the_time_left_is_shown_once_it_is_known():
     clock = iter(range(100))
     progress = Progress(get_time=lambda: float(next(clock)))
     task = progress.add_task("run", total=10.0)
-    column = bars.TimeLeft()
+    column = rich_bars.TimeLeft()
     column.max_refresh = None
     assert column.render(progress.tasks[0]).plain == ""
     for done in (1.0, 2.0, 3.0):

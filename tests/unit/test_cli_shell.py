@@ -55,7 +55,7 @@ def test_files_that_it_names_are_found_from_here(stridula, piped, tmp_path):
     [
         (b"", "scenario must not be empty, got 'standard input'"),
         (b"title = ", "scenario must be TOML, got 'standard input': "),
-        (b"\xff\xfe\x00", "scenario must be a text in UTF-8 or, with a mark, UTF-16, got 'standard input'"),
+        (b"\xff\xfe\x00", "scenario must be text in UTF-8 or, with a byte order mark, UTF-16, got 'standard input'"),
     ],
 )
 def test_what_is_wrong_with_it_is_said_in_one_line(stridula, piped, content, message):

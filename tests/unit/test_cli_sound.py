@@ -9,7 +9,7 @@ import pytest
 import soundfile
 
 import stridula as st
-from stridula.cli import bars
+from stridula.integration import rich_bars
 from stridula.scenarios.load import Scenario
 
 
@@ -41,11 +41,17 @@ def written(tmp_path):
     return {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
 
 
+def words_of(card):
+    """Return the words of a card without its frame."""
+    return " ".join(card.replace("│", " ").split())
+
+
 def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
     code, out, err = stridula("run", "squeal", "--duration", "60 ms", "--wav", "run.wav", "--out", "run.nc")
     assert (code, err) == (0, "")
-    assert "\nrun.wav: 2 channels, 48 kHz, 0.06 s, peak " in out
-    assert "\nat the louder ear: Leq " in out
+    rows = words_of(out)
+    assert "written run.nc run.wav: 2 channels, 48 kHz, 0.06 s, peak " in rows
+    assert "sound level at 1 m, at the louder ear: Leq " in rows
     record, system = st.load("run.nc"), st.load_scenario("squeal").system
     pressure = st.radiate(record, system)
     st.write_wav("same.wav", pressure)
@@ -271,7 +277,7 @@ BAD = [
     (("run", "squeal", "--wav", "."), "it is a directory"),
     (("run", "squeal", "--wav", "a.nc", "--out", "a.nc"), "--wav must be another file than --out"),
     (("run", "squeal", "--wav", "a.png", "--plot", "a.png"), "--wav must be another file than --plot"),
-    (("run", "run.nc", "--wav", "run.nc"), "--wav must be another file than what is run"),
+    (("run", "run.nc", "--wav", "run.nc"), "--wav must be another file than the scenario"),
     (("run", "belt", "--wav", "a.wav"), "system must have a body with a surface to be heard"),
     (("run", "round.toml", "--wav", "a.wav"), "track must have a Rectangle as section"),
     (("sound", "open.nc", "--body", "track", "--bands", "a.png"), "--bands must hold a sound, got silence"),
@@ -295,7 +301,7 @@ def test_an_interrupted_run_says_that_no_sound_was_written(stridula, monkeypatch
     def interrupt(*arguments, **fields):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(bars.Progress, "update", interrupt)
+    monkeypatch.setattr(rich_bars.Progress, "update", interrupt)
     code, _, err = stridula("run", "squeal", "--duration", "0.25", "--wav", "part.wav")
     assert (code, err.endswith("; no sound was written\n")) == (130, True)
     assert not list(tmp_path.iterdir())

@@ -296,7 +296,7 @@ def test_sensitivity_prints_and_writes(stridula):
 def test_sensitivity_says_why_there_are_no_shares(stridula):
     code, out, _ = stridula("sensitivity", "squeal", "--vary", "angle=95deg:99deg", *SHORT, "--samples", "8")
     assert code == 0
-    assert "No shares of the variance: they take 8 samples in which all runs give numbers, got 0." in out
+    assert "No shares of the variance: they need 8 samples in which all runs give numbers, got 0." in out
     said, counted = out.splitlines()[-2:]
     assert counted == "24 runs: 0 done, 24 failed"
     assert said == "24 of 24 failures: slider.angle must be strictly between -pi/2 and pi/2 rad (90 deg)"

@@ -7,8 +7,8 @@ import pytest
 from physics.cases import dragged, pair, slider, track
 
 import stridula as st
-from stridula.assembly import assemble
 from stridula.checks import brief
+from stridula.lowering import assemble
 
 NAN, INF = float("nan"), float("inf")
 NUMBERS = [NAN, INF, True, "1", None]

@@ -92,7 +92,10 @@ def test_every_change_of_stability_is_found_along_loci():
         (lambda: st.root_loci(hoffmann_at, "friction", [0.0, np.nan]), "values must be at least 2 finite numbers"),
         (lambda: st.root_loci(hoffmann_at, "friction", "much"), "values must be at least 2 finite numbers"),
         (lambda: st.root_loci("squeal", "frition", [0.1, 0.2]), "did you mean 'friction'"),
-        (lambda: st.root_loci(hoffmann_at, "frequency", [0.1, 0.2]), "key must not be called as a result of the loci"),
+        (
+            lambda: st.root_loci(hoffmann_at, "frequency", [0.1, 0.2]),
+            "key must not have the name of a result of the loci",
+        ),
         (
             lambda: st.root_loci("squeal", "friction", [0.1, 0.2], overrides={"friction": 1.0}),
             "key must be set or varied, got both for 'friction'",
@@ -137,7 +140,7 @@ def test_labels_of_critical_values_do_not_cover_each_other():
 
 
 def test_what_is_no_root_loci_is_told():
-    with pytest.raises(ValueError, match="loci must be what root_loci returned"):
+    with pytest.raises(ValueError, match="loci must be the result of root_loci"):
         plot.root_loci(st.critical_value(hoffmann_at, "friction", 0.5, 1.0))
     with pytest.raises(ValueError, match="loci must be a Dataset"):
         plot.root_loci(0.5)

@@ -676,7 +676,7 @@ def test_a_bad_solid_says_what_is_wrong(changes, message, tmp_path, monkeypatch)
             "be a number in rad or deg, got [0.05, '1 m', 0.0]",
         ),
         ("rim", "contacts.0.track.point must be a position, got 'rim'"),
-        (None, "contacts.0.track.point must be given: a position, as it has no points with names"),
+        (None, "contacts.0.track.point must be given: a position, as the body has no named points"),
     ],
 )
 def test_a_point_that_is_not_there_is_told(point, message, tmp_path):
@@ -711,7 +711,7 @@ def test_the_schema_describes_both_and_every_key_is_shown():
         properties = schema["$defs"][name]["properties"]
         assert all(entry.get("description") for entry in properties.values())
     shown = st.scenario_text("pin-on-disc")
-    assert 'inner = "8 mm"                    # least distance from the axis [m]' in shown
+    assert 'inner = "8 mm"                    # smallest distance from the axis [m]' in shown
     assert 'lengths = ["10 mm", "149 mm", "10 mm"]  # sides along x, y and z from the origin [m]' in shown
 
 

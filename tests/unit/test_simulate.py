@@ -27,10 +27,10 @@ from physics.cases import (
 )
 
 import stridula as st
-from stridula.assembly import assemble
 from stridula.integration import together as together_module
 from stridula.integration.decimation import Decimator
 from stridula.integration.marches import March
+from stridula.lowering import assemble
 
 BOTH = pytest.mark.parametrize("scheme", SCHEMES, ids=SCHEME_NAMES)
 

@@ -397,7 +397,7 @@ BAD = [
     ({"points": [{"friction": 1}, {"angle": 1}]}, r"points\[1\] must have the keys of points\[0\]"),
     ({"points": []}, "points must hold at least one point"),
     ({"points": "friction"}, "points must be a Grid"),
-    ({"points": [{"drives.0.transverse": 1, "message": 1}]}, "key must not be called"),
+    ({"points": [{"drives.0.transverse": 1, "message": 1}]}, "key must not have the name"),
     ({"measures": "regim"}, "did you mean 'regime'?"),
     ({"measures": []}, "measures must be names"),
     ({"measures": {"ended": len}}, "measures must have names other than"),

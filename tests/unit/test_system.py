@@ -10,7 +10,7 @@ import pytest
 from physics.cases import dragged, pair, shaken, slider, track, transverse
 
 import stridula as st
-from stridula.assembly import assemble
+from stridula.lowering import assemble
 
 ROD, BAR = slider(30.0), track()
 SYSTEM = pair(transverse(), mu=0.5, rod=ROD, bar=BAR)
@@ -111,7 +111,7 @@ def test_card_names_every_part():
 
 
 def test_assembly_keeps_slider_bending_axial_in_order():
-    from stridula.assembly import assemble
+    from stridula.lowering import assemble
 
     arrays = assemble(SYSTEM)
     rows = arrays.contacts[0]

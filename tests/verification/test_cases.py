@@ -189,7 +189,7 @@ def test_a_bow_beyond_schellengs_limits_makes_no_helmholtz_motion(push):
     case = strings.Bowed(0.1, 1.0)
     case = replace(case, push=0.5 * case.least / case.most if isinstance(push, str) else push)
     short = {row.quantity for row in strings.motion(case, case.run(), "bow") if not row.holds}
-    assert "bow: slips a period" in short
+    assert "bow: slips per period" in short
 
 
 def test_a_string_out_of_tune_falls_short(monkeypatch):

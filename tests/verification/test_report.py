@@ -115,7 +115,7 @@ def test_a_case_that_breaks_falls_short_and_the_others_run(stridula, tmp_path):
 def test_interrupted_it_leaves_no_table(stridula, tmp_path):
     code, out, err = stridula([GOOD, STOPPED], "--out", "there")
     assert (code, out) == (130, "")
-    assert err.splitlines()[-1] == "stridula: interrupted; the figures of what was finished are in there"
+    assert err.splitlines()[-1] == "stridula: interrupted; figures of the finished cases are in there"
     assert [path.name for path in (tmp_path / "there").iterdir()] == ["fine.png"]
 
 

@@ -27,8 +27,8 @@ from matplotlib.figure import Figure
 
 import stridula as st
 from stridula import plot
-from stridula.assembly import assemble
 from stridula.integration import CentralDifference, ExactModal
+from stridula.lowering import assemble
 from stridula.studies import share_of
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"

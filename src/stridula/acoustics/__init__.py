@@ -1,8 +1,36 @@
 """What is heard: air, the track's motion from a record, its sound in time, levels, sensation, sound files."""
 
+from __future__ import annotations
+
+from typing import Any
+
+from ..extras import on_first_use
 from .air import Air
 from .bridges import Bridge
 from .radiate import radiate
 from .resistance import radiation_damping, radiation_efficiency
 
-__all__ = ["Air", "Bridge", "radiate", "radiation_damping", "radiation_efficiency"]
+_HOME = {
+    "PlayableSound": "listening",
+    "SoundFile": "wav",
+    "equivalent_level": "levels",
+    "listen": "listening",
+    "loudness": "sensation",
+    "loudness_over_time": "sensation",
+    "read_wav": "wav",
+    "roughness": "sensation",
+    "sharpness": "sensation",
+    "sound_level": "levels",
+    "third_octave_levels": "levels",
+    "write_wav": "wav",
+}
+__all__ = ["Air", "Bridge", "radiate", "radiation_damping", "radiation_efficiency", *_HOME]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a name from its home on first use: levels and sensation need filters, which are slow to import."""
+    return on_first_use(__name__, _HOME, name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

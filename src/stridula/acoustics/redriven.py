@@ -20,8 +20,8 @@ import scipy.linalg
 import xarray as xr
 
 from ..arrays import Array
-from ..assembly import Assembly, TurningModes, assemble
 from ..checks import ArgumentError
+from ..lowering import Assembly, TurningModes, assemble
 from ..records.by_point import by_point
 from ..records.changes import check_one_system
 from ..records.checked import record

@@ -1,4 +1,4 @@
-"""What a record means: phases, frequencies, levels, regimes, motions of bowed strings."""
+"""Analysis of records: phases, frequencies, levels, regimes, motions of bowed strings."""
 
 from .bowed import MOTIONS, bowed_motion
 from .levels import largest_jump, peak_level, swing

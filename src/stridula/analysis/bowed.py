@@ -1,4 +1,4 @@
-"""What a bow does to a string: Helmholtz motion, several slips a period, or none that comes back."""
+"""Motion of a bowed string: Helmholtz motion, several slips per period, or no periodic motion."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from .status_changes import slips
 
 MOTIONS = ("Helmholtz", "double slip", "multiple slip", "anomalous low", "raucous", "sticking", "sliding")
 HELMHOLTZ, DOUBLE, MULTIPLE, LOW, RAUCOUS, STICKING, SLIDING = MOTIONS
-# Share of the record that is left aside where no start is given: the attack of a note.
+# Fraction of the record ignored by default, the attack of a note.
 ATTACK = 0.5
-# Steps of the march of which a stick or a slip may be noise.
+# Time steps up to which a stick or a slip may be noise.
 NOISY_STEPS = 2.0
-# Periods within which slips that follow each other are one.
+# Periods within which successive slips count as one.
 SHORTEST_CYCLE = 0.25
-# Most slips after which the motion is looked for to come back.
+# Largest number of slips in a repeating pattern.
 LONGEST_PATTERN = 6
-# Slips a period: bounds between one and less, between one and more, between two and more.
+# Slips per period: bounds between fewer than one and one, one and two, two and more.
 FEW, MANY, SEVERAL = 0.75, 1.5, 2.5
 
 
@@ -34,7 +34,7 @@ class Slips:
     Attributes
     ----------
     ends : ndarray, shape (slips,)
-        When each ends [periods].
+        End of each slip [periods].
     sticking : float
         Share of the time in which the string sticks [1].
     """
@@ -44,11 +44,11 @@ class Slips:
 
     @property
     def rate(self) -> float:
-        """Slips a period [1], NaN for fewer than two."""
+        """Slips per period [1], NaN for fewer than two."""
         return (self.ends.size - 1) / float(self.ends[-1] - self.ends[0]) if self.ends.size > 1 else float("nan")
 
     def pattern(self, steady: float) -> tuple[int, float]:
-        """Return after how many slips the motion comes back, and its period [periods]; 0 and NaN if it does not."""
+        """Return the number of slips after which the motion repeats, and its period [periods]; 0 and NaN if none."""
         for count in range(1, min(LONGEST_PATTERN, self.ends.size - 2) + 1):
             apart = self.ends[count:] - self.ends[:-count]
             if apart.std() <= steady * apart.mean():
@@ -59,11 +59,11 @@ class Slips:
 def bowed_motion(
     run: xr.Dataset, frequency: float, *, start: float | None = None, tolerance: float = 0.1, steady: float = 0.05
 ) -> xr.Dataset:
-    """Return what motion a bowed string is in, from the slips of all contacts together.
+    """Return the kind of motion of a bowed string, from the slips of all contacts together.
 
-    Helmholtz motion has one slip in each period of the string, and comes back period by period. Two or more slips a
-    period are double and multiple slip, a period of several of the string's is anomalous low, and what does not come
-    back is raucous (Schelleng 1973; Guettler 2002, Acustica united with Acta Acustica 88).
+    Helmholtz motion has one slip in each period of the string and repeats every period. Two or more slips per period
+    are double and multiple slip, a period of several of the string's is anomalous low, and motion that does not
+    repeat is raucous (Schelleng 1973; Guettler 2002, Acustica united with Acta Acustica 88).
 
     Parameters
     ----------
@@ -72,17 +72,17 @@ def bowed_motion(
     frequency : float
         Fundamental frequency of the string [Hz].
     start : float, optional
-        Time at the beginning that is left aside [s]; half of the record if left out.
+        Time at the beginning that is ignored [s]; half of the record if left out.
     tolerance : float, optional
-        Share by which the period of Helmholtz motion may differ from that of the string [1].
+        Relative difference allowed between the periods of Helmholtz motion and of the string [1].
     steady : float, optional
-        Standard deviation of the periods over their mean [1], up to which a motion comes back.
+        Standard deviation of the periods over their mean up to which a motion is periodic [1].
 
     Returns
     -------
     xarray.Dataset
         Scalars: ``motion``, one of `MOTIONS`; ``slips_per_period`` of the string [1]; ``frequency`` at which the motion
-        comes back [Hz], NaN if it does not; ``slip_share`` of the time [1]; ``unsteadiness``, standard deviation of
+        repeats [Hz], NaN if it does not; ``slip_share`` of the time [1]; ``unsteadiness``, standard deviation of
         the times between slips over their mean [1].
 
     Raises
@@ -99,7 +99,7 @@ def bowed_motion(
     values: dict[str, tuple[float | str, str, str]] = {
         "motion": (_motion(found, count, period, tolerance), "1", "motion of the bowed string"),
         "slips_per_period": (found.rate, "1", "slips in a period of the string"),
-        "frequency": (frequency / period, "Hz", "frequency at which the motion comes back"),
+        "frequency": (frequency / period, "Hz", "frequency at which the motion repeats"),
         "slip_share": (1.0 - found.sticking, "1", "share of the time in which the string slips"),
         "unsteadiness": (
             float(distances.std() / distances.mean()) if distances.size > 1 else float("nan"),

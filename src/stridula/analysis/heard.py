@@ -1,4 +1,4 @@
-"""How much of a vibration is heard, and how much of what is heard is a tone: short frames of the recorded forces."""
+"""Audible power of the recorded forces, and its tonal part, in short frames."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ import numpy as np
 
 from ..arrays import Array
 
-# Samples below which a frame says nothing.
+# Fewest samples in a frame.
 FEWEST = 8
 
 
 @dataclass(frozen=True)
 class Frames:
-    """What is heard in successive frames, which overlap by half.
+    """Audible forces in successive frames, which overlap by half.
 
     Attributes
     ----------
     amplitude : ndarray, shape (frames,)
         Root mean square of the forces above the lowest tone [N].
     repeating : ndarray, shape (frames,)
-        Share of that power which repeats itself within a period of the lowest tone [1].
+        Share of that power that repeats itself within a period of the lowest tone [1].
     """
 
     amplitude: Array
@@ -30,7 +30,7 @@ class Frames:
 
     @property
     def tonality(self) -> float:
-        """Mean repeating share [1], each frame weighing as it is strong."""
+        """Mean repeating share [1], weighted by the amplitude of the frames."""
         total = float(self.amplitude.sum())
         return float(self.amplitude @ self.repeating) / total if total > 0.0 else 0.0
 
@@ -54,20 +54,20 @@ class Frames:
 
 
 def frames(forces: Array, interval: float, length: float, lowest: float) -> Frames:
-    """Return what is heard in each frame.
+    """Return the audible forces in each frame.
 
-    Each is taken less its mean, under a Hann window, without its spectrum below `lowest`. The share of its power that
-    repeats itself is the highest value, beyond the first negative one, of the autocorrelation at lags up to
-    ``1 / lowest``: that of a tone in noise is the tone's share of the power.
+    Each frame is taken without its mean, under a Hann window, without its spectrum below `lowest`. The share of power
+    that repeats itself is the highest value, beyond the first negative one, of the autocorrelation at lags up to
+    ``1 / lowest``: for a tone in noise it is the tone's share of the power.
 
     Parameters
     ----------
     forces : ndarray, shape (forces, samples)
-        Recorded forces [N], whose powers are added up.
+        Recorded forces [N], whose powers are added.
     interval : float
         Interval of the samples [s].
     length : float
-        Length of a frame [s]; all that there is if that is shorter.
+        Length of a frame [s]; at most the whole record.
     lowest : float
         Lowest tone [Hz].
     """
@@ -88,7 +88,7 @@ def frames(forces: Array, interval: float, length: float, lowest: float) -> Fram
 
 
 def _pieces(forces: Array, size: int, apart: int) -> Array:
-    """Return frames of a size that begin so far apart, shape (forces, frames, size)."""
+    """Return frames of `size` samples that begin `apart` samples apart, shape (forces, frames, size)."""
     whole = np.ascontiguousarray(forces)
     along = whole.strides[1]
     shape = (len(whole), (whole.shape[1] - size) // apart + 1, size)
@@ -97,9 +97,9 @@ def _pieces(forces: Array, size: int, apart: int) -> Array:
 
 @lru_cache(maxsize=16)
 def _basis(size: int, padded: int, first: int, lags: int) -> tuple[Array, Array]:
-    """Return a Hann window, and what makes the autocorrelation at the first lags of spectra under it, from `first` on.
+    """Return a Hann window, and the matrix from power spectra, from `first` on, to the autocorrelation at first lags.
 
-    Both sides of the spectrum count, and the overlap of the window with itself is divided by.
+    Both sides of the spectrum count, and the result is divided by the overlap of the window with itself.
     """
     window = np.hanning(size + 1)[:-1]
     overlap = np.array([window[lag:] @ window[: size - lag] for lag in range(lags)])
@@ -110,10 +110,10 @@ def _basis(size: int, padded: int, first: int, lags: int) -> tuple[Array, Array]
 
 
 def strongest_tone(forces: Array, interval: float, length: float, lowest: float) -> float:
-    """Return the frequency above `lowest` [Hz] about which the forces carry most power, NaN where they carry none.
+    """Return the frequency above `lowest` [Hz] of the largest power of the forces, NaN if they have none.
 
-    The spectrum is added up in bands as wide as a frame of `length` seconds can tell apart; the centre of power of the
-    strongest band and its neighbours is returned.
+    The power is summed over bands as wide as the resolution of a frame of `length` seconds; the centre of power of
+    the strongest band and its neighbours is returned.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How strong and how steady a recorded force is."""
+"""Strength and steadiness of a recorded force."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def peak_level(signal: xr.DataArray, percentile: float = 99.9, window: float = 1
     signal : xarray.DataArray, shape (time,)
         A recorded signal.
     percentile : float, optional
-        From 0 to 100.
+        Percentile, from 0 to 100.
     window : float, optional
         Length of a window [s].
     """

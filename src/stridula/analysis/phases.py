@@ -1,4 +1,4 @@
-"""When the contact sticks, slides or separates: phases, stops, bursts and settling."""
+"""Phases of sticking, sliding and separation: phases, stops, bursts and settling."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from .signals import checked_intervals, record_of_one
 
 SMOOTHING = 5e-3
 SHORTEST_STOP = 20e-3
-# Share of a sample that rounding may make of nothing.
+# Share of a sample up to which a status may result from rounding.
 ROUND_OFF = 1e-9
-# Widest mean, in lengths of what it is taken of.
+# Widest moving mean, over the length of the signal.
 WIDEST = 20
 
 
 def phases(run: xr.Dataset, status: str, smoothing: float = SMOOTHING) -> Array:
     """Return the intervals in which one status prevails.
 
-    The share of the status is averaged over a centred window; it prevails where that exceeds one half, so that
-    interruptions shorter than half the window do not end a phase and its ends stay where they are.
+    The share of the status is averaged over a centred window; it prevails where the average exceeds one half, so
+    that interruptions shorter than half the window do not end a phase and its ends do not move.
 
     Parameters
     ----------
     run : xarray.Dataset
         A record of `simulate`.
     status : {"separated", "sticking", "sliding"}
-        Which one.
+        Status of the contact.
     smoothing : float, optional
         Length of the window [s].
 
@@ -66,7 +66,7 @@ def bursts(run: xr.Dataset, shortest_stop: float = SHORTEST_STOP) -> Array:
 
 
 def complete(intervals: Array, run: xr.Dataset) -> Array:
-    """Return the intervals that neither end of the record cuts, shape (intervals, 2) [s]."""
+    """Return the intervals that are not cut by an end of the record, shape (intervals, 2) [s]."""
     time, interval = _clock(run)
     intervals = checked_intervals(intervals)
     inside = (intervals[:, 0] > time[0] - interval / 2.0) & (intervals[:, 1] < time[-1] - interval / 2.0)
@@ -74,7 +74,7 @@ def complete(intervals: Array, run: xr.Dataset) -> Array:
 
 
 def status_share(run: xr.Dataset, status: str, intervals: Array | None = None) -> float:
-    """Return the share of the time [1] in which the contact has a status, in the intervals or the whole run."""
+    """Return the share of the time in which the contact has a status [1], in the intervals or the whole run."""
     choice("status", status, STATUS_WORDS)
     share = record_of_one(run, "status_share")["status_share"].values[:, STATUS_WORDS.index(status)]
     chosen = share if intervals is None else share[inside(run, intervals)]
@@ -105,9 +105,9 @@ def longest_unchanged(run: xr.Dataset) -> float:
 
 
 def advance(run: xr.Dataset, intervals: Array | None = None) -> float:
-    """Return how far the contact point has moved along the track [m], net, in the intervals or the whole run.
+    """Return the net displacement of the contact point along the track [m], in the intervals or the whole run.
 
-    In space that is the distance from where it was.
+    In space it is the distance between its first and last positions.
     """
     position = record_of_one(run, "contact_position")["contact_position"].values
     time, _ = _clock(run)
@@ -124,7 +124,7 @@ def _advanced(time: Array, position: Array, intervals: Array | None) -> float:
 
 
 def inside(run: xr.Dataset, intervals: Array) -> Array:
-    """Return which samples lie in one of the intervals, shape (time,) of bool."""
+    """Return whether each sample lies in one of the intervals, shape (time,) of bool."""
     time, interval = _clock(run)
     middle = time - interval / 2.0
     chosen = np.zeros(time.size, dtype=bool)
@@ -134,15 +134,15 @@ def inside(run: xr.Dataset, intervals: Array) -> Array:
 
 
 def moving_mean(values: Array, width: int) -> Array:
-    """Return the mean over an odd number of samples about each, the first and the last one repeated beyond the ends."""
-    # Far beyond the ends there is nothing but what was repeated.
+    """Return the mean over an odd number of samples around each, with the first and last repeated beyond the ends."""
+    # A wider mean would only add more repeated values.
     width = min(width, WIDEST * values.size | 1)
     sums = np.cumsum(repeated_ends(values, width // 2 + 1, width // 2))
     return np.asarray(sums[width:] - sums[:-width]) / width
 
 
 def repeated_ends(values: Array, before: int, after: int) -> Array:
-    """Return values with the first and the last one repeated so many times more."""
+    """Return values with the first repeated `before` times and the last `after` times."""
     whole = np.empty(before + values.size + after, dtype=values.dtype)
     whole[:before], whole[before : before + values.size] = values[0], values
     whole[before + values.size :] = values[-1]

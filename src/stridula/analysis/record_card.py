@@ -1,4 +1,4 @@
-"""The result of a run in words: the closing card of `stridula run`, and what notebooks show of a record."""
+"""The result of a run as text: the summary printed by `stridula run` and shown in notebooks."""
 
 from __future__ import annotations
 
@@ -25,36 +25,39 @@ from .regimes import LIMITS, regime_of
 from .several_contacts import loads, mean_shares
 from .spectra import dominant_frequency
 
-# Ends that are worth a line.
+# Endings that have a line.
 ENDINGS = {
     "off the track": "the tip ran off the end of its track",
     "not finite": "failed: the state is no longer finite",
     "contact unsolved": "failed: the contact forces were not found",
-    "energy created": "failed: energy came from nowhere",
+    "energy created": "failed: energy was created without a source",
     "interrupted": "interrupted",
 }
 # Regimes that are cycles of one frequency.
-CYCLES = ("squeal", "stick-slip")
-# Relative changes of a force below are rounding, not vibration.
+SQUEAL = "squeal"
+CYCLES = (SQUEAL, "stick-slip")
+# The way to the level of the sound, whose computation takes too long for a card.
+ASK_FOR_LEVEL = 'not computed: st.equivalent_level(st.radiate(run, system), "A") is LAeq at 1 m'
+# Relative changes of a force below this are rounding errors.
 STEADY = 1e-9
 
 
-# Columns of the picture of a force, and its size, which the drawing fits to its own.
+# Number of columns, width and height of the picture of a force, which is scaled to the drawing.
 COLUMNS, LONG, HIGH = 240, 240.0, 60.0
 
 
 @dataclass(frozen=True)
 class RecordCard:
-    """The result of a run in words; in print a table, in notebooks one with a picture of the normal force.
+    """The result of a run as text: a table in print, and in notebooks a table with a picture of the normal force.
 
     Attributes
     ----------
     title : str
-        The title of the run, if it has one.
+        Title of the run, empty if none.
     facts : mapping
-        What is known, in words, by name: the regime and its tone first.
+        Results as text by name: first whether it squeals, its pitch and its level.
     force : ndarray, shape (columns, 2)
-        Least and largest normal force of all contacts together in each stretch of time [N]; empty without samples.
+        Smallest and largest total normal force in successive intervals of time [N]; empty without samples.
     """
 
     title: str
@@ -71,25 +74,25 @@ class RecordCard:
 
 
 def card(run: xr.Dataset, system: System | None = None) -> RecordCard:
-    """Return the result of a run in words, as `stridula run` prints it at the end.
+    """Return the result of a run as text, as printed by `stridula run`.
 
     Parameters
     ----------
     run : xarray.Dataset
         A record of `simulate`.
     system : System, optional
-        The system of the run; of a bowed string it tells which motion it is in.
+        The system of the run; needed for the motion of a bowed string.
 
     Returns
     -------
     RecordCard
-        The regime and its tone, the forces, the shares of the time in each status, the balance of energy, and what was
-        computed. In notebooks the last line of a cell shows it as a table.
+        Whether it squeals, at what pitch, and how the level is found; then the forces, the shares of the time in each
+        status, the balance of energy, and what was computed. In notebooks the last line of a cell shows it as a table.
 
     Raises
     ------
     ValueError
-        If it is no record of `simulate`, or lacks what a card needs.
+        If `run` is not a record of `simulate`, or lacks variables or attributes that a card needs.
     """
     given = record("run", run, "normal_force")
     for name in ("ended", "sample_interval", "modes", "step", "scheme", "wall_time"):
@@ -98,15 +101,33 @@ def card(run: xr.Dataset, system: System | None = None) -> RecordCard:
     return RecordCard(str(given.attrs.get("title", "")), facts_of(given, system), _force_over_time(given))
 
 
-def facts_of(record: xr.Dataset, system: System | None = None) -> dict[str, str]:
-    """Return what came of a run, in words: how it ended if not as asked, then what is heard, then the numbers of it."""
+def facts_of(record: xr.Dataset, system: System | None = None, level: str = ASK_FOR_LEVEL) -> dict[str, str]:
+    """Return the result of a run in words: how it ended if not as asked, whether and how it squeals, then its numbers.
+
+    Parameters
+    ----------
+    record : xarray.Dataset
+        The record.
+    system : System, optional
+        Its system, to tell which motion a bowed string is in.
+    level : str, optional
+        How loud it is, in words, or how that is found; no line says it where empty.
+    """
     lines = _ending(record)
+    if record.sizes["time"] > 1:
+        lines |= _heard(by_point(record)) | ({"sound level": level} if level else {}) | _strings(record, system)
     if record.sizes["time"]:
         lines |= _contact(record) | _energy(record)
-    lines |= _computation(record)
-    # Beside the regime, which comes first.
-    shown = {name: lines.pop(name) for name in ("ended", "regime") if name in lines}
-    return shown | _strings(record, system) | lines
+    return lines | _computation(record)
+
+
+def _heard(record: xr.Dataset) -> dict[str, str]:
+    """Return whether a run squeals, and at what pitch."""
+    found = regime_of(record)
+    regime, interval = str(found["regime"]), record.attrs["sample_interval"]
+    answer = "yes" if regime == SQUEAL else f"no, {regime}"
+    pitch = _pitch(regime, float(found["frequency"]), interval)
+    return {"squeals": f"{answer} (confidence {found['confidence']:.2f})"} | ({"pitch": pitch} if pitch else {})
 
 
 def _force_over_time(record: xr.Dataset) -> Array:
@@ -117,7 +138,7 @@ def _force_over_time(record: xr.Dataset) -> Array:
 
 
 def _strokes(force: Array) -> list[Stroke]:
-    """Return a force over time as strokes, from zero up to its largest value; nothing of one that does not change."""
+    """Return a force over time as strokes, from zero to its largest value; nothing for a constant force."""
     largest = float(np.abs(force).max(initial=0.0))
     if len(force) < 2 or not np.ptp(force):
         return []
@@ -128,7 +149,7 @@ def _strokes(force: Array) -> list[Stroke]:
 
 
 def _ending(record: xr.Dataset) -> dict[str, str]:
-    """Return how a run ended that did not finish, and when."""
+    """Return the ending and its time of a run that did not finish."""
     ended = record.attrs["ended"]
     if ended not in ENDINGS:
         return {}
@@ -137,7 +158,7 @@ def _ending(record: xr.Dataset) -> dict[str, str]:
 
 
 def _computation(record: xr.Dataset) -> dict[str, str]:
-    """Return how much was computed, and how."""
+    """Return the simulated time, computing time, step and scheme."""
     simulated = record.sizes["time"] * record.attrs["sample_interval"]
     wall_time, compile_time = record.attrs["wall_time"], record.attrs.get("compile_time", 0.0)
     compiled = f", after {compile_time:.2g} s of compiling" if compile_time else ""
@@ -150,7 +171,7 @@ def _computation(record: xr.Dataset) -> dict[str, str]:
 
 
 def _since(record: xr.Dataset) -> str:
-    """Return from where to where a record reaches that continues another one."""
+    """Return the time span of a record that continues another one."""
     interval = record.attrs["sample_interval"]
     if not record.sizes["time"] or record["time"][0] < 1.5 * interval:
         return ""
@@ -159,7 +180,7 @@ def _since(record: xr.Dataset) -> str:
 
 
 def _strings(record: xr.Dataset, system: System | None) -> dict[str, str]:
-    """Return the motion of the string that all contacts of a run touch, if they do."""
+    """Return the motion of the string touched by all contacts of a run, if there is one."""
     first = system.contacts[0] if system else None
     stretched = [body for body in (first.tip.body, first.track_body) if getattr(body, "tension", 0.0)] if first else []
     if system is None or len(stretched) != 1 or record.sizes["time"] < 2:
@@ -176,21 +197,21 @@ def _strings(record: xr.Dataset, system: System | None) -> dict[str, str]:
 
 
 def _contact(record: xr.Dataset) -> dict[str, str]:
-    """Return what came of the contact; of several, of all together and of each one or each surface on its own line."""
+    """Return the results of the contact; if there are several, of all together and of each contact or surface."""
     points = by_point(record)
     if "contact" in points.dims:
-        lines = {"regime": _regime(points)}
+        lines = {}
         for name, part in _parts(record, points):
             alone = _one_contact(part) if "contact" not in part.dims else _surface(part)
             lines[name] = "; ".join(words for words in alone.values() if words[:4] != "none")
         unsolved = int(record["unsolved_steps"].sum())
         words = f"{counted(unsolved, 'step')} with contact forces out of tolerance"
         return lines | ({"unsolved": words} if unsolved else {})
-    return _one_contact(record)
+    return {name: words for name, words in _one_contact(record).items() if name != "regime"}
 
 
 def _parts(record: xr.Dataset, points: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
-    """Yield the record of each contact, those of the points of a surface as one, and what it is called."""
+    """Yield the name and the record of each contact, with the points of a surface as one."""
     names = [str(name) for name in points["contact"].values]
     surfaces = [str(name) for name in points["surface"].values] if "surface" in points.coords else []
     for members in groups(names, surfaces):
@@ -201,7 +222,7 @@ def _parts(record: xr.Dataset, points: xr.Dataset) -> Iterator[tuple[str, xr.Dat
 
 
 def _surface(record: xr.Dataset) -> dict[str, str]:
-    """Return what came of the points of a surface together."""
+    """Return the results of all points of a surface together."""
     carried = loads(record["normal_force"].values, LIMITS.rare)
     return {
         "points": counted(carried.size, "point"),
@@ -231,7 +252,7 @@ def _one_contact(record: xr.Dataset) -> dict[str, str]:
 
 
 def _place(place: Array) -> str:
-    """Return an abscissa, or in space a pair of them [m]."""
+    """Return an abscissa, or in space a pair of abscissas [m]."""
     return f"{place:.4g} m" if np.ndim(place) == 0 else f"({', '.join(f'{one:.4g}' for one in place)}) m"
 
 
@@ -248,12 +269,12 @@ def _is_steady(heard: Array, force: Array) -> bool:
 
 
 def _frequency(record: xr.Dataset) -> str:
-    """Return the dominant frequency of the normal force, between the stops where there are any."""
+    """Return the dominant frequency of the normal force, between the stops if there are any."""
     force = record["normal_force"].values
     if force.size < 2:
         return "none"
     between = bursts(record)
-    # The first sample is where the load comes on.
+    # The load is applied in the first sample.
     heard = force[inside(record, between)] if len(between) else force[1:]
     if _is_steady(heard, force):
         return "none, the normal force is constant"
@@ -263,7 +284,7 @@ def _frequency(record: xr.Dataset) -> str:
 
 
 def _regime(record: xr.Dataset) -> str:
-    """Return the regime with its tone; it takes at least 2 samples."""
+    """Return the regime with its tone; needs at least 2 samples."""
     if record.sizes["time"] < 2:
         return "none"
     found = regime_of(record)
@@ -272,12 +293,18 @@ def _regime(record: xr.Dataset) -> str:
 
 
 def _tone(regime: str, frequency: float, interval: float) -> str:
+    """Return the words that follow a regime: its tone; nothing where there is none."""
+    pitch = _pitch(regime, frequency, interval)
+    return f"{' at ' if regime in CYCLES else ', '}{pitch}" if pitch else ""
+
+
+def _pitch(regime: str, frequency: float, interval: float) -> str:
     """Return at which frequency [Hz] a regime is heard, in words; nothing where no tone is."""
     if math.isnan(frequency):
         return ""
     # Samples hide a cycle that is faster than half their rate.
     hertz = f"{frequency:{'.4g' if frequency < 1e4 else '.0f'}} Hz{' or more' if frequency * interval >= 0.5 else ''}"
-    return f" at {hertz}" if regime in CYCLES else f", loudest at {hertz}"
+    return hertz if regime in CYCLES else f"loudest at {hertz}"
 
 
 def _energy(record: xr.Dataset) -> dict[str, str]:

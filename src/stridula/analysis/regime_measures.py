@@ -1,4 +1,4 @@
-"""The measures that decide the regime of a contact, or of several together, from the plain arrays of a record."""
+"""Measures that decide the regime of a contact, or of several together, from the plain arrays of a record."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from .several_contacts import cycles, landings_of, loads, mean_shares, statuses,
 from .status_changes import MIXED, between_stops, last_rest, prevailing, regularity, slips, vibrations
 
 STICKING = 1
-# Samples within which the status changes, from which the cycle lies inside the samples: one sampled eight times a
-# period has a quarter of them.
+# Share of samples with a change of status above which the cycle is faster than the samples: a cycle sampled eight
+# times per period has a quarter.
 UNRESOLVED = 0.5
-# Steps of the march of which a stick or a slip may be noise.
+# Time steps up to which a stick or a slip may be noise.
 NOISY_STEPS = 2.0
-# Share of `faint` from which a tone that grows counts.
+# Fraction of `faint` above which a growing tone counts.
 BUDDING = 0.02
 
 
 class Signals(NamedTuple):
-    """The arrays of a record that decide.
+    """The arrays of a record that decide the regime.
 
     Attributes
     ----------
@@ -37,15 +37,15 @@ class Signals(NamedTuple):
     normal : ndarray, shape (samples, contacts)
         Normal force of each contact [N].
     forces : ndarray, shape (forces, samples)
-        Normal forces of the groups of contacts that count as one, then tangential ones [N].
+        Normal forces of the groups of contacts that count as one, then tangential forces [N].
     groups : int
-        How many such groups.
+        Number of such groups.
     landings : ndarray, shape (samples, contacts), or None
-        Landings in each sample [1]; counted from the shares where there are none.
+        Landings in each sample [1]; counted from the shares if None.
     lost, rubbed : ndarray, shape (samples,)
         Energy lost to damping and impacts, and to friction, since the start [J].
     step : float
-        Step of the march [s], 0 if it is not known.
+        Time step [s], 0 if unknown.
     """
 
     interval: float
@@ -61,7 +61,7 @@ class Signals(NamedTuple):
 
 @dataclass(frozen=True)
 class Thresholds:
-    """What separates the regimes; `regime` says what each is.
+    """Thresholds between the regimes; see `regime`.
 
     Attributes
     ----------
@@ -99,46 +99,46 @@ class Thresholds:
 
 @dataclass(frozen=True)
 class Measures:
-    """What decides the regime of a run, after the start that is left aside.
+    """Measures that decide the regime of a run, without the ignored beginning.
 
     Attributes
     ----------
     separated, sticking, sliding : float
         Shares of the time [1].
     tonality : float
-        Share of the heard power that repeats itself [1]; of what the samples hide, how alike they are.
+        Share of the audible power that repeats itself [1]; for cycles faster than the samples, their similarity.
     audibility : float
-        Root mean square of the heard forces over the mean normal force [1].
+        Root mean square of the audible forces over the mean normal force [1].
     growth : float
-        Audibility of the later half of the time over that of the earlier one [1], NaN where there is one frame.
+        Audibility of the later half of the time over that of the earlier half [1], NaN for one frame.
     tone : float
-        Frequency of what the samples hide, else of the strongest tone that is heard [Hz]; NaN if nothing is.
+        Frequency of a cycle faster than the samples, else of the strongest audible tone [Hz]; NaN if there is none.
     cycle : float
-        Frequency of the slips, or of what the samples hide [Hz]; NaN for fewer than two.
+        Frequency of the slips, or of a cycle faster than the samples [Hz]; NaN for fewer than two.
     periodicity : float
         Regularity of the ends of the slips [1], NaN for fewer than three.
     impact_rate, slip_rate : float
         Landings, and slips, per second [1/s].
     change_rate : float
-        Cycles of changing status per second, the least that explain the samples [1/s].
+        Least number of cycles of changing status per second that explains the samples [1/s].
     settle_time : float
-        Time from the first sample interval on, from which the status changes no more [s]; NaN if it does.
+        Time, since the first sample interval, after which the status no longer changes [s]; NaN if it does.
     level, swing : float
         Root mean square of the fluctuation over the mean normal force [1]: of the normal force, and of both forces.
     unsettled : float
         Share of the record before the status settles [1], 1 if it does not.
     loss, loss_growth : float
-        Energy lost to damping and impacts over that lost to friction in the later half of the time, and over that
-        lost so in the earlier half [1].
+        Energy lost to damping and impacts in the later half of the time over that lost to friction, and over that
+        lost to damping and impacts in the earlier half [1].
     last_status : int
-        Status in which the run settles: 0 separated, 1 sticking, 2 sliding if any contact does, -1 none.
+        Status in which the run settles: 0 separated, 1 sticking, 2 sliding if any contact slides, -1 none.
     slips : int
-        Slips, each of which ends in a stick phase.
+        Number of slips that end in a stick phase.
     periods : float
-        Periods of the tone in slips that make up half of the time of all, those faster than the lowest tone as one [1];
-        infinite where it always slips, NaN where no tone is heard.
+        Periods of the tone in the slips that make up half of the slip time, slips faster than the lowest tone counted
+        as one [1]; infinite if it always slips, NaN without an audible tone.
     is_short : bool
-        Whether there are fewer than two frames to listen to.
+        Whether there are fewer than two frames.
     """
 
     separated: float
@@ -171,11 +171,11 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
     Parameters
     ----------
     signals : Signals
-        Its record.
+        Arrays of its record.
     start : float
-        Time at the beginning that is left aside [s].
+        Time at the beginning that is ignored [s].
     limits : Thresholds
-        What counts as settled, heard and tonal.
+        Thresholds of settled, audible and tonal motion.
     """
     interval, count = signals.interval, signals.share.shape[0]
     first = min(round(start / interval), count - 1)
@@ -208,7 +208,7 @@ def measures(signals: Signals, start: float, limits: Thresholds) -> Measures:
         weight = between_stops(sticking[heard_from:], _odd(SMOOTHING / interval))
         tone = strongest_tone(weight * signals.forces[:, heard_from:], interval, limits.frame, limits.lowest_tone)
     elif settles and loss >= limits.lossy and swing < limits.faint:
-        # What the samples do not show goes on at their rate, or a multiple of it.
+        # A vibration that the samples do not show is at their rate, or a multiple of it.
         tonality, tone = 1.0, 1.0 / interval
     separated, stuck, sliding = mean_shares(signals.share[first:], carried).tolist()
     return Measures(
@@ -243,9 +243,9 @@ def _odd(width: float) -> int:
 
 
 def _heard(forces: Array, interval: float, limits: Thresholds) -> Frames:
-    """Return what is heard of the forces, brought to about the rate by means over whole numbers of samples.
+    """Return the audible forces, averaged to about the rate over whole numbers of samples.
 
-    A record of forces is one of means: this is the record that a lower rate would have given.
+    Recorded forces are means over the sample interval, so that this equals a record at a lower rate.
     """
     ratio = max(1, int(min(1.0 / (limits.rate * interval), forces.shape[1]) * (1.0 + 1e-9)))
     end = forces.shape[1] // ratio * ratio
@@ -259,12 +259,12 @@ def _cycle(caught: Array, interval: float) -> float:
 
 
 def _likeness(forces: Array, mean: float) -> float:
-    """Return how alike successive samples are, 1 less the root mean square of their differences over the mean force."""
+    """Return the similarity of successive samples: 1 minus the rms of their differences over the mean force."""
     return max(0.0, 1.0 - float(np.sqrt(np.mean(np.diff(forces, axis=1) ** 2) * len(forces))) / mean)
 
 
 def _losses(signals: Signals, first: int) -> tuple[float, float]:
-    """Return what is lost to damping and impacts in the later half over what friction takes, and over the earlier."""
+    """Return the loss to damping and impacts in the later half, over that to friction and over that in the earlier."""
     middle = (first + signals.lost.size - 1) // 2
     early, late = float(signals.lost[middle] - signals.lost[first]), float(signals.lost[-1] - signals.lost[middle])
     rubbed = float(signals.rubbed[-1] - signals.rubbed[middle])

@@ -1,4 +1,4 @@
-"""The regime of a contact or of several: whether it slides, sticks, slips, squeals, judders or has left its track."""
+"""The regime of one or several contacts: sliding, sticking, stick-slip, squeal, judder or off the track."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ REGIMES = ("stable sliding", "sticking", "stick-slip", "squeal", "judder", "off 
 SLIDES, STICKS, SLIPS, SQUEALS, JUDDERS, LEFT = REGIMES
 
 LIMITS = Thresholds()
-# Share of the record that is left aside where no start is given.
+# Fraction of the record ignored by default.
 TRANSIENT = 0.1
-# Growth of a tone from one half of the time to the other: below the first it dies away, above the second it is on its
-# way up.
+# Growth of a tone from one half of the time to the other: below the first value it dies away, above the second it
+# grows.
 KEPT, GROWING = 0.5, 2.0
-# Periods of a tone in a slip, from which the tone is what slips: a mode that is let go is caught within one.
+# Periods of a tone in a slip above which the tone is sustained: a released mode is caught within one period.
 SUSTAINED = 2.0
-# Ends of a run that cannot be believed.
+# Endings of failed runs.
 FAILED = ("not finite", "contact unsolved", "energy created")
-# What a record must have.
+# Required variables of a record.
 NEEDED = (
     "status_share",
     "normal_force",
@@ -38,9 +38,9 @@ NEEDED = (
     "impact_loss",
     "friction_loss",
 )
-# What is recorded of each contact.
+# Variables of each contact.
 OF_CONTACTS = ("status_share", "normal_force", "tangential_force", "landings")
-# What it may have: landings are counted from the shares where it has none.
+# Variables used: landings are counted from the shares if not recorded.
 TAKEN = (*NEEDED, "landings")
 MEANINGS = {
     "regime": ("1", "regime of the contact"),
@@ -48,8 +48,8 @@ MEANINGS = {
     "separated": ("1", "share of the time separated"),
     "sticking": ("1", "share of the time sticking"),
     "sliding": ("1", "share of the time sliding"),
-    "tonality": ("1", "share of the heard power that repeats itself"),
-    "audibility": ("1", "heard forces over the mean normal force"),
+    "tonality": ("1", "share of the audible power that repeats itself"),
+    "audibility": ("1", "audible forces over the mean normal force"),
     "periodicity": ("1", "regularity of the slips"),
     "frequency": ("Hz", "frequency of the strongest tone, or of the slips"),
     "impact_rate": ("1/s", "landings per second"),
@@ -72,48 +72,48 @@ def regime(
     frame: float = Thresholds.frame,
     rate: float = Thresholds.rate,
 ) -> xr.Dataset:
-    """Return the regime of a run, and the measures that decide it: of its contact, or of all its contacts together.
+    """Return the regime of a run, of one contact or of all together, and the measures that decide it.
 
-    A run is at rest if its status does not change over the last half of it: then it slides stably, sticks, or has left
-    its track, but squeals if it slides with a tone that does not die away. Else it squeals if what is heard is tonal;
-    judders if it separates; and sticks and slips if it sticks. The documentation has the reasons.
+    A run is at rest if its status does not change over its last half: then it slides stably, sticks, or has left its
+    track, but squeals if it slides with a tone that does not die away. Else it squeals if its audible forces are tonal,
+    judders if it separates, and is in stick-slip if it sticks. The documentation gives the reasons.
 
-    Several contacts have one regime: shares of the time weigh each contact by what it carries, slips are those of
-    contacts that carry the better part of the load, forces are heard side by side, those of the points of a surface as
-    their sum. Choose some of them before to have theirs: ``run.sel(contact="a")``, ``run.isel(contact=run.surface ==
+    Several contacts have one regime: shares of the time are weighted by the load of each contact, slips are those of
+    contacts that carry most of the load, and the powers of their forces are added, with the points of a surface summed
+    first. Select contacts for the regime of a part: ``run.sel(contact="a")``, ``run.isel(contact=run.surface ==
     "pad")``.
 
     Parameters
     ----------
     run : xarray.Dataset
-        A record of `simulate`, or the part of some contacts.
+        A record of `simulate`, or of some of its contacts.
     start : float, optional
-        Time at its beginning that is left aside [s]; a tenth of the record if left out.
+        Time at the beginning that is ignored [s]; a tenth of the record if left out.
     rest : float, optional
-        Share of the record [1]: a status that settles before this is the regime, whatever came before.
+        Fraction of the record [1]: a status that settles before this decides the regime.
     tonal : float, optional
-        Share of the heard power [1] that repeats itself within ``1 / lowest_tone``, from which it is a tone.
+        Share of the audible power that repeats itself within ``1 / lowest_tone``, above which it is a tone [1].
     faint : float, optional
-        Heard forces over the mean normal force [1], below which nothing is heard.
+        Audible forces over the mean normal force, below which nothing is audible [1].
     lossy : float, optional
-        Energy lost to damping over that lost to friction [1], from which even sliding hides a vibration.
+        Energy lost to damping over that lost to friction, above which sliding hides a vibration [1].
     rare : float, optional
-        Share of the time [1] below which a status does not count.
+        Share of the time below which a status does not count [1].
     lowest_tone : float, optional
-        Lowest frequency of a tone [Hz]; what is slower is stick-slip.
+        Lowest frequency of a tone [Hz]; slower cycles are stick-slip.
     frame : float, optional
-        Length of the frames in which tones are looked for [s].
+        Length of the frames in which tones are sought [s].
     rate : float, optional
-        Rate to which the forces are averaged down for that [Hz]: from there on, the answer does not depend on sampling.
+        Rate to which the forces are averaged for that [Hz]; at higher sample rates the result does not depend on them.
 
     Returns
     -------
     xarray.Dataset
         Scalars: ``regime``, one of `REGIMES`; ``confidence`` [1], ``0.5 + 0.5 min(1, |log2 r|)`` with r the factor by
-        which the least clear of the decisive measures is away from its threshold; the shares ``separated``,
+        which the least clear of the decisive measures differs from its threshold; the shares ``separated``,
         ``sticking`` and ``sliding``; ``tonality``, ``audibility``, ``periodicity``, ``frequency``, ``impact_rate``,
         ``slip_rate``, ``settle_time`` and ``level``. The frequency is that of the slips in stick-slip, else that of the
-        strongest tone; it is NaN where nothing is heard, and a lower bound where the samples hide the cycle.
+        strongest tone; it is NaN if nothing is audible, and a lower bound if the cycle is faster than the samples.
 
     Raises
     ------
@@ -129,14 +129,14 @@ def regime(
 def regime_of(
     run: xr.Dataset | PlainRecord, *, start: float | None = None, limits: Thresholds = LIMITS
 ) -> dict[str, float | str]:
-    """Return the regime of a run, its confidence and the measures of `regime` by name, in a fraction of the time.
+    """Return the regime of a run, its confidence and the measures of `regime` by name, faster than `regime`.
 
     Parameters
     ----------
     run : xarray.Dataset or PlainRecord
         A record of `simulate`.
     start : float, optional
-        Time at its beginning that is left aside [s]; a tenth of the record if left out.
+        Time at the beginning that is ignored [s]; a tenth of the record if left out.
     limits : Thresholds, optional
         The thresholds of `regime`.
     """
@@ -157,7 +157,7 @@ def signals_of(run: xr.Dataset | PlainRecord) -> Signals:
     held: PlainRecord = given if hasattr(given, "by_contact") and _is_usable(given) else _checked(given)
     time, members = held["time"], groups(held.contacts, held.surfaces)
     normal, tangential = held.by_contact("normal_force"), held.by_contact("tangential_force")
-    # In space one row for each tangent.
+    # In space, one row for each tangent.
     along = tangential.reshape(*normal.shape, -1)
     heard = [values for number in range(along.shape[2]) for values in sums(along[..., number], members)]
     return Signals(
@@ -178,7 +178,7 @@ def _is_usable(run: PlainRecord) -> bool:
 
 
 def _checked(run: Any) -> PlainRecord:
-    """Return the plain arrays of a record that has what is needed; ValueError if it is none."""
+    """Return the plain arrays of a record; raise ValueError unless it has the required variables."""
     given = run.labelled(*run.variables) if hasattr(run, "labelled") else run
     held = by_point(checked.record("run", given, *NEEDED, least=2))
     if "landings" in held.variables:
@@ -193,10 +193,10 @@ def _checked(run: Any) -> PlainRecord:
 
 
 def decide(found: Measures, limits: Thresholds, ended: str = "finished") -> tuple[str, float]:
-    """Return the regime that measures stand for, and the confidence in it.
+    """Return the regime that follows from measures, and the confidence in it.
 
-    Each measure becomes a margin, the binary logarithm of its ratio to its threshold; of shares, of the ratio of odds.
-    What needs several conditions has the least of their margins, what needs one of several the largest.
+    Each measure becomes a margin, the binary logarithm of its ratio to its threshold; for shares, of the ratio of odds.
+    A regime that needs several conditions has the least of their margins, one that needs any of several the largest.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def decide(found: Measures, limits: Thresholds, ended: str = "finished") -> tupl
     limits : Thresholds
         Their thresholds.
     ended : str, optional
-        How the run ended. One that ran off its track is of that regime; one that failed is judged by what came before.
+        Ending of the run. A run off its track has that regime; a failed run is judged by its record so far.
     """
     if ended == LEFT:
         return LEFT, 1.0
@@ -234,19 +234,19 @@ def _at_rest(found: Measures, limits: Thresholds) -> tuple[str, float]:
 
 
 def _on_the_move(found: Measures, limits: Thresholds) -> tuple[str, float]:
-    """Return the regime of a run whose status goes on changing, and its margin."""
-    # A cycle of states this fast is a limit cycle, however little of it the forces show.
+    """Return the regime of a run whose status keeps changing, and its margin."""
+    # A cycle of states this fast is a limit cycle, however faint its forces are.
     heard = max(_above(found.audibility, limits.faint), _above(found.change_rate, limits.lowest_tone))
     sustained = math.inf if math.isnan(found.periods) else _above(found.periods, SUSTAINED)
     squeals = min(heard, _odds_above(found.tonality, limits.tonal), sustained)
     if squeals >= 0.0:
         return SQUEALS, squeals
-    # Of the time that it does not stick: how long it sticks between is another matter.
+    # Share of the time without sticking, so that the length of stick phases does not matter.
     moving = found.separated + found.sliding
     opens = _odds_above(found.separated / moving if moving else 0.0, limits.rare)
     if opens >= 0.0:
         return JUDDERS, min(-squeals, opens)
-    # A state that is rare is an accident of the others, unless it comes back.
+    # A rare state is incidental, unless it recurs.
     sticks, returns = _odds_above(found.sticking, limits.rare), _above(found.slips, 2.0)
     if sticks < 0.0 and returns < 0.0:
         return SLIDES, min(-squeals, -opens, -sticks)
@@ -257,12 +257,12 @@ def _on_the_move(found: Measures, limits: Thresholds) -> tuple[str, float]:
 
 
 def _above(value: float, threshold: float) -> float:
-    """Return by how many factors of two a measure is above its threshold; one that is not known is below it."""
+    """Return the number of factors of two by which a measure is above its threshold; an unknown one is below it."""
     return math.log2(value / threshold) if value > 0.0 else -math.inf
 
 
 def _odds_above(share: float, threshold: float) -> float:
-    """Return by how many factors of two the odds of a share are above those of its threshold."""
+    """Return the number of factors of two by which the odds of a share are above those of its threshold."""
     if not 0.0 < share < 1.0:
         return math.inf if share >= 1.0 else -math.inf
     return _above(share / (1.0 - share), threshold / (1.0 - threshold))

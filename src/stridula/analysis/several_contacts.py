@@ -1,4 +1,4 @@
-"""Several contacts as one: what each of them carries, when they have a status together, and when all are at rest."""
+"""Several contacts as one: their shares of the load, their common status, and their common rest."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 from ..arrays import Array
 from .status_changes import MIXED, changes, least_landings, whole_status
 
-# Share of the load from which contacts speak for all. Above one half by so much that two equal ones only do together.
+# Share of the load above which contacts decide for all, above one half so that two equal contacts only do together.
 MAJORITY = 0.55
 
 
 def loads(forces: Array, rare: float) -> Array:
-    """Return the share of the load that each contact carries; contacts that carry next to nothing count as none.
+    """Return the share of the load carried by each contact, zero for contacts with a negligible load.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def loads(forces: Array, rare: float) -> Array:
     Returns
     -------
     ndarray, shape (contacts,)
-        Shares, which add up to 1; equal ones where nothing is carried.
+        Shares, which add up to 1; equal shares without any load.
     """
     carried = np.abs(forces).mean(axis=0)
     kept = np.where(carried >= rare * carried.mean(), carried, 0.0)
@@ -35,32 +35,32 @@ def loads(forces: Array, rare: float) -> Array:
 
 
 def mean_shares(share: Array, carried: Array) -> Array:
-    """Return the shares of the time in each status, each contact weighing as it carries, shape (3,).
+    """Return the shares of the time in each status, weighted by the loads of the contacts, shape (3,).
 
     Parameters
     ----------
     share : ndarray, shape (samples, contacts, 3)
         Share of each status in each sample.
     carried : ndarray, shape (contacts,)
-        What each contact carries, as `loads` returns it.
+        Share of the load on each contact, as returned by `loads`.
     """
     return np.asarray(carried @ share.mean(axis=0))
 
 
 def together(share: Array, carried: Array) -> Array:
-    """Return the share of each sample in which contacts that carry the better part of the load have a status.
+    """Return the share of each sample in which contacts with most of the load have a status.
 
     Parameters
     ----------
     share : ndarray, shape (samples, contacts)
         Share of the status in each sample.
     carried : ndarray, shape (contacts,)
-        What each contact carries.
+        Share of the load on each contact.
     """
     if carried.size == 1:
         return share[:, 0]
     order = np.argsort(-share, axis=1, kind="stable")
-    # The last of all carries the rest, whatever rounding makes of the sum.
+    # The last contact carries the rest, regardless of rounding of the sum.
     enough = np.cumsum(carried[order], axis=1)[:, :-1] > MAJORITY
     last = np.where(enough.any(axis=1), enough.argmax(axis=1), carried.size - 1)
     samples = np.arange(len(share))
@@ -75,7 +75,7 @@ def statuses(share: Array, carried: Array) -> Array:
     share : ndarray, shape (samples, contacts, 3)
         Share of each status in each sample.
     carried : ndarray, shape (contacts,)
-        What each contact carries.
+        Share of the load on each contact.
 
     Returns
     -------
@@ -99,25 +99,25 @@ def stretches(found: Array) -> Array:
 
 
 def cycles(found: Array, landed: Array) -> float:
-    """Return the cycles of the contact that changes most, the least that explain the samples.
+    """Return the least number of cycles, of the contact with most changes, that explains the samples.
 
     Parameters
     ----------
     found : ndarray, shape (contacts, samples)
         Statuses.
     landed : ndarray, shape (contacts,)
-        How often each lands.
+        Number of landings of each.
     """
     return max(max(changes(one) / 2.0, float(times)) for one, times in zip(found, landed, strict=True))
 
 
 def landings_of(landings: Array | None, separated: Array) -> Array:
-    """Return how often each contact lands, shape (contacts,).
+    """Return the number of landings of each contact, shape (contacts,).
 
     Parameters
     ----------
     landings : ndarray, shape (samples, contacts), or None
-        Landings in each sample [1]; counted from the shares where there are none.
+        Landings in each sample [1]; counted from the shares if None.
     separated : ndarray, shape (samples, contacts)
         Share of separation in each sample.
     """

@@ -27,7 +27,7 @@ def samples(signal: xr.DataArray) -> tuple[Array, float]:
 
 
 def of_one_contact(recorded: Recorded) -> Recorded:
-    """Return a record or a signal if it is of one contact.
+    """Return a record or a signal after checking that it is of one contact.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def record_of_one(run: xr.Dataset, *needed: str) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If it is no record, lacks a variable, or has several contacts.
+        If it is not a record, lacks a variable, or has several contacts.
     """
     return checked.record("run", of_one_contact(run), *needed)
 

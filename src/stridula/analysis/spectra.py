@@ -11,12 +11,12 @@ from .signals import blocks, checked_intervals, pieces, samples
 
 PERIODS = 10.0
 FINEST = 2.0
-# Sample rate [Hz] beyond which a spectrum that fine does not fit into memory.
+# Sample rate above which a spectrum this fine does not fit into memory [Hz].
 FASTEST = 1e8
 
 
 def spectrum(signal: xr.DataArray, intervals: Array | None = None) -> tuple[Array, Array]:
-    """Return the energy spectrum of a signal over intervals of time, added up.
+    """Return the energy spectrum of a signal, summed over intervals of time.
 
     Each interval is taken without its mean, under a Hann window, padded to a common grid of 2 Hz or finer.
 
@@ -49,7 +49,7 @@ def spectrum(signal: xr.DataArray, intervals: Array | None = None) -> tuple[Arra
 
 
 def dominant_frequency(signal: xr.DataArray, intervals: Array | None = None, lowest: float | None = None) -> float:
-    """Return the frequency [Hz] at which a signal carries most energy.
+    """Return the frequency at which a signal has most energy [Hz].
 
     The largest local peak of `spectrum`, refined by a parabola through its logarithm.
 
@@ -60,12 +60,12 @@ def dominant_frequency(signal: xr.DataArray, intervals: Array | None = None, low
     intervals : ndarray, shape (intervals, 2), optional
         Starts and ends [s]; the whole signal if left out.
     lowest : float, optional
-        Frequencies below are left aside [Hz]: ten periods in the median interval if left out.
+        Frequencies below this are ignored [Hz]; by default ten periods in the median interval.
 
     Returns
     -------
     float
-        NaN if there is no peak, as in a constant signal or no interval at all.
+        NaN if there is no peak, as in a constant signal or without intervals.
     """
     frequency, energy = spectrum(signal, intervals)
     if lowest is None:
@@ -87,8 +87,8 @@ def tones(
 ) -> tuple[Array, Array]:
     """Return the tones that stand out of the spectrum of a signal, the strongest first.
 
-    The energy spectrum is averaged over bands of `resolution`; a tone is a local maximum that one must go down from by
-    `prominence` before a higher one is reached.
+    The energy spectrum is averaged over bands of `resolution`; a tone is a local maximum whose prominence is at least
+    `prominence`.
 
     Parameters
     ----------
@@ -99,16 +99,16 @@ def tones(
     resolution : float, optional
         Width of the bands [Hz].
     prominence : float, optional
-        How far a tone stands out [dB].
+        Smallest prominence of a tone [dB].
 
     Returns
     -------
     frequency : ndarray, shape (tones,)
         Frequencies [Hz].
     level : ndarray, shape (tones,)
-        Levels below the strongest [dB].
+        Levels relative to the strongest [dB].
     """
-    # Slow to import, and seldom needed.
+    # Slow to import and seldom needed.
     from scipy.signal import find_peaks
 
     positive("prominence", prominence)
@@ -124,7 +124,7 @@ def tones(
 
 
 def frequency_resolution(signal: xr.DataArray, intervals: Array | None = None) -> float:
-    """Return the frequency step [Hz] that the median interval can tell apart, one over its length."""
+    """Return the frequency resolution of the median interval, the inverse of its length [Hz]."""
     return 1.0 / _median_length(signal, intervals)
 
 
@@ -136,7 +136,7 @@ def envelope(signal: xr.DataArray, window: float = 5e-3) -> Array:
 
 
 def envelope_correlation(first: xr.DataArray, second: xr.DataArray, window: float = 5e-3) -> float:
-    """Return the correlation coefficient [1] of the envelopes of two signals on one time axis, NaN of a steady one."""
+    """Return the correlation coefficient [1] of the envelopes of two signals on one time axis, NaN for a steady one."""
     one, other = envelope(first, window), envelope(second, window)
     if one.shape != other.shape:
         raise ArgumentError("second", f"have as many windows as first, {one.size}", second, got=other.size)
@@ -146,7 +146,7 @@ def envelope_correlation(first: xr.DataArray, second: xr.DataArray, window: floa
 
 
 def _peaks(values: Array) -> Array:
-    """Return the places of the local maxima, of flat ones their middle; the ends are none."""
+    """Return the indices of the local maxima, the middle of flat ones; the ends do not count."""
     edges = np.flatnonzero(np.diff(values, prepend=np.nan))
     level = values[edges]
     top = 1 + np.flatnonzero((level[1:-1] > level[:-2]) & (level[1:-1] > level[2:]))

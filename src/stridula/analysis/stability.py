@@ -29,35 +29,35 @@ def sliding_stability(
 ) -> xr.Dataset:
     """Return the vibration modes of a system about its equilibrium: frequency, growth, damping, shape.
 
-    The equilibrium is that of steady sliding where drives or tracks prescribe it, else that in the accelerating frame
-    of a slider that a force drives. Small motions q about it obey, with the closed contacts' rows G of the gap and T of
+    The equilibrium is that of steady sliding if drives or tracks prescribe it, else that in the accelerating frame
+    of a slider driven by a force. Small motions q about it obey, with the closed contacts' rows G of the gap and T of
     the slip, s the sense of sliding and mu the coefficient of friction::
 
         q'' + D q' + K q = (G - s mu T)^T m,    G q = 0
 
     so that, with ``Z = null(G)`` and ``Y = null(G - s mu T)``, exponents are those of ``(Y'Z, Y'DZ, Y'KZ)``, which is
-    not symmetric: two modes can lock in and one of them grow. A sticking contact also holds ``T q = 0``; a separated
-    one nothing. Friction that depends on the slip speed adds the normal force times its slope to D; laws with an
-    internal state add that. A load adds what the deflected track does to a contact point that shifts along it. The
-    place of the contact point, which travels, is taken as it is at the start.
+    not symmetric: two modes can lock in and one of them grow. A sticking contact also imposes ``T q = 0``; a separated
+    contact nothing. Friction that depends on the slip speed adds the normal force times its slope to D; laws with an
+    internal state add that state. A load adds the effect of the deflected track on a contact point that shifts along
+    it. The travelling contact point is taken at its initial position.
 
     Parameters
     ----------
     system : System
         The system.
     status : str or sequence of str, optional
-        ``separated``, ``sticking`` or ``sliding``, one for all contacts or one for each, taken as given whatever the
-        equilibrium would be; those of the equilibrium if left out.
+        ``separated``, ``sticking`` or ``sliding``, one for all contacts or one for each, which replaces that of the
+        equilibrium.
     velocity : float or sequence of float, optional
         Slip velocity [m/s] of contacts for which nothing prescribes it, one for all of them, or one for each contact
         and 0 for the others: that of the tip along the track's tangent, whose sign is the sense of sliding. Needed
-        where friction depends on it. A contact is then taken to slide so, unless it is slowed down.
+        if friction depends on it. A contact is then assumed to slide at this velocity, unless it decelerates.
     time : float, optional
-        When drives are taken [s]; once they no longer vary if left out.
+        Time at which drives are evaluated [s]; by default once they no longer vary.
     modes : int, optional
-        How many modes, those nearest to `near`; all if left out, or the lowest 100 of more than 600 degrees of freedom.
+        Number of modes, those nearest to `near`; by default all, or the lowest 100 of more than 600 degrees of freedom.
     near : float, optional
-        Frequency [Hz] about which a limited number of modes is found.
+        Frequency around which a limited number of modes is computed [Hz].
 
     Returns
     -------
@@ -65,21 +65,21 @@ def sliding_stability(
         Over ``mode``, by rising frequency: ``frequency`` [Hz], ``growth_rate`` [1/s], ``damping_ratio`` [1], whether
         ``unstable``, ``energy_share`` of each ``body`` in the kinetic energy [1], and ``mode_shape``, real and
         imaginary ``part`` of the modal displacements. For each contact its ``status``, forces [N], ``slip_velocity``
-        [m/s], NaN where a force accelerates it and none is given, and ``slip_acceleration`` [m/s²].
-        Of the equilibrium itself ``modal_displacement`` [kg^(1/2) m] over ``coordinate``, as mode shapes are, and the
+        [m/s], NaN if a force accelerates it and none is given, and ``slip_acceleration`` [m/s²].
+        For the equilibrium ``modal_displacement`` [kg^(1/2) m] over ``coordinate``, as for mode shapes, and the
         displacements along world x and y (``direction``) of each tip, ``tip_displacement`` [m], and of the point of
-        the track that it touches, ``track_displacement`` [m]: less rigid motions that nothing holds, and under an
+        the track that it touches, ``track_displacement`` [m]: without rigid motions that nothing holds, and under an
         imposed velocity in the frame that moves with the root.
-        ``attrs["equilibrium"]`` is ``sliding``; ``held``: friction holds a contact for good; ``lifted off``; or
-        ``jammed``: it neither slides on nor opens, and there are no modes unless `status` is given. With `status` it
-        says what would come of that instead.
-        ``attrs["round_off"]`` is the growth [1/s] up to which a mode does not count as unstable.
+        ``attrs["equilibrium"]`` is ``sliding``; ``held``: friction holds a contact permanently; ``lifted off``; or
+        ``jammed``: it neither slides nor opens, and there are no modes unless `status` is given. With `status` it is
+        the kind that would replace these statuses if they cannot persist.
+        ``attrs["round_off"]`` is the growth rate [1/s] up to which a mode does not count as unstable.
 
     Raises
     ------
     ValueError
-        If an argument is out of its range, a slip speed is needed, a drive never stops varying, or contacts hold the
-        same motion twice.
+        If an argument is out of its range, a slip speed is needed, a drive never stops varying, or contacts constrain
+        the same motion twice.
     """
     instance("system", system, System)
     chosen = given_status(status, system)
@@ -98,7 +98,7 @@ def sliding_stability(
 
 
 def stability_of(system: System, velocity: Velocity | None = None) -> dict[str, float | str]:
-    """Return what a map shows of the stability of a system: largest growth, its frequency, how many modes grow.
+    """Return the stability of a system for maps: largest growth rate, its frequency, number of growing modes.
 
     Parameters
     ----------
@@ -110,9 +110,9 @@ def stability_of(system: System, velocity: Velocity | None = None) -> dict[str, 
     Returns
     -------
     dict
-        ``growth_rate`` [1/s], NaN where no contact slides: nothing else feeds a vibration; ``flutter_frequency`` [Hz]
-        of the mode that grows fastest, NaN if none grows; ``unstable_modes``, NaN where it is jammed; ``equilibrium``
-        as in `sliding_stability`.
+        ``growth_rate`` [1/s], NaN if no contact slides, since only sliding feeds a vibration; ``flutter_frequency``
+        [Hz] of the mode that grows fastest, NaN if none grows; ``unstable_modes``, NaN if jammed; ``equilibrium`` as
+        in `sliding_stability`.
     """
     structure = Structure(system)
     equilibrium = find_equilibrium(structure, given_velocity(velocity, structure))
@@ -188,7 +188,7 @@ def _dataset(structure: Structure, equilibrium: Equilibrium, found: Exponents) -
 
 
 def _along_tangents(along: Array, across: Array | float, ways: Array) -> Array:
-    """Return components along both tangents of what contacts have along and across their slip, (contacts, 2)."""
+    """Return components along both tangents from those along and across the slip of contacts, (contacts, 2)."""
     c, s = ways.T
     return np.stack([c * along - s * across, s * along + c * across], axis=1)
 
@@ -198,8 +198,8 @@ def _attributes(word: str) -> dict[str, str]:
 
 
 def _contacts(at: Equilibrium) -> list[tuple[str, str, str, Array]]:
-    """Return name, unit, meaning and values of what is known of the contacts."""
-    # One that a force accelerates slides at a velocity that is not known.
+    """Return name, unit, meaning and values of the variables of the contacts."""
+    # The slip velocity of a contact accelerated by a force is unknown.
     slip = np.where((at.sense != 0.0) & (at.slip_velocity == 0.0), np.nan, at.slip_velocity)
     return [
         ("status", "1", "status of the contact", np.array(at.status)),

@@ -1,4 +1,4 @@
-"""How often the status of a contact changes, between samples and within them, and since when it does not."""
+"""Changes of the status of a contact, between samples and within them, and its last rest."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MIXED = -1
 
 
 def whole_status(share: Array) -> Array:
-    """Return the status of each sample that is wholly in one, `MIXED` for the others.
+    """Return the status of each sample that is entirely in one status, `MIXED` for the others.
 
     Parameters
     ----------
@@ -19,16 +19,16 @@ def whole_status(share: Array) -> Array:
         Share of each status in each sample.
     """
     found = np.full(len(share), MIXED)
-    # Of several, the first.
+    # The first of several applies.
     for status in (2, 1, 0):
         found[share[:, status] >= 1.0 - ROUND_OFF] = status
     return found
 
 
 def last_rest(status: Array) -> int:
-    """Return the first sample of the last stretch of one status, or the number of samples if a longer one came before.
+    """Return the first sample of the last stretch of one status, or the number of samples if an earlier one was longer.
 
-    A stretch that others have outlasted is one phase among many.
+    A stretch shorter than an earlier one is one phase among many.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def last_rest(status: Array) -> int:
 def changes(status: Array) -> int:
     """Return the least number of changes of status that explains the samples.
 
-    A sample of mixed status has one change if those about it are of two statuses, else two: it began and ended alike.
+    A sample of mixed status has one change if its neighbours have different statuses, else two.
 
     Parameters
     ----------
@@ -73,17 +73,17 @@ def least_landings(separated: Array) -> int:
 
 
 def slips(sticking: Array, noise: float, fastest: float) -> Array:
-    """Return when a contact slips, or opens, between two stick phases.
+    """Return the intervals in which a contact slips, or opens, between two stick phases.
 
-    A sample that sticks for a share of its interval slips next to the neighbour that sticks less. What follows within
-    `fastest`, after a stick of less than a quarter of that, is one vibration and not another slip.
+    A sample that sticks for a share of its interval slips next to the neighbour that sticks less. A slip that follows
+    within `fastest`, after a stick of less than a quarter of that, belongs to the same vibration.
 
     Parameters
     ----------
     sticking : ndarray, shape (samples,)
         Share of sticking in each sample.
     noise : float
-        Longest stick, and longest slip, that is none [samples].
+        Longest stick, and longest slip, that is ignored [samples].
     fastest : float
         Shortest time from the end of a slip to the end of the next [samples].
 
@@ -103,34 +103,34 @@ def slips(sticking: Array, noise: float, fastest: float) -> Array:
 
 
 def vibrations(found: Array, fastest: float) -> Array:
-    """Return slips with those made one that end within `fastest` of the one before, however long it sticks between.
+    """Return slips, merging those that end within `fastest` of the previous one, however long the stick between them.
 
     Parameters
     ----------
     found : ndarray, shape (slips, 2)
-        Starts and ends, as `slips` returns them.
+        Starts and ends, as returned by `slips`.
     fastest : float
-        Shortest time from the end of a vibration to the end of the next, in the unit of those.
+        Shortest time from the end of a vibration to the end of the next, in the unit of `found`.
     """
     return _merged(found, _firsts(found, fastest, np.inf)) if len(found) else found
 
 
 def _firsts(found: Array, fastest: float, longest: float) -> Array:
-    """Return the slips that are apart from the one before: by a long stick, or by their ends."""
+    """Return the slips separated from the previous one by a long stick, or by the distance of their ends."""
     stuck, period = found[1:, 0] - found[:-1, 1], found[1:, 1] - found[:-1, 1]
     return _begun((stuck >= longest) | (period >= fastest))
 
 
 def _merged(found: Array, firsts: Array) -> Array:
-    """Return slips from each of the first ones to the last before the next of those."""
+    """Return slips merged from each of `firsts` to the last before the next of them."""
     lasts = firsts + _lengths(firsts, len(found)) - 1
     return _beside(found[firsts, 0], found[lasts, 1])
 
 
 def _pieces(sticking: Array) -> tuple[Array, Array]:
-    """Return three pieces of time of each sample: whether they stick, and how long they are [samples].
+    """Return three pieces of time of each sample: whether they stick, and their lengths [samples].
 
-    Like samples that stick, or slip, for all of their interval count as one.
+    Successive samples that stick, or slip, for their whole interval count as one.
     """
     mixed = (sticking > 0.0) & (sticking < 1.0)
     firsts = _begun(mixed[1:] | (sticking[1:] != sticking[:-1]))
@@ -154,21 +154,21 @@ def _beside(*columns: Array) -> Array:
 
 
 def _begun(changes: Array) -> Array:
-    """Return the first of all, and those at which something changes from the one before."""
+    """Return the first index, and the indices of changes from the previous entry."""
     begun = np.empty(changes.size + 1, dtype=bool)
     begun[0], begun[1:] = True, changes
     return begun.nonzero()[0]
 
 
 def _lengths(firsts: Array, end: int) -> Array:
-    """Return the distances from each of the first ones to the next, from the last to the end."""
+    """Return the distance from each of `firsts` to the next, and from the last to `end`."""
     found = np.empty(firsts.size, dtype=firsts.dtype)
     found[:-1], found[-1] = firsts[1:], end
     return found - firsts
 
 
 def _joined(sticks: Array, lengths: Array) -> tuple[Array, Array]:
-    """Return pieces of time with those of a kind that follow each other made one, and empty ones left out."""
+    """Return pieces of time with successive ones of a kind merged, and without empty ones."""
     kept = lengths > ROUND_OFF
     sticks, lengths = sticks[kept], lengths[kept]
     firsts = _begun(sticks[1:] != sticks[:-1])
@@ -183,7 +183,7 @@ def between_stops(sticking: Array, width: int) -> Array:
     sticking : ndarray, shape (samples,)
         Share of sticking in each sample.
     width : int
-        Odd number of samples of the moving mean that tells a stop, and of the fall.
+        Odd number of samples of the moving mean that defines a stop, and of the fall.
     """
     moves = moving_mean(sticking, width) < 0.5
     if moves.all() or not moves.any():
@@ -193,12 +193,12 @@ def between_stops(sticking: Array, width: int) -> Array:
 
 
 def prevailing(lengths: Array) -> float:
-    """Return the length from which on lengths make up half of their sum, infinite if there are none.
+    """Return the length such that longer ones make up half of the sum of all, infinite if there are none.
 
     Parameters
     ----------
     lengths : ndarray, shape (lengths,)
-        How long things are.
+        Lengths.
     """
     if not lengths.size:
         return float("inf")
@@ -207,14 +207,14 @@ def prevailing(lengths: Array) -> float:
 
 
 def regularity(places: Array) -> float:
-    """Return how regular the distances between places are, ``1 / (1 + (deviation / mean)²)``; NaN for fewer than two.
+    """Return the regularity of the distances between places, ``1 / (1 + (deviation / mean)²)``; NaN for fewer than two.
 
-    It is 1 for equal distances and one half for places thrown at random.
+    It is 1 for equal distances and one half for random places.
 
     Parameters
     ----------
     places : ndarray, shape (places,)
-        Where events happen, in order.
+        Places of events, in order.
     """
     distances = np.diff(places)
     return float(1.0 / (1.0 + (distances.std() / distances.mean()) ** 2)) if distances.size > 1 else float("nan")

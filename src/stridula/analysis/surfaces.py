@@ -16,7 +16,7 @@ from ..records.checked import record
 from ..records.variables import STATUS_SHARE, attributes_of, described
 
 OF_POINTS = ("normal_force", "tangential_force", "slip_velocity", STATUS_SHARE.name)
-# What fields are made of that have other names than what is recorded.
+# Recorded variables of fields with other names.
 SHOWN = {"pressure": "normal_force", "shear": "tangential_force"}
 
 
@@ -28,7 +28,7 @@ def surface(run: xr.Dataset, contact: SurfaceContact | SurfacePoints) -> xr.Data
     run : Dataset
         A record of a system with the surface, or a part of one in time.
     contact : SurfaceContact
-        The surface, or one of ``system.faces``, which a system that is made from a record has as well.
+        The surface, or one of ``system.faces``, also of a system made from a record.
 
     Returns
     -------
@@ -37,13 +37,13 @@ def surface(run: xr.Dataset, contact: SurfaceContact | SurfacePoints) -> xr.Data
         ``centre_of_pressure`` [m], NaN without pressure, ``closed_area`` and ``sticking_area`` [m²], means over each
         interval, and ``friction_power`` [W]. Over time and the points of the face: ``pressure`` [Pa], ``shear`` along
         both tangents [Pa], on the track, ``slip_velocity`` [m/s] and ``status_share`` of the interval [1]. Points have
-        the coordinates ``place`` [m] and ``area`` [m²]. Fields that a record has at the rate of its maps alone are over
+        the coordinates ``place`` [m] and ``area`` [m²]. Fields that a record has only at the rate of its maps are over
         ``map_time``: the slip velocity, and with a `surface_rate` all of them.
 
     Raises
     ------
     ValueError
-        If the record has not all points of the surface.
+        If the record lacks points of the surface.
     """
     instance("contact", contact, (SurfaceContact, SurfacePoints))
     names, whole = [one.name for one in contact.contacts], by_point(record("run", run))
@@ -81,7 +81,7 @@ def surface(run: xr.Dataset, contact: SurfaceContact | SurfacePoints) -> xr.Data
 
 
 def _field(run: xr.Dataset, whole: xr.Dataset, name: str, names: Sequence[str]) -> xr.DataArray:
-    """Return what a record has of some points, at every sample or in maps, over time and ``point``."""
+    """Return a recorded variable of some points, at every sample or in maps, over time and ``point``."""
     for source, word, along in ((whole, name, "contact"), (run, f"map_{name}", "point")):
         if word in source and along in source[word].dims and set(names) <= set(source[along].values.tolist()):
             return source[word].sel({along: list(names)}).rename({along: "point"} if along != "point" else {})

@@ -1,1 +1,1 @@
-"""The page on which one plays the contact: a server, a session for each page, the files of the page itself."""
+"""The page for playing the contact: a server, a session for each open page, and the files of the page."""

@@ -1,4 +1,4 @@
-"""What is computed beside what is played, in a process of its own and of low priority: the sound comes first."""
+"""Background computations in a separate process of low priority, so that they do not interrupt the sound."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import json
 import sys
 from typing import Any
 
-# Longest line of an answer [bytes].
+# Greatest length of an answer [bytes].
 LONGEST = 1_000_000
 
 
 class Beside:
-    """The process that computes maps and linear theory for the pages in turns; it is there while one is open."""
+    """The process that computes maps and linear theory for all pages in turn, while any page is open."""
 
     def __init__(self) -> None:
         self._process: asyncio.subprocess.Process | None = None
@@ -21,23 +21,23 @@ class Beside:
         self._closed = 0
 
     async def ask(self, what: str, **words: Any) -> Any:
-        """Return the answer to a question in its turn, None if the last page goes in between.
+        """Return the answer to a question, asked in turn, or None if the last page closes meanwhile.
 
         Parameters
         ----------
         what : str
             ``regimes``, ``theory`` or ``now``.
         **words
-            Arguments of the function that `beside_worker.ANSWERS` has under that name.
+            Arguments of the function of that name in `beside_worker.ANSWERS`.
         """
-        # A question that nobody waits for any more is not begun, for it would begin the process.
+        # A cancelled question stops here, since otherwise it would start the process.
         await self._turn.acquire()
-        # Once begun it is computed to its end, so that answers keep their order.
+        # Once started it is computed to its end, so that answers keep their order.
         line = json.dumps({"what": what, "words": words})
         return await asyncio.shield(asyncio.ensure_future(self._answer(line, self._closed)))
 
     def close(self) -> None:
-        """End the process."""
+        """Kill the process."""
         if self._process is not None and self._process.returncode is None:
             with contextlib.suppress(ProcessLookupError):
                 self._process.kill()
@@ -50,7 +50,7 @@ class Beside:
                 return None
             process = await self._started()
             if closed != self._closed:
-                # The last page went while the process began.
+                # The last page closed while the process started.
                 self.close()
                 return None
             assert process.stdin is not None

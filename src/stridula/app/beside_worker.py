@@ -1,4 +1,4 @@
-"""The process beside what is played: a line of JSON for each question, one for each answer."""
+"""The background process of the page: one line of JSON for each question and each answer."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Any
 
-# The sound comes first.
+# Lower priority than the sound.
 NICENESS = 10
-# Modes that grow that are told at most.
+# Largest number of growing modes reported.
 MOST = 12
 
 
 def regimes(tables: dict[str, Any], keys: Sequence[str], points: Sequence[Sequence[float]]) -> list[str]:
-    """Return the regime at some points, empty where there is none.
+    """Return the regime at some points, an empty text where there is none.
 
     Parameters
     ----------
     tables : dict
-        A scenario in full.
+        A complete scenario.
     keys : sequence of str
-        What is varied.
+        Varied keys.
     points : sequence of sequence of float
         Their values at each point, in SI.
     """
@@ -46,12 +46,12 @@ def theory(tables: dict[str, Any]) -> dict[str, Any]:
     Parameters
     ----------
     tables : dict
-        A scenario in full.
+        A complete scenario.
 
     Returns
     -------
     dict
-        ``equilibrium`` as in `sliding_stability`, or why there is none; ``modes`` that grow, fastest first, with
+        ``equilibrium`` as in `sliding_stability`, or why there is none; growing ``modes``, fastest first, with
         ``frequency`` [Hz] and ``growth_rate`` [1/s].
     """
     import numpy as np
@@ -70,7 +70,7 @@ def theory(tables: dict[str, Any]) -> dict[str, Any]:
 
 
 def now(**words: Any) -> dict[str, Any]:
-    """Return what goes on; arguments and answer are those of `measured`."""
+    """Return the present regime; arguments and result are those of `measured`."""
     from .now import measured
 
     return measured(**words)
@@ -80,11 +80,11 @@ ANSWERS: dict[str, Callable[..., Any]] = {"regimes": regimes, "theory": theory, 
 
 
 def main() -> None:
-    """Answer until nobody asks any more."""
+    """Answer questions until the input ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with contextlib.suppress(OSError, AttributeError):
         os.nice(NICENESS)
-    # What is heavy is imported once it stands back.
+    # Heavy imports come after the priority is lowered.
     from ..studies.task import use_one_thread
 
     use_one_thread()
@@ -94,7 +94,7 @@ def main() -> None:
         try:
             print(found, flush=True)
         except BrokenPipeError:
-            # The server has gone in between; what is left unwritten would only be complained of.
+            # The server has gone; flushing the remaining output would only fail.
             os._exit(0)
 
 

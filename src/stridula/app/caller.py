@@ -1,4 +1,4 @@
-"""The HTTP side of a connection: who dawdles is let go, and of what is no HTTP the terminal says nothing."""
+"""The HTTP side of a connection: slow callers are disconnected, and invalid requests are not logged."""
 
 from __future__ import annotations
 
@@ -8,37 +8,37 @@ import logging
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-# Whoever has asked for nothing whole for so long is let go [s].
+# Time without a complete request after which a caller is disconnected [s].
 HURRY = 10.0
 
 
 class Caller(H11Protocol):
-    """Whoever has called the server, until it asks for a socket."""
+    """A caller of the server, until it requests a socket."""
 
     _lets_go: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Wait for what it asks for."""
+        """Wait for a request."""
         super().connection_made(transport)
         self._wait()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Wait no more."""
+        """Stop waiting."""
         self._stop_waiting()
         super().connection_lost(exc)
 
     def handle_websocket_upgrade(self, event: h11.Request) -> None:
-        """Leave it to the socket."""
+        """Stop waiting, as the socket takes over."""
         self._stop_waiting()
         super().handle_websocket_upgrade(event)
 
     def on_response_complete(self) -> None:
-        """Wait for what it asks for next, and until it has read what it asked for."""
+        """Wait until the caller has read the response and sends the next request."""
         self._wait()
         super().on_response_complete()
 
     def send_400_response(self, msg: str) -> None:
-        """Refuse what is no HTTP; in the middle of an answer there is nothing to be said."""
+        """Refuse an invalid request; in the middle of a response, close the connection."""
         if self.conn.our_state is h11.IDLE:
             super().send_400_response(msg)
             return
@@ -64,5 +64,5 @@ class Caller(H11Protocol):
 
 
 def is_news(record: logging.LogRecord) -> bool:
-    """Return whether a record of the server's log is about the server, and not about what a page sent."""
+    """Return whether a log record is about the server and not about data sent by a page."""
     return not str(record.msg).startswith("Invalid UTF-8")

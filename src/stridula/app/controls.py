@@ -1,4 +1,4 @@
-"""What one turns on the page: one table of keys of the scenario, with ranges, units and words."""
+"""Controls of the page: a table of keys of the scenario, with ranges, units and texts."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ DEGREE = math.pi / 180.0
 
 @dataclass(frozen=True)
 class Control:
-    """A number that one turns.
+    """A number with a slider on the page.
 
     Attributes
     ----------
     key : str
         Key of the scenario that it sets.
     place : str
-        Where its value stands in the full scenario, if elsewhere.
+        Key of its value in the full scenario, if different.
     group, label, unit : str
-        Where it is shown, what it is called and the unit it is shown in.
+        Group, label and unit in which it is shown.
     scale : float
         SI value of one such unit.
     low, high, step : float
-        Ends and step of its slider, in the unit shown; a number typed in may lie beyond.
+        Ends and step of its slider, in the unit shown; a typed number may lie beyond.
     words : str
-        What it does, in a line.
+        Explanation in one line.
     """
 
     key: str
@@ -71,7 +71,7 @@ CONTROLS = (
     ),
     Control(
         "drives.0.velocity", "Drive", "Velocity", "cm/s", 1e-2, -10.0, 10.0, 0.01,
-        "Velocity at which the root is drawn along the track.",
+        "Velocity at which the root is pulled along the track.",
     ),
     Control(
         "drives.0.normal_load", "Drive", "Pressing force", "N", 1.0, 0.0, 100.0, 0.1,
@@ -79,15 +79,15 @@ CONTROLS = (
     ),
     Control(
         "slider.angle", "Slider", "Angle", "°", DEGREE, -80.0, 80.0, 0.5,
-        "How far the slider leans from the track's normal; above zero the root is ahead, to the right.",
+        "Inclination of the slider from the track's normal; above zero the root is ahead, to the right.",
     ),
     Control(
         "slider.length", "Slider", "Slider length", "mm", 1e-3, 100.0, 1500.0, 1.0,
-        "From tip to root. A longer slider vibrates lower.",
+        "Length from tip to root. A longer slider vibrates at lower frequencies.",
     ),
     Control(
         "section.height", "Beams", "Thickness", "mm", 1e-3, 1.0, 30.0, 0.05,
-        "Height of both sections, in the plane of bending. Thicker beams vibrate higher.",
+        "Height of both sections, in the plane of bending. Thicker beams vibrate at higher frequencies.",
         "slider.section.height",
     ),
     Control(
@@ -97,17 +97,17 @@ CONTROLS = (
     ),
     Control(
         "damping", "Beams", "Damping ratio", "%", 1e-2, 0.0, 10.0, 0.01,
-        "Share of critical damping of every mode: how fast vibrations die away.",
+        "Fraction of critical damping of every mode: how fast vibrations die away.",
         "slider.damping",
     ),
     Control(
         "damping.ratio", "Beams", "Damping at low frequency", "%", 1e-2, 0.0, 10.0, 0.01,
-        "Share of critical damping of slow modes: how fast swings die away.",
+        "Fraction of critical damping of slow modes: how fast they die away.",
         "slider.damping.ratio",
     ),
     Control(
         "damping.rise", "Beams", "Rise of damping", "%/kHz", 1e-5, 0.0, 10.0, 0.01,
-        "How much more damping a mode has for each kilohertz of its frequency.",
+        "Additional damping of a mode for each kilohertz of its frequency.",
         "slider.damping.rise",
     ),
     Control(
@@ -116,7 +116,7 @@ CONTROLS = (
     ),
     Control(
         "contact.at", "Track", "Contact position", "mm", 1e-3, 10.0, 2490.0, 1.0,
-        "Where the stroke begins, from the left end of the track. Turned on the way, the tip is put as much farther.",
+        "Start of the stroke, from the left end of the track. A change while playing moves the tip by as much.",
     ),
 )  # fmt: skip
 GROUPS = ("Friction", "Drive", "Slider", "Track", "Beams")
@@ -129,13 +129,13 @@ class Choice:
     Attributes
     ----------
     key : str
-        Key of the scenario that tells the kinds apart.
+        Key of the scenario that distinguishes the kinds.
     group, label, words : str
-        Where it is shown, what it is called, what it is about.
+        Group and label under which it is shown, and explanation.
     kinds : dict
-        What each kind is called on the page.
+        Name of each kind on the page.
     begins : dict
-        Values by key, with which a kind begins that takes the place of another.
+        Initial values by key of each kind, when it replaces another.
     """
 
     key: str
@@ -151,7 +151,7 @@ CHOICES = (
         "contact.friction.law",
         "Friction",
         "Law of friction",
-        "What friction depends on: nothing, whether the tip sticks, or how fast it slips.",
+        "Dependence of friction: none, on whether the tip sticks, or on its slip velocity.",
         {"coulomb": "Coulomb", "static-kinetic": "Static and kinetic", "stribeck": "Stribeck"},
         {
             "coulomb": {"contact.friction.coefficient": 0.5},
@@ -178,7 +178,7 @@ CHOICES = (
         "simulation.scheme",
         "Beams",
         "Time scheme",
-        "How time goes on: both agree where steps are short.",
+        "Time integration: both schemes agree if steps are short.",
         {"exact modal": "Exact modal", "central difference": "Central differences"},
         {"exact modal": {}, "central difference": {}},
     ),
@@ -188,18 +188,18 @@ KEYS = tuple(one.key for one in (*CONTROLS, *CHOICES))
 
 @dataclass(frozen=True)
 class Turned:
-    """What one turns of a scenario.
+    """Controls of a scenario.
 
     Attributes
     ----------
     groups : tuple of str
-        Where controls are shown, in their order.
+        Groups of controls, in their order.
     controls : tuple of Control
-        Numbers.
+        Controls of numbers.
     choices : tuple of Choice
-        Kinds.
+        Controls of kinds.
     values : dict
-        What each is now, in SI, by key; of controls that a scenario has not nothing.
+        Present values by key, in SI; controls that a scenario lacks have none.
     """
 
     groups: tuple[str, ...]
@@ -209,7 +209,7 @@ class Turned:
 
     @property
     def described(self) -> dict[str, Any]:
-        """All of it for the page, in plain numbers and texts, but for the values."""
+        """Description for the page, in plain numbers and texts, without the values."""
         return {
             "groups": self.groups,
             "controls": [asdict(control) for control in self.controls],
@@ -218,12 +218,12 @@ class Turned:
 
 
 def turned_of_pair(tables: dict[str, Any]) -> Turned:
-    """Return what one turns of one beam on another: all that the page knows, and the values in a full scenario."""
+    """Return the controls of one beam on another: all controls of the page, and the values in a full scenario."""
     return Turned(GROUPS, CONTROLS, CHOICES, values(tables))
 
 
 def values(tables: dict[str, Any]) -> dict[str, Any]:
-    """Return the value of every control that a full scenario has, in SI, and of every choice, by key."""
+    """Return the values of all controls and choices in a full scenario, in SI, by key."""
     places = {control.key: control.place or control.key for control in CONTROLS}
     places |= {choice.key: choice.key for choice in CHOICES}
     found = {key: look_up(tables, _path(place)) for key, place in places.items()}

@@ -1,4 +1,4 @@
-"""What the page draws of a system: two beams, the lines that its films have, or surfaces in space."""
+"""Drawings of a system on the page: two beams, lines as in films, or surfaces in space."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from .drawing_space import Surfaces
 from .parts import Shapes, contacts_now
 
 TRACK_POINTS = 65
-# Points of a line that are drawn at most.
+# Largest number of points drawn of a line.
 MOST_POINTS = 129
 
 
 class Drawing(Protocol):
-    """What is drawn of a system."""
+    """Drawing of a system."""
 
     @property
     def system(self) -> System:
@@ -32,14 +32,14 @@ class Drawing(Protocol):
 
     @property
     def described(self) -> dict[str, Any]:
-        """What the page must know of it, in plain numbers and texts."""
+        """Description for the page, in plain numbers and texts."""
 
     def shapes(self, live: LiveMarch, chunk: LiveChunk) -> Shapes:
-        """Return where the bodies are at the end of a chunk."""
+        """Return the positions of the bodies at the end of a chunk."""
 
 
 def drawing_of(system: System) -> Drawing:
-    """Return what the page draws of a system."""
+    """Return the drawing of a system."""
     if system.is_spatial:
         return Surfaces(system)
     return TwoBeams(system) if is_pair(system) else Lines(system)
@@ -64,7 +64,7 @@ class TwoBeams:
         return {"slider": {"length": slider.length, "angle": slider.angle}, "track": {"length": track.length}}
 
     def shapes(self, live: LiveMarch, chunk: LiveChunk) -> Shapes:
-        """Return where the bodies are at the end of a chunk."""
+        """Return the positions of the bodies at the end of a chunk."""
         position, spans, system = live.position, live.spans, self.system
         slider, track = system.slider, system.track
         nodes = slider.node_traces(system.is_held(slider)) @ position[slice(*spans[system.body_name(slider)])]
@@ -95,12 +95,12 @@ class _Drawn:
         return self.line.shapes[self.kept]
 
     def row(self, row: int) -> int:
-        """Return the number of a point of the whole line among those kept."""
+        """Return the index of a point of the whole line among those kept."""
         return int(np.flatnonzero(self.kept == row)[0])
 
 
 class Lines:
-    """Bodies as the lines that films have of them, or as points.
+    """Bodies drawn as lines, as in films, or as points.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ class Lines:
 
     @cached_property
     def described(self) -> dict[str, Any]:
-        """Places at rest, contacts and what is joined."""
+        """Places at rest, contacts and connections."""
         lines = [
             {
                 "name": one.line.name,
@@ -134,7 +134,7 @@ class Lines:
         return {"lines": lines, "contacts": contacts, "joined": joined}
 
     def shapes(self, live: LiveMarch, chunk: LiveChunk) -> Shapes:
-        """Return where the bodies are at the end of a chunk."""
+        """Return the positions of the bodies at the end of a chunk."""
         places = chunk.contacts["contact_position"][:, -1]
         moved = []
         for one in self.lines:
@@ -167,7 +167,7 @@ class Lines:
         return told
 
     def _is_drawn(self, point: BodyPoint) -> bool:
-        """Return whether a point is drawn: of bodies without a line only those that touch, or are joined to others."""
+        """Return whether a point is drawn: for bodies without a line only points of contacts or connections."""
         return any(self._has(one, point) for one in self.lines)
 
     def _has(self, one: _Drawn, point: BodyPoint) -> bool:
@@ -179,7 +179,7 @@ class Lines:
 
 
 def _drawn(number: int, line: Line, touches: list[Touch]) -> _Drawn:
-    """Return a line with at most so many points, with those that touch or are joined."""
+    """Return a line with at most `MOST_POINTS` points, plus those of contacts and connections."""
     along = np.unique(np.linspace(0, line.count - 1, min(line.count, MOST_POINTS)).round().astype(int))
     kept = np.concatenate([along, np.arange(line.count, len(line.place))])
     slides = [k for k, one in enumerate(touches) if one.tip[0] == number and one.fixed is None]

@@ -1,4 +1,4 @@
-"""What the page draws of a system in space: surfaces of bodies, how modes move them, and where they touch."""
+"""Drawing of a system in space on the page: surfaces of bodies, their motion in modes, and their contacts."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ from .thinned import MOST_NUMBERS, thinned
 
 @dataclass(frozen=True)
 class _Body:
-    """A body that is drawn.
+    """A drawn body.
 
     Attributes
     ----------
     name : str
-        Its name.
+        Name of the body.
     drawn : DrawnSurface or DrawnRings
         Its surface.
     rows : list of ndarray, shape (3, modes)
-        How modes move where it touches.
+        Displacements of its contact points in the modes.
     basis : ndarray, shape (modes, numbers), or None
-        Of a body of many modes, what is kept of them: its surface and rows are those of these combinations.
+        For a body of many modes, the combinations of modes used for its surface and rows.
     """
 
     name: str
@@ -45,23 +45,23 @@ class _Body:
 
     @property
     def numbers(self) -> int:
-        """How many numbers tell where it is."""
+        """Number of coordinates of its position."""
         return int(self.drawn.shapes.shape[2])
 
     def of(self, modal: Array) -> Array:
-        """Return the numbers that tell where it is, of those of its modes."""
+        """Return the coordinates of its position from its modal coordinates."""
         return modal if self.basis is None else modal @ self.basis
 
     @property
     def described(self) -> dict[str, Any]:
-        """All of it for the page."""
+        """Description for the page."""
         rows = np.array(self.rows).reshape(len(self.rows), 3, self.numbers)
         surface = {name: said(values) for name, values in drawn_table(self.drawn).items()}
         return {"name": self.name, "numbers": self.numbers, "rows": said(rows), **surface}
 
 
 class Surfaces:
-    """Bodies in space as the surfaces that films have of them.
+    """Bodies in space drawn as surfaces, as in films.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class Surfaces:
 
     @cached_property
     def described(self) -> dict[str, Any]:
-        """Surfaces with the shapes of their modes, contacts, which way is up, and a name of all that."""
+        """Surfaces with the shapes of their modes, contacts, the upward direction, and a hash of all of them."""
         normal = in_space(self.system.contacts[0].frame[0])
         axis = int(np.argmax(np.abs(normal)))
         up = (np.sign(normal[axis]) * np.eye(3)[axis]).tolist()
@@ -95,7 +95,7 @@ class Surfaces:
         return {"drawn": blake2b(json.dumps(told).encode(), digest_size=8).hexdigest(), **told}
 
     def shapes(self, live: LiveMarch, chunk: LiveChunk) -> Shapes:
-        """Return where the bodies are at the end of a chunk."""
+        """Return the positions of the bodies at the end of a chunk."""
         spans = [slice(*live.spans[body.name]) for body in self.bodies]
         moved = [body.of(modal[span]) for modal in live.motion for body, span in zip(self.bodies, spans, strict=True)]
         place, height = (float(chunk.contact[name][-1]) for name in ("contact_position", "contact_height"))
@@ -103,7 +103,7 @@ class Surfaces:
 
 
 def _drawn(system: System) -> dict[Any, Drawn]:
-    """Return the surfaces of bodies that have one, and of rigid bodies that touch them or are joined to them."""
+    """Return the surfaces of bodies that have one, and of rigid bodies in contact with or connected to them."""
     surfaces = {body: _thinned(body) for body in system.bodies if is_drawn(body)}
     if not surfaces:
         return {}
@@ -116,7 +116,7 @@ def _thinned(body: Any) -> Drawn:
 
 
 def _known_end(ends: Sequence[BodyPoint | None], system: System, bodies: dict[str, _Body]) -> BodyPoint | None:
-    """Return the end of a contact whose body is drawn and whose place is known, None if there is none."""
+    """Return the end of a contact whose body is drawn and whose position is known, None if there is none."""
     known = (end for end in ends if end is not None and end.place is not None)
     return next((end for end in known if system.body_name(end.body) in bodies), None)
 
@@ -127,12 +127,12 @@ def _place(end: BodyPoint) -> Array:
 
 
 def _small(body: _Body) -> _Body:
-    """Return a body with no more corners and shapes than the page takes."""
+    """Return a body with at most as many shapes as the page can draw."""
     drawn, modes = body.drawn, body.numbers
     kept = MOST_NUMBERS // drawn.shapes[..., 0].size
     if modes <= kept:
         return body
-    # Combinations of modes by how much they move what is drawn; others cannot be seen.
+    # Combinations of modes that move the surface most; the others cannot be seen.
     moved = drawn.shapes.reshape(-1, modes)
     _, combined = np.linalg.eigh(moved.T @ moved)
     basis = combined[:, ::-1][:, :kept]

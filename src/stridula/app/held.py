@@ -1,4 +1,4 @@
-"""What is played of what a page asks for: as much of it as can be."""
+"""The playable part of a scene requested by a page."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from .playable import PRESETS, Playable, playable
 
 @dataclass(frozen=True)
 class Held:
-    """What is played of a scene.
+    """The playable part of a scene.
 
     Attributes
     ----------
     scene : Scene
-        The scene without what was refused.
+        The scene without refused values.
     played : Playable
-        What it is.
+        Its playable scenario.
     refused : dict
-        What is wrong, a list of lines by key; the key is empty where case or text are refused.
+        Problems of refused values, a list of lines by key; the key is empty if case or text are refused.
     problems : list of str
-        What is wrong with the scene as a whole.
+        Problems of the requested scene.
     """
 
     scene: Scene
@@ -34,22 +34,22 @@ class Held:
 
 
 def held(wanted: Scene, last: Scene | None) -> Held:
-    """Return as much of a scene as can be played.
+    """Return the playable part of a scene.
 
-    A value that is refused stays as it was last, or as the case has it; the others are played. Where nothing is played
-    yet, the first case takes the place of one that cannot be.
+    A refused value keeps its last value, or that of the case; the others are played. If nothing is played yet, the
+    first case replaces one that cannot be played.
 
     Parameters
     ----------
     wanted : Scene
-        What is asked for.
+        Requested scene.
     last : Scene or None
-        What is played, if anything.
+        Scene played at present, if any.
 
     Raises
     ------
     ScenarioError
-        If nothing of it can be played, with what is wrong with all of it.
+        If nothing of it can be played, with all its problems.
     """
     try:
         return Held(wanted, _playable(wanted), {}, [])
@@ -58,7 +58,7 @@ def held(wanted: Scene, last: Scene | None) -> Held:
     before = last.overrides if last is not None and is_of_one_case(wanted, last) else {}
     turned = [key for key, value in wanted.overrides.items() if before.get(key) != value]
     for key in turned:
-        # One that is alone to blame.
+        # A single value that causes the problem.
         found = _tried(_put_back(wanted, before, [key]))
         if found is not None:
             return Held(*found, {key: problems}, problems)
@@ -79,7 +79,7 @@ def held(wanted: Scene, last: Scene | None) -> Held:
 
 
 def is_of_one_case(one: Scene, other: Scene) -> bool:
-    """Return whether two scenes differ in values alone."""
+    """Return whether two scenes differ only in values."""
     return one.text == other.text and (one.text is not None or one.case == other.case)
 
 
@@ -99,4 +99,4 @@ def _playable(scene: Scene) -> Playable:
     try:
         return playable(scene.case, scene.text, scene.overrides)
     except RecursionError:
-        raise ScenarioError(["scenario must not be nested so deep"]) from None
+        raise ScenarioError(["scenario must not be nested so deeply"]) from None

@@ -1,4 +1,4 @@
-"""The instrument: a contact that is played stroke after stroke, heard and seen part by part."""
+"""The instrument: a contact played in strokes, whose sound and picture are sent in parts."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from .playable import Playable
 from .sources import Source, source_of
 
 RATE = 48_000
-# A tip that sticks under a constant force, or has been off the track, for so long [s] begins another stroke.
+# Time after which a tip that sticks under a constant force, or is off the track, begins another stroke [s].
 PATIENCE = 0.5
-# After so long [s] without one, a stroke that cannot be believed is followed by another.
+# Time since the last repeated stroke after which a failed stroke is followed by another [s].
 TRUST = 0.5
-# Time in which a jump of what is heard dies away [s]: a stroke that begins anew does not click.
+# Time in which a jump of the sound is smoothed, so that a new stroke does not click [s].
 BLEND = 0.004
-# Seconds played in one from which on it keeps up with the sound.
+# Seconds played per second above which it keeps up with the sound.
 LIVE = 1.05
-# Moments of so many samples by which it is found how fast it can be played; short ones where they take so long [s].
+# Number and samples of the moments that measure the speed of playing; short ones if they take longer than the last [s].
 MOMENTS, MOMENT, SHORT, LONG = 5, 480, 48, 0.01
 
 
@@ -36,9 +36,9 @@ class Instrument:
     Parameters
     ----------
     played : Playable
-        What is played.
+        Scenario to play.
     source : str
-        What is heard, a key of `Playable.sources`; the first of them where there is none of this name.
+        Source of the sound, a key of `Playable.sources`; the first of them if there is none of this name.
     """
 
     def __init__(self, played: Playable, source: str = "pressure") -> None:
@@ -48,7 +48,7 @@ class Instrument:
         self.source, self.drawing = source_of(self.name, self.live), drawing_of(played.system)
         self.repeats, self.stroke, self.played_samples = True, 1, 0
         self.ended = ""
-        # The step with which it keeps up with the sound [s], None where the usual one does.
+        # Longer step needed to keep up with the sound [s], None if the usual one suffices.
         self.longer: float | None = None
         self._still, self._blend, self._last = 0, 0.0, 0.0
         # Samples since a stroke last followed another by itself.
@@ -58,9 +58,9 @@ class Instrument:
         self.last_seconds.changed(0.0, played.toml)
 
     def change(self, played: Playable, revision: int) -> bool:
-        """Go on as another scenario and return whether the motion went on; else a stroke begins.
+        """Continue as another scenario and return whether the motion continues; otherwise a stroke begins.
 
-        Another case or text begins one, and so does whatever follows a stroke that has ended.
+        Another case or text begins a stroke, as does any change after a stroke has ended.
         """
         longer = self.longer if played.origin == self.played.origin else None
         if longer is not None and played.scenario.step is None:
@@ -89,12 +89,12 @@ class Instrument:
         return goes_on
 
     def listen_to(self, name: str) -> None:
-        """Let something else be heard, led over from what was heard at the same level.
+        """Change the source of the sound, with a smooth transition at the same level.
 
         Raises
         ------
         ValueError
-            If there is nothing of this name to be heard.
+            If there is no source of this name.
         """
         choice("source", name, tuple(self.played.sources))
         self._last *= self.played.sources[name].full_scale / self.heard_as.full_scale
@@ -103,13 +103,13 @@ class Instrument:
 
     @property
     def heard_as(self) -> Source:
-        """What is heard."""
+        """Source of the sound."""
         return self.played.sources[self.name]
 
     def keep_up(self) -> float:
-        """Return how many seconds are played in one, from the start, with steps twice as long where that keeps up."""
+        """Return the seconds played per second, from the start, doubling the steps if that keeps up with the sound."""
         usual, speed, steps = self.played, self.speed(), self.live.ratio
-        # Half the steps never make it three times as fast.
+        # Half the number of steps is at most three times as fast.
         if not LIVE / 3.0 < speed < LIVE or usual.scenario.step is not None or steps == 1:
             return speed
         step = self.live.interval / ((steps + 1) // 2)
@@ -127,7 +127,7 @@ class Instrument:
         return longer
 
     def speed(self) -> float:
-        """Return how many seconds are played in one, from some moments, and begin again at the start."""
+        """Return the seconds played per second, measured over some moments, and restart."""
         # The first may compile.
         self._moment(SHORT)
         samples = SHORT if self._moment(SHORT) > LONG else MOMENT
@@ -137,7 +137,7 @@ class Instrument:
         return samples / RATE / sorted(taken)[MOMENTS // 2]
 
     def _moment(self, samples: int) -> float:
-        """Play a moment that nobody hears or sees and return how long it takes [s]."""
+        """Play a moment without output and return the time it takes [s]."""
         began = clock.perf_counter()
         chunk, _ended = self.live.advance(samples)
         if len(chunk.time):
@@ -146,19 +146,19 @@ class Instrument:
         return clock.perf_counter() - began
 
     def restart(self) -> None:
-        """Begin a stroke at the start."""
+        """Begin a stroke from the initial state."""
         self.live.restart()
         self._begin_stroke()
 
     def repeat(self, on: bool) -> None:
-        """Let strokes follow each other or not; what has ended or is at rest begins anew."""
+        """Repeat strokes or not; if on, an ended stroke or one at rest begins again."""
         self.repeats = on
         if on and self.ended:
             self.restart()
         self._still = max(self._still, 0)
 
     def play(self, samples: int) -> Iterator[Part | Stop]:
-        """Play on and return what was played, and what ended strokes; nothing once a stroke ended for good."""
+        """Yield the next parts and the ends of strokes; nothing after a stroke that is not repeated."""
         while samples and not self.ended:
             chunk, ended = self.live.advance(samples)
             if len(chunk.time):
@@ -168,7 +168,7 @@ class Instrument:
             why = ended if ended != "finished" else self._at_rest(chunk)
             if not why:
                 continue
-            # What ends as soon as it begins would begin without end.
+            # A stroke that ends at once would be repeated endlessly.
             needed = 1 if ended in ("finished", "off the track") else TRUST * RATE
             goes_on = self.repeats and self._since_repeat >= needed
             if goes_on:
@@ -187,7 +187,7 @@ class Instrument:
         self._must_blend, self._still = True, 0
 
     def _at_rest(self, chunk: LiveChunk) -> str:
-        """Return why nothing more will come of this stroke, or nothing."""
+        """Return why this stroke remains at rest, or an empty text."""
         drives = self.live.system.drives
         is_constant = all(getattr(drive, "history", Constant()).settled == 0.0 for drive in drives)
         sticks = chunk.status_shares[..., 1].min() == 1.0 and not self._is_drawn_along()
@@ -198,7 +198,7 @@ class Instrument:
         return "at rest" if sticks else "lifted off"
 
     def _is_drawn_along(self) -> bool:
-        """Return whether something is moved whatever the contacts do."""
+        """Return whether a motion is prescribed."""
         system = self.live.system
         rigid = [one.rigid_track for one in system.contacts if one.rigid_track is not None]
         moves = [*(not track.is_still for track in rigid), *(any(one.surface_velocities) for one in system.contacts)]
@@ -214,7 +214,7 @@ class Instrument:
         return part
 
     def _blended(self, sound: Array) -> Array:
-        """Return what is heard, led over from what was heard before a jump."""
+        """Return the sound with a smooth transition after a jump."""
         if self._must_blend:
             self._blend, self._must_blend = self._last - float(sound[0]), False
         if self._blend:
@@ -228,5 +228,5 @@ class Instrument:
 
 
 def _offered(wanted: str, played: Playable) -> str:
-    """Return what is to be heard of what is played: what is wanted if it has it, else what it has first."""
+    """Return the requested source if the scenario has it, else its first source."""
     return wanted if wanted in played.sources else next(iter(played.sources))

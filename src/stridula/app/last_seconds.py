@@ -1,4 +1,4 @@
-"""What was played last, to be saved."""
+"""The last seconds played, for saving."""
 
 from __future__ import annotations
 
@@ -35,16 +35,16 @@ from .playable import Playable
 from .sources import Source
 
 KEPT = 10.0
-# Numbers that are kept of contacts at most: of many contacts fewer seconds are.
+# Largest number of values kept for contacts: with many contacts, fewer seconds are kept.
 MOST_NUMBERS = 60_000_000
-# Energies that a regime is judged by: those of a march, and what is kept of them.
+# Energies that decide a regime: as computed, and as kept.
 MARCHED = ("damping_loss", "friction_loss", "convection_work", "contact_work")
 LOSSES = ("damping_loss", "friction_loss", "impact_loss")
 
 
 @dataclass(frozen=True)
 class _Kept:
-    """A part, in single precision and without its shapes; contacts before samples, tangents of those in space last."""
+    """A part in single precision without its shapes; contacts come before samples, tangents in space last."""
 
     source: Source
     clock: float
@@ -53,19 +53,19 @@ class _Kept:
     contacts: dict[str, Array]
     status_shares: Array
     probes: Array
-    # What was lost in each sample.
+    # Energy lost in each sample.
     losses: Array
 
 
 class LastSeconds:
-    """The last ten seconds that were played.
+    """The last ten seconds played.
 
     Parameters
     ----------
     rate : int
         Samples per second [Hz].
     played : Playable
-        What is played.
+        Scenario that is played.
     """
 
     def __init__(self, rate: int, played: Playable) -> None:
@@ -73,11 +73,11 @@ class LastSeconds:
         self._parts: deque[_Kept] = deque()
         self._samples = 0
         self._changes: deque[tuple[float, str]] = deque()
-        # Energies lost so far, of those that count since the last change.
+        # Energies lost since the last change.
         self._lost = np.zeros(len(LOSSES))
 
     def goes_on_as(self, played: Playable) -> None:
-        """Let something else be played; of a system with other contacts or probes nothing before it is kept."""
+        """Change the scenario; if its contacts or probes differ, discard everything kept so far."""
         before, after = self.played, played
         if (_labels(before), before.system.has_two_tangents) != (_labels(after), after.system.has_two_tangents):
             self._parts.clear()
@@ -86,12 +86,12 @@ class LastSeconds:
 
     @property
     def seconds(self) -> float:
-        """How much is kept [s]."""
+        """Duration that is kept [s]."""
         numbers = (len(CONTACT) + 4) * len(self.played.system.contacts) * self.rate
         return min(KEPT, MOST_NUMBERS / numbers)
 
     def keep(self, part: Part, source: Source) -> None:
-        """Keep a part and let go of what is too old."""
+        """Keep a part and discard those that are too old."""
         chunk = part.chunk
         recorded = chunk.contacts | chunk.along_tangents
         small = {variable.name: recorded[variable.name].astype("f4") for variable in (*CONTACT, STATUS)}
@@ -111,26 +111,26 @@ class LastSeconds:
             self._changes.popleft()
 
     def changed(self, clock: float, toml: str) -> None:
-        """Keep what is played from a time on, in place of what would be from the same time on."""
+        """Keep the scenario played from a time on, in place of an earlier one for the same time."""
         self._lost = np.zeros(len(LOSSES))
         if self._changes and self._changes[-1][0] == clock:
             self._changes.pop()
         self._changes.append((clock, toml))
 
     def record(self, played: Playable, steps: int) -> bytes:
-        """Return a record of what was played last, as NetCDF.
+        """Return a record of the last seconds, as NetCDF.
 
         Parameters
         ----------
         played : Playable
-            What is played now.
+            Scenario that is played now.
         steps : int
-            Steps of the march in a sample.
+            Time steps per sample.
 
         Raises
         ------
         ValueError
-            If nothing was played yet.
+            If nothing has been played yet.
         """
         self._check()
         parts, (contacts, probes) = self._parts, _labels(played)
@@ -183,19 +183,19 @@ class LastSeconds:
         return content.getvalue()
 
     def moment(self, seconds: float) -> tuple[dict[str, Array], Array]:
-        """Return what decides the regime of the last seconds of this stroke, and what was heard of them as pressure.
+        """Return the variables that decide the regime of the last seconds of this stroke, and their sound pressure.
 
         Parameters
         ----------
         seconds : float
-            How many at most.
+            Largest duration [s].
 
         Returns
         -------
         variables : dict
-            By the names of records, over time, and over contacts where there are several; each surface is one.
+            By the names of records, over time, and over contacts if there are several; each surface is one.
         pressure : ndarray, shape (samples,)
-            Nothing where something else was heard.
+            Sound pressure [Pa], empty if another source was played.
         """
         parts: deque[_Kept] = deque()
         samples = 0
@@ -221,12 +221,12 @@ class LastSeconds:
         return variables, np.concatenate(sound) if len(sound) == len(parts) else np.zeros(0)
 
     def wav(self) -> bytes:
-        """Return what was heard last as a sound file of 24 bits, 1 dB below full scale, which its comment states.
+        """Return the last sound as a file of 24 bits, 1 dB below full scale, which its comment states.
 
         Raises
         ------
         ValueError
-            If nothing was played yet.
+            If nothing has been played yet.
         """
         self._check()
         source = self._parts[-1].source
@@ -245,7 +245,7 @@ class LastSeconds:
         return bytes(encoded(sound[:, None] / scale, self.rate, "PCM_24", comment))
 
     def _joined(self, name: str) -> Array:
-        """Return a record of the contacts over time, and over contacts where there are several, over tangents last."""
+        """Return a variable of the contacts over time, over contacts if there are several, and over tangents last."""
         found = np.concatenate([part.contacts[name] for part in self._parts], axis=1)
         return found.swapaxes(0, 1) if len(found) > 1 else found[0]
 

@@ -1,4 +1,4 @@
-"""What a page may say: every message checked, sizes and rates bounded."""
+"""Messages from a page, checked, with bounded sizes and rates."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 # Largest message [bytes].
 LARGEST = 100_000
-# Longest line that says what is wrong with one.
+# Greatest length of a line about an invalid message.
 LONGEST = 300
 Number = Annotated[float, Field(allow_inf_nan=False, ge=-1e15, le=1e15)]
 Revision = Annotated[int, Field(ge=0, le=2**50)]
@@ -20,7 +20,7 @@ class _Message(BaseModel):
 
 
 class Scene(_Message):
-    """What is to be played: a shipped case or a text, with values set by key."""
+    """Scenario to play: a shipped case or a text, with values set by key."""
 
     type: Literal["scene"]
     revision: Revision
@@ -30,7 +30,7 @@ class Scene(_Message):
 
 
 class Pull(_Message):
-    """How much is to be played next, in parts."""
+    """Number of parts and samples to play next."""
 
     type: Literal["pull"]
     parts: Annotated[int, Field(ge=1, le=20)]
@@ -38,27 +38,27 @@ class Pull(_Message):
 
 
 class Listen(_Message):
-    """What is to be heard."""
+    """Source of the sound."""
 
     type: Literal["listen"]
     source: Annotated[str, Field(max_length=40)]
 
 
 class Restart(_Message):
-    """Begin a stroke."""
+    """Request to begin a stroke."""
 
     type: Literal["restart"]
 
 
 class Repeat(_Message):
-    """Whether strokes follow each other."""
+    """Whether strokes are repeated."""
 
     type: Literal["repeat"]
     on: bool
 
 
 class Save(_Message):
-    """What was played last, as a file."""
+    """Request for the last seconds as a file."""
 
     type: Literal["save"]
     format: Literal["wav", "nc"]
@@ -73,7 +73,7 @@ class Axis(_Message):
 
 
 class Map(_Message):
-    """The regimes around what is played."""
+    """Request for a map of regimes around the played scenario."""
 
     type: Literal["map"]
     x: Axis
@@ -82,7 +82,7 @@ class Map(_Message):
 
 
 class NoMap(_Message):
-    """No map any more."""
+    """Request to stop the map."""
 
     type: Literal["no map"]
 
@@ -92,23 +92,23 @@ _ADAPTER: TypeAdapter[Any] = TypeAdapter(Annotated[Message, Field(discriminator=
 
 
 def message_of(text: str) -> Message:
-    """Return the message that a text is.
+    """Return the message in a text.
 
     Raises
     ------
     ValueError
-        If it is none.
+        If the text is not a valid message.
     """
     try:
         found: Message = _ADAPTER.validate_json(text)
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"])) or "message"
-        raise ValueError(_line(f"{where} must be what the page sends: {first['msg'].lower()}")) from None
+        raise ValueError(_line(f"{where} must be valid: {first['msg'].lower()}")) from None
     return found
 
 
 def _line(text: str) -> str:
-    """Return a text in one line that is not too long, whatever of a message stands in it."""
+    """Return a text in one line of limited length."""
     line = " ".join(text.split())
     return line if len(line) <= LONGEST else f"{line[: LONGEST - 3]}..."

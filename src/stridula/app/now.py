@@ -1,4 +1,4 @@
-"""What is going on now, in words: the regime of the last second, its pitch and how loud it is."""
+"""The present motion as text: the regime of the last second, its pitch and its level."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ import numpy as np
 from ..acoustics.levels import REFERENCE, decibels
 from ..arrays import Array
 
-# Frequency from which a tone is a squeal in plain words [Hz].
+# Frequency above which a tone is described as a squeal [Hz].
 SHRILL = 1000.0
 
 
 def said(values: Array) -> dict[str, Any]:
-    """Return an array as JSON holds it, in single precision."""
+    """Return an array in a form for JSON, in single precision."""
     plain = np.ascontiguousarray(values, dtype="<f4")
     return {"shape": plain.shape, "values": base64.b64encode(plain.tobytes()).decode("ascii")}
 
 
 def heard(told: dict[str, Any]) -> Array:
-    """Return the array that `said` told."""
+    """Return the array encoded by `said`."""
     return np.frombuffer(base64.b64decode(told["values"]), dtype="<f4").reshape(told["shape"]).astype(float)
 
 
 def measured(interval: float, contacts: Sequence[str], variables: dict[str, Any]) -> dict[str, Any]:
-    """Return the regime of what was played last and its measures.
+    """Return the regime of the last second and its measures.
 
     Parameters
     ----------
@@ -37,12 +37,12 @@ def measured(interval: float, contacts: Sequence[str], variables: dict[str, Any]
     contacts : sequence of str
         Names of the contacts.
     variables : dict
-        What is recorded over time, and over contacts where there are several, by the names of records, as `said`.
+        Variables of a record by name, over time, and over contacts if there are several, encoded by `said`.
 
     Returns
     -------
     dict
-        ``regime``, and ``frequency`` [Hz] and ``impact_rate`` [1/s] where they are known, else None.
+        ``regime``, and ``frequency`` [Hz] and ``impact_rate`` [1/s], None if unknown.
     """
     from ..analysis import regime_of
     from ..records.plain import PlainRecord
@@ -55,21 +55,21 @@ def measured(interval: float, contacts: Sequence[str], variables: dict[str, Any]
 
 
 def words(found: dict[str, Any], level: float | None) -> str:
-    """Return what is going on in a line.
+    """Return the present motion in one line.
 
     Parameters
     ----------
     found : dict
-        What `measured` returns.
+        Result of `measured`.
     level : float or None
-        Level of the sound pressure [dB], None where none is heard.
+        Level of the sound pressure [dB], None if there is none.
     """
     told = _verb(found["regime"], found["frequency"], found["impact_rate"])
     return told if level is None else f"{told}, {level:.0f} dB"
 
 
 def level_of(pressure: Array) -> float | None:
-    """Return the level of a sound pressure [dB], None of silence."""
+    """Return the level of a sound pressure [dB], None for silence."""
     mean = float(np.mean(np.square(pressure, dtype=float))) if len(pressure) else 0.0
     return float(decibels(np.asarray(mean))) if mean > REFERENCE**2 else None
 

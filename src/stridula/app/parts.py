@@ -1,4 +1,4 @@
-"""What is played, part by part, and how a part goes to the page."""
+"""Parts of the played motion, and their encoding for the page."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from ..arrays import Array
 from ..integration.live import LiveChunk, LiveMarch
 from ..records.variables import dominant_status
 
-# Samples that become one in the pictures of the forces and of the phase portrait.
+# Samples averaged to one in the pictures of the forces and of the phase portrait.
 THINNED = 4
 
 
 @dataclass(frozen=True)
 class Shapes:
-    """Where the bodies are.
+    """Positions of the bodies.
 
     Attributes
     ----------
     place, height : float
-        Where the first tip is, along its track and above it where it is straight [m].
+        Position of the first tip along its track, and its height above the undeflected track [m].
     slider : ndarray, shape (nodes, 2)
-        Displacements along x and y [m]: of two beams those of the slider's nodes less that of its tip, tip first; of
-        other systems, line by line, the travel that is to scale and then what departs from it at each point.
+        Displacements along x and y [m]: for two beams those of the slider's nodes relative to its tip, tip first; for
+        other systems, line by line, the travel, drawn to scale, and then the deviation from it at each point.
     track : ndarray, shape (points,)
-        Of two beams the deflections at equal distances along the track [m]; of systems in space the numbers that tell
-        where each body is, body by body, then how fast these change.
+        For two beams the deflections at equal distances along the track [m]; for systems in space the coordinates of
+        all bodies, then their rates of change.
     contacts : ndarray, shape (contacts, 2)
-        Of other systems the status of each contact, and how far what it slides on has moved along itself [m].
+        For other systems the status of each contact, and the travel of its track along itself [m].
     """
 
     place: float
@@ -41,20 +41,20 @@ class Shapes:
 
 @dataclass(frozen=True)
 class Part:
-    """A part of what is played.
+    """A part of the played motion.
 
     Attributes
     ----------
     revision : int
-        Number of the change that is heard in it.
+        Number of the change that it includes.
     clock : float
         Time played at its end [s].
     sound : ndarray, shape (samples,)
-        What is heard, in the unit of the source.
+        Sound, in the unit of the source.
     chunk : LiveChunk
         Record of the contacts and of the probes.
     shapes : Shapes
-        Where the bodies are at its end.
+        Positions of the bodies at its end.
     stroke : int
         Number of the stroke.
     """
@@ -74,7 +74,7 @@ class Stop:
     Attributes
     ----------
     why : str
-        What ended it.
+        Reason for the end.
     goes_on : bool
         Whether another stroke begins.
     """
@@ -84,13 +84,13 @@ class Stop:
 
 
 def packed(part: Part) -> bytes:
-    """Return a part as the page reads it.
+    """Return a part encoded for the page.
 
     Nine numbers in double precision: revision, clock, stroke, samples, samples of the pictures, nodes, points of the
     track, contacts, place of the first tip. Then in single precision the sound; for the pictures normal force,
     tangential force, status, place of the tip and its velocity; height of the tip, displacements of the nodes,
-    deflections of the track, status and travel of each contact. All little-endian; a zero at the end where they are odd
-    in number, so that parts can lie one after the other.
+    deflections of the track, status and travel of each contact. All are little-endian, with a zero at the end if their
+    number is odd, so that parts can be joined.
     """
     samples = len(part.sound)
     thinned = THINNED if samples % THINNED == 0 else 1
@@ -108,7 +108,7 @@ def packed(part: Part) -> bytes:
 
 
 def contacts_now(live: LiveMarch, chunk: LiveChunk) -> Array:
-    """Return the status of each contact at the end of a chunk, and how far what it slides on has moved [m]."""
+    """Return the status of each contact at the end of a chunk, and the travel of its track [m]."""
     return np.stack([dominant_status(chunk.status_shares[:, -1]), live.passed], axis=1)
 
 

@@ -1,4 +1,4 @@
-"""What the page can play: a scenario small enough to march while one looks on."""
+"""Scenarios that the page can play, small enough to be simulated while you watch."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ SYSTEMS = ("violin", "squeal-on-plate", "judder-on-plate", "belt", "lugre")
 IN_SPACE = ("glass", "wheel", "pin-on-disc", "pad-on-disc", "brake")
 CASES = (*PRESETS, *SYSTEMS, *IN_SPACE)
 MOST_ELEMENTS, MOST_MODES, MOST_CONTACTS = 100, 400, 100
-# Modes of a system that is no pair of beams: it may be played slower than it sounds.
+# Modes of a system other than a pair of beams, which may play slower than real time.
 MOST_OF_SYSTEMS = 1500
-# Elements of a mesh that a scenario describes, and nodes of a mesh or a profile, whose modes are found within a minute.
+# Elements of a generated mesh, and nodes of a mesh or a profile, whose modes are computed within a minute.
 MOST_OF_MESH, MOST_NODES = 4000, 20_000
-# Shortest step that a scenario may ask for [s].
+# Shortest step allowed in a scenario [s].
 SHORTEST_STEP = 1e-7
 
 
@@ -44,13 +44,13 @@ class Playable:
     Attributes
     ----------
     scenario : Scenario
-        What is played.
+        The scenario to play.
     tables : dict
-        The scenario in full and in SI.
+        Complete tables of the scenario in SI.
     origin : str
-        Name of the shipped scenario, or the text, that it was before values were set.
+        Name of the shipped scenario, or the text, before values were set.
     before : dict or None
-        The scenario in full before values were set, None of a beam on a beam.
+        Complete tables before values were set, None for a pair of beams.
     """
 
     scenario: Scenario
@@ -65,7 +65,7 @@ class Playable:
 
     @cached_property
     def probes(self) -> tuple[Probe, ...]:
-        """What is recorded beside the contacts: an acceleration, and the scenario's own of systems."""
+        """The probes: an acceleration, and for systems also those of the scenario."""
         contact = self.system.contacts[0]
         if contact.path_body is not None:
             first = Acceleration(contact.path_body.centre, "transverse" if self.system.is_spatial else "y")
@@ -76,21 +76,21 @@ class Playable:
 
     @cached_property
     def sources(self) -> dict[str, Source]:
-        """What can be heard."""
+        """Sources of sound by name."""
         return sources_of(self.system, self.probes)
 
     @cached_property
     def turned(self) -> Turned:
-        """What one turns."""
+        """Controls of the scenario."""
         return turned_of_pair(self.tables) if self.before is None else turned_of_system(self.tables, self.before)
 
     @property
     def is_fast(self) -> bool:
-        """Whether any machine that is not busy with something else plays it as fast as it sounds."""
+        """Whether any otherwise idle machine plays it in real time."""
         return self.before is None and self.scenario.step is None
 
     def stepped(self, step: float) -> Playable:
-        """Return the same with a time step of its own [s]."""
+        """Return the same scenario with another time step [s]."""
         simulation = {**self.tables["simulation"], "step": step}
         return replace(
             self, scenario=replace(self.scenario, step=step), tables={**self.tables, "simulation": simulation}
@@ -103,16 +103,16 @@ class Playable:
 
 
 def playable(case: str, text: str | None, overrides: Mapping[str, Any]) -> Playable:
-    """Return a scenario with values set by key, checked.
+    """Return a checked scenario with values set by key.
 
     Parameters
     ----------
     case : str
-        Name of a shipped scenario, of no meaning where there is a text.
+        Name of a shipped scenario, ignored if there is a text.
     text : str or None
         A scenario as TOML; it cannot name files.
     overrides : mapping
-        Values by key, as in `load_scenario`; of a system also by keys that mean several places.
+        Values by key, as in `load_scenario`; for a system also by keys of several places.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def playable(case: str, text: str | None, overrides: Mapping[str, Any]) -> Playa
     unknown = [key for key in overrides if before is None and key not in KEYS]
     if unknown:
         raise ScenarioError([f"key must be one of the page's, got {unknown[0]!r}"])
-    # A kind starts a table afresh: what belongs to it comes after it.
+    # Setting a kind clears its table, so that the other keys come after it.
     kinds_first = sorted(overrides.items(), key=lambda item: item[0].rpartition(".")[2] not in TAGS)
     changed, problems = overridden(tables, dict(kinds_first))
     _check_no_files(changed)
@@ -140,13 +140,13 @@ def playable(case: str, text: str | None, overrides: Mapping[str, Any]) -> Playa
 
 @lru_cache(maxsize=32)
 def _given(case: str, text: str | None) -> tuple[dict[str, Any], dict[str, Any] | None]:
-    """Return the tables of a scenario in which values are set, and of a system those in full, which are the same."""
+    """Return the tables in which values are set, and for a system, other than a pair of beams, the complete ones."""
     tables = read_tables(case) if text is None else tables_of_text(text, "the scenario")
     _check_size(tables)
     try:
         scenario = scenario_of_tables(tables, [])
     except ScenarioError:
-        # What is wrong with it is said once values are set.
+        # Problems are reported after values are set.
         return tables, None
     if _is_pair(scenario.system):
         return tables, None
@@ -161,7 +161,7 @@ def _is_pair(system: System) -> bool:
 
 
 def _in_full(scenario: Scenario, tables: dict[str, Any]) -> dict[str, Any]:
-    """Return a scenario in full and in SI; in space as it is described, without what its bodies come to as numbers."""
+    """Return the complete tables of a scenario in SI; in space as described, without the resulting modes of bodies."""
     simulation: dict[str, Any] = {"duration": scenario.duration, "scheme": scenario.scheme.name}
     if scenario.step is not None:
         simulation["step"] = scenario.step
@@ -172,7 +172,7 @@ def _in_full(scenario: Scenario, tables: dict[str, Any]) -> dict[str, Any]:
 
 
 def _check_no_files(tables: dict[str, Any]) -> None:
-    """Raise ScenarioError if a body names a file: what is read is for this machine's own user to say."""
+    """Raise ScenarioError if a body names a file, since a page must not choose files to read."""
     bodies = tables.get("bodies")
     named = [name for name, body in (bodies if isinstance(bodies, dict) else {}).items() if names_files(body)]
     if named:
@@ -180,7 +180,7 @@ def _check_no_files(tables: dict[str, Any]) -> None:
 
 
 def _check_step(scenario: Scenario) -> None:
-    """Raise ScenarioError if a scenario wants steps that would keep a part from ever ending."""
+    """Raise ScenarioError if the step of a scenario is so short that a part would take forever."""
     if scenario.step is not None and scenario.step < SHORTEST_STEP:
         told = f"simulation.step must be at least {SHORTEST_STEP:g} s to be played, got {scenario.step!r}"
         raise ScenarioError([told])
@@ -212,7 +212,7 @@ def _check_system(system: System) -> None:
             raise ScenarioError([f"track must have at most {MOST_MODES} modes to be played, got {modes}: lower cutoff"])
         return
     for body in system.bodies:
-        # Before its modes are found.
+        # Checked before the modes are computed.
         nodes = len(body.mesh.nodes) if hasattr(body, "mesh") else 0
         if nodes > MOST_NODES:
             name = system.body_name(body)

@@ -1,4 +1,4 @@
-"""The cases that the page offers."""
+"""The cases offered by the page."""
 
 from __future__ import annotations
 

@@ -23,13 +23,13 @@ from .parts import Part, packed
 from .playable import PRESETS, SYSTEMS, playable
 from .server import create_app
 
-# How long pages are waited for when the server stops [s].
+# Time to wait for pages when the server stops [s].
 GRACE = 2
-# After how long it is said that something is being compiled [s].
+# Time after which compilation is announced [s].
 PATIENCE = 2.0
-# Hosts that stand for all addresses of this machine.
+# Hosts that mean all addresses of this machine.
 EVERYWHERE = ("0.0.0.0", "::")
-# An address and a port that are nobody's.
+# An unused address and port.
 ELSEWHERE = ("192.0.2.1", 9)
 COMPILING = "stridula: compiling, once; this takes some ten seconds"
 
@@ -42,16 +42,16 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
     host : str
         Address to listen on.
     port : int
-        Port; 0 for any that is free.
+        Port; 0 for any free one.
     is_open : bool
-        Whether the host may be other than this machine's own.
+        Whether other machines may connect.
     opens_browser : bool
-        Whether a browser is opened.
+        Whether to open a browser.
 
     Raises
     ------
     ValueError
-        If the host is not this machine's own and `is_open` does not say that it may be, or the port cannot be had.
+        If the host is not a loopback address and `is_open` is false, or the port is not free.
     """
     if not (is_open or is_loopback(host)):
         raise ArgumentError(
@@ -60,27 +60,27 @@ def serve(host: str, port: int, is_open: bool, opens_browser: bool) -> None:
     listening = _bound(host, port)
     use_one_thread()
     _get_ready()
-    # What is there now stays: to look for garbage in it would stop the sound.
+    # Existing objects are permanent: searching them for garbage would interrupt the sound.
     gc.collect()
     gc.freeze()
     address, *others = addresses(host, listening.getsockname()[1])
     print("\n".join([f"stridula plays at {address} (Ctrl-C stops it)", *others]), flush=True)
-    # A page that goes in the middle of what it asked for is no news.
+    # Pages that disconnect during a response are not logged.
     logging.getLogger("asyncio").setLevel(logging.ERROR)
     if opens_browser:
         threading.Timer(0.5, webbrowser.open, [address]).start()
-    # Ctrl-C is how it ends.
+    # Ctrl-C ends the server normally.
     with suppress(KeyboardInterrupt):
         server(is_open).run(sockets=[listening])
 
 
 def server(is_open: bool) -> uvicorn.Server:
-    """Return what serves the page.
+    """Return the server of the page.
 
     Parameters
     ----------
     is_open : bool
-        Whether other machines may ask.
+        Whether other machines may connect.
     """
     config = uvicorn.Config(
         create_app(is_open),
@@ -88,7 +88,7 @@ def server(is_open: bool) -> uvicorn.Server:
         ws="websockets-sansio",
         ws_max_size=LARGEST,
         ws_per_message_deflate=False,
-        # What callers do wrong is told to them.
+        # Errors of callers are reported to them only.
         log_level="error",
         access_log=False,
         server_header=False,
@@ -100,30 +100,30 @@ def server(is_open: bool) -> uvicorn.Server:
 
 
 def _get_ready() -> None:
-    """Play a moment, so that what must be compiled is; say so where it takes long, which it does the first time."""
+    """Play a moment to compile the code, with a notice if that takes long, as it does the first time."""
     notice = threading.Timer(PATIENCE, print, [COMPILING], {"file": sys.stderr, "flush": True})
     notice.daemon = True
     notice.start()
-    # Under a force and under an imposed velocity; what changes friction, and what changes modes.
+    # Cases with a force and with an imposed velocity, and changes of friction and of modes.
     for case in PRESETS[:3:2]:
         instrument = Instrument(playable(case, None, {}))
         for number, key in enumerate(("contact.friction.coefficient", "slider.length")):
             _ = [packed(part) for part in instrument.play(RATE // 100) if isinstance(part, Part)]
             instrument.change(playable(case, None, {key: 0.5}), number)
         list(instrument.play(RATE // 100))
-    # Several contacts, modes that are coupled, a rigid track.
+    # Cases with several contacts, coupled modes and a rigid track.
     for case in SYSTEMS:
         list(Instrument(playable(case, None, {})).play(RATE // 100))
     notice.cancel()
 
 
 def addresses(host: str, port: int) -> list[str]:
-    """Return where this machine opens the page, then lines on how other machines do, if they may.
+    """Return the address of the page on this machine, followed by a line for other machines if they may connect.
 
     Parameters
     ----------
     host : str
-        Address that is listened on.
+        Address on which the server listens.
     port : int
         Port.
     """
@@ -137,7 +137,7 @@ def addresses(host: str, port: int) -> list[str]:
 
 
 def outward() -> list[str]:
-    """Return the address by which other machines reach this one, if it has one; nothing is sent to find it."""
+    """Return the address of this machine in its network, if any; nothing is sent to find it."""
     with suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
         asked.connect(ELSEWHERE)
         return [asked.getsockname()[0]]
@@ -145,7 +145,7 @@ def outward() -> list[str]:
 
 
 def is_loopback(host: str) -> bool:
-    """Return whether an address is this machine's own."""
+    """Return whether an address is a loopback address."""
     if host == "localhost":
         return True
     try:
@@ -162,7 +162,7 @@ def _bound(host: str, port: int) -> socket.socket:
         found = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
         found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         found.bind(address)
-        # Whoever reads the address may come at once: a call waits until it is answered.
+        # The address may be used at once; a connection then waits until it is accepted.
         found.listen()
     except OSError as error:
         taken = " (another program listens there: choose another --port)" if error.errno == errno.EADDRINUSE else ""

@@ -1,4 +1,4 @@
-"""The server of the page: its files, its socket, and who may speak to it."""
+"""The server of the page: its files, its socket, and its access control."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from .beside import Beside
 from .session import Session
 
 PAGE = files(__package__).joinpath("page")
-# What others wrote, as it is.
+# Files of third parties, unchanged.
 VENDOR = "vendor"
 MOST_PAGES = 16
-# Codes of a closed socket: a page from elsewhere, one too many.
+# Codes of a closed socket: a page from another server, and too many pages.
 FROM_ELSEWHERE, TOO_MANY = 4403, 4429
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
 NAME = re.compile(r"[A-Za-z0-9_.-]+")
@@ -40,13 +40,13 @@ HEADERS = {
 
 
 class Pages:
-    """The pages that are open, and what they share."""
+    """The open pages and their shared process."""
 
     def __init__(self) -> None:
         self.open, self.beside = 0, Beside()
 
     async def socket(self, socket: WebSocket) -> None:
-        """Play for a page until it goes."""
+        """Play for a page until it disconnects."""
         await socket.accept()
         if not _is_same_origin(socket):
             await socket.close(FROM_ELSEWHERE, "the page must come from this server")
@@ -70,8 +70,8 @@ def create_app(is_open: bool = False) -> ASGIApp:
     Parameters
     ----------
     is_open : bool, optional
-        Whether other machines may ask; else requests must name this machine by a loopback name, so that no other page
-        in the browser can reach it under a name of its own.
+        Whether other machines may connect; if not, requests must use a loopback name, so that no other page in the
+        browser can reach the server under another name.
     """
     pages = Pages()
     known = {entry.name: entry for entry in PAGE.iterdir() if entry.is_file()}
@@ -93,13 +93,13 @@ def create_app(is_open: bool = False) -> ASGIApp:
 
 
 def _sockets(host: str) -> str:
-    """Return where a page may open sockets: not every browser takes that of its own server for its own."""
-    # A policy cannot hold an address of IPv6.
+    """Return the addresses of sockets for the policy: some browsers do not count their own server as 'self'."""
+    # A policy cannot contain an IPv6 address.
     return "'self'" if host.startswith("[") else f"'self' ws://{host} wss://{host}"
 
 
 def _named_rightly(app: ASGIApp, is_open: bool) -> ASGIApp:
-    """Return an app that answers only requests that name it as it may be named."""
+    """Return an app that answers only requests with an allowed Host header."""
 
     async def checked(scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] in ("http", "websocket"):
@@ -121,7 +121,7 @@ async def _refused(scope: Scope, receive: Receive, send: Send) -> None:
 
 
 def _is_right(host: str, is_open: bool) -> bool:
-    """Return whether a Host header names this machine: by a loopback name, or where it is open by any address."""
+    """Return whether a Host header names this machine: by a loopback name, or any address if it is open."""
     name = host.rpartition(":")[0] if host.rpartition(":")[2].isdigit() else host
     if name in LOOPBACK:
         return True

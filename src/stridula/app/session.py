@@ -1,4 +1,4 @@
-"""One page: what it says, what it is told."""
+"""The session of one page: its messages and their answers."""
 
 from __future__ import annotations
 
@@ -30,33 +30,33 @@ from .presets import presets
 from .tour import STOPS
 from .turned import keys_of
 
-# A page may be ahead of time by so much [s], and play at most so much faster than time goes.
+# Largest lead of a page over real time [s], and its largest speed relative to real time.
 AHEAD, FASTEST = 1.0, 1.5
-# After so many parts other pages have their turn; parts that take long are cut so that they have it every so often [s],
-# and no more of them are played at once than take so long [s].
+# Parts after which other pages have their turn; parts that take long are cut so that turns come this often [s], and
+# the longest time of parts played at once [s].
 PARTS_AT_ONCE, TURN, LONGEST = 4, 0.02, 0.25
-# Quiet time after a change before linear theory is asked [s].
+# Time without changes before linear theory is computed [s].
 PAUSE = 0.25
-# Of so many seconds it is said what goes on, each time they have passed; not of fewer than the shortest [s].
+# Interval in which the present motion is reported, and the shortest one [s].
 MOMENT, SHORTEST = 1.0, 0.2
-# Share of what was known before in how fast a system is played: a machine is busy now and then. Samples from which more
-# is known.
+# Weight of earlier measurements in the speed of playing, since a machine may be busy at times; samples needed for a new
+# measurement.
 KNOWN, ENOUGH = 0.6, 48
-# A page that says nothing for so long at first [s] makes room for another.
+# Time after which a page without a first message is disconnected [s].
 HURRY = 10.0
-# Codes of a socket that closed without one, and of one whose page said nothing.
+# Codes of a socket that closed without a code, and of one whose page sent nothing.
 GONE, SILENT = 1006, 4408
 
 
 class Session:
-    """A page that is open.
+    """An open page.
 
     Parameters
     ----------
     socket : WebSocket
-        Where it speaks.
+        Its connection.
     beside : Beside
-        Who computes its maps and linear theory.
+        The process that computes its maps and linear theory.
     """
 
     def __init__(self, socket: WebSocket, beside: Beside) -> None:
@@ -66,16 +66,16 @@ class Session:
         self.source, self.repeats = "pressure", True
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._began, self._played = clock.monotonic(), 0
-        # What was last drawn.
+        # Hash of the last drawing.
         self._drawn: str | None = None
-        # Seconds of a system played in one; of what was played since, seconds that it took, and samples.
+        # Seconds of a system played per second; time taken and samples played since its measurement.
         self.speed: float | None = None
         self._taken, self._made = 0.0, 0
-        # Held while what plays becomes something else.
+        # Held while the scenario changes.
         self._changing = asyncio.Lock()
 
     async def run(self) -> None:
-        """Answer the page until it goes; raises WebSocketDisconnect then."""
+        """Answer the page until it disconnects, then raise WebSocketDisconnect."""
         await self._tell(
             "hello",
             version=__version__,
@@ -96,7 +96,7 @@ class Session:
                 except ValueError as error:
                     await self._tell("problem", problems=_lines(error))
         except TimeoutError:
-            await self.socket.close(SILENT, f"a page must speak within {HURRY:g} s")
+            await self.socket.close(SILENT, f"a page must send a message within {HURRY:g} s")
         finally:
             for task in self._tasks.values():
                 task.cancel()
@@ -129,7 +129,7 @@ class Session:
             self.instrument.repeat(message.on)
 
     async def _scene(self, scene: Scene) -> None:
-        """Play something else, as much of it as can be played."""
+        """Play another scene, or its playable part."""
         refused: dict[str, list[str]] = {}
         try:
             found = await asyncio.to_thread(held, scene, self.scene)
@@ -148,7 +148,7 @@ class Session:
             described = _described(instrument, self.speed)
             drawn, self._drawn = self._drawn, described.get("drawn")
             if drawn and drawn == self._drawn:
-                # Bodies in space are much to say.
+                # Bodies in space are large, and are not sent again.
                 described = {
                     name: value for name, value in described.items() if name not in instrument.drawing.described
                 }
@@ -162,7 +162,7 @@ class Session:
         await self._tell("refused", revision=scene.revision, **told)
 
     def _play(self, played: Playable, revision: int) -> tuple[Instrument, bool]:
-        """Return what plays, and whether its motion went on."""
+        """Return the instrument, and whether its motion continues."""
         goes_on = False
         if self.instrument is None:
             self.instrument = Instrument(played, self.source)
@@ -172,12 +172,12 @@ class Session:
         if not goes_on:
             self.speed = None if played.is_fast else self.instrument.keep_up()
             self._taken, self._made = 0.0, 0
-        # Made here, for it may be much.
+        # Computed here because it may be slow.
         _ = self.instrument.drawing.described
         return self.instrument, goes_on
 
     async def _now(self) -> None:
-        """Say once a second what is going on."""
+        """Report the present motion once a second."""
         before = 0
         with suppress(WebSocketDisconnect):
             while True:
@@ -208,10 +208,10 @@ class Session:
                     await self._tell("now", revision=revision, words=words, **found)
 
     async def _pull(self, instrument: Instrument, pull: Pull) -> None:
-        """Play the next parts; a page that asks for more than time brings waits."""
+        """Play the next parts; a page that requests more than real time must wait."""
         wanted = pull.parts * pull.samples
         allowed = round((clock.monotonic() - self._began) * FASTEST * RATE)
-        # What was not asked for in time is not made up for.
+        # Parts not requested in time are not made up for.
         self._played = max(self._played, allowed) + wanted
         early = (self._played - allowed) / RATE - AHEAD
         if early > 0.0:
@@ -219,7 +219,7 @@ class Session:
         parts: list[bytes] = []
         start = clock.monotonic()
         for number, samples in enumerate(self._cut(pull)):
-            # Marched here and not in a thread: to change threads takes as long as a part.
+            # Computed here and not in a thread, since changing threads takes as long as a part.
             began = clock.perf_counter()
             found = list(instrument.play(samples))
             self._taken += clock.perf_counter() - began
@@ -236,7 +236,7 @@ class Session:
         await _sent(self.socket.send_bytes(b"".join(parts)))
 
     def _cut(self, pull: Pull) -> list[int]:
-        """Return the samples of each part, of what is slow in smaller ones."""
+        """Return the samples of each part; slow systems are cut into smaller parts."""
         most = pull.samples
         if self.speed is not None:
             most = max(THINNED, int(TURN * self.speed * RATE) // THINNED * THINNED)
@@ -264,7 +264,7 @@ class Session:
         for side in ("x", "y"):
             axis = getattr(message, side)
             if axis.key not in known or not axis.low < axis.high:
-                raise ArgumentError(side, "be a number of the page that rises from low to high", axis.key)
+                raise ArgumentError(side, "be a number of the page with low below high", axis.key)
         if message.x.key == message.y.key:
             raise ArgumentError("y", "be another number than x", message.y.key, got=f"{message.y.key!r} for both")
         self._do("map", self._rows(played, message))
@@ -283,7 +283,7 @@ class Session:
                 await self._tell("theory", revision=revision, **found)
 
     def _do(self, name: str, what: Coroutine[Any, Any, None]) -> None:
-        """Do something beside what is played, in place of what was done under this name before."""
+        """Start a background task, in place of the previous one with this name."""
         self._stop(name)
         self._tasks[name] = asyncio.create_task(what)
 
@@ -293,7 +293,7 @@ class Session:
             before.cancel()
 
 
-# How a message is answered, and how one is that needs something to play.
+# Methods that answer messages, without and with an instrument.
 ANSWERS: dict[type, Any] = {Scene: Session._scene, Listen: Session._listen, Repeat: Session._repeat}
 ANSWERS_OF_WHAT_PLAYS: dict[type, Any] = {
     Pull: Session._pull,
@@ -305,7 +305,7 @@ ANSWERS_OF_WHAT_PLAYS: dict[type, Any] = {
 
 
 async def _sent(sending: Coroutine[Any, Any, None]) -> None:
-    """Send; raises WebSocketDisconnect where the page has gone, and also where another task noticed it first."""
+    """Send; raise WebSocketDisconnect if the page has gone, even if another task noticed it first."""
     try:
         await sending
     except RuntimeError:
@@ -321,17 +321,17 @@ def _is_same(one: Scene, other: Scene) -> bool:
 
 
 def _said(scene: Scene | None) -> dict[str, Any] | None:
-    """Return a scene as a page says it."""
+    """Return a scene in the form that a page sends."""
     return None if scene is None else scene.model_dump(include={"case", "text", "overrides"})
 
 
 def _lines(error: ValueError) -> list[str]:
-    """Return what is wrong, a line each."""
+    """Return the problems, one line each."""
     return list(error.problems) if isinstance(error, ScenarioError) else [str(error)]
 
 
 def _described(instrument: Instrument, speed: float | None) -> dict[str, Any]:
-    """Return what the page shows of what is played."""
+    """Return the description of the played scenario for the page."""
     played, live = instrument.played, instrument.live
     return {
         "title": played.scenario.title,
@@ -353,6 +353,6 @@ def _described(instrument: Instrument, speed: float | None) -> dict[str, Any]:
 
 
 def _places(played: Playable) -> dict[str, list[str]]:
-    """Return the keys that a key with a ``*`` means."""
+    """Return the keys for which each key with a ``*`` stands."""
     several = [key for key in played.turned.values if "*" in key]
     return {key: keys_of(key, played.tables) for key in several}

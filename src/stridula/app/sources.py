@@ -1,4 +1,4 @@
-"""What one hears: contact forces, probes or the sound that a track radiates, sample by sample."""
+"""Sources of the sound: contact forces, probes or the sound radiated by a track, sample by sample."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from ..system import System
 
 @dataclass(frozen=True)
 class Source:
-    """Something that can be heard.
+    """A source of sound.
 
     Attributes
     ----------
     name, unit : str
-        What it is and its unit.
+        Name and unit.
     full_scale : float
-        Amplitude that is as loud as can be at a volume of 0 dB.
+        Amplitude at full scale for a volume of 0 dB.
     words : str
-        What it is, in a line.
+        Explanation in one line.
     """
 
     name: str
@@ -41,39 +41,37 @@ class Source:
 
 
 SOURCES = {
-    "pressure": Source("Sound pressure", "Pa", 0.1, "What a listener hears half a metre above the track, in a baffle."),
-    "force": Source("Contact force", "N", 20.0, "The normal force between tip and track, as if an ear lay in it."),
-    "acceleration": Source("Track acceleration", "m/s²", 50.0, "What a sensor on the middle of the track would give."),
-    "friction": Source("Friction force", "N", 20.0, "The force of friction on what is rubbed."),
+    "pressure": Source("Sound pressure", "Pa", 0.1, "The sound pressure half a metre above the track, in a baffle."),
+    "force": Source("Contact force", "N", 20.0, "The normal force between tip and track."),
+    "acceleration": Source("Track acceleration", "m/s²", 50.0, "The acceleration of the track's centre."),
+    "friction": Source("Friction force", "N", 20.0, "The friction force on the track."),
 }
-# What stands in for a contact alone where there are several.
+# Sources for several contacts, in place of those for one.
 TOGETHER = {
     "force": Source("Contact forces", "N", 20.0, "The sum of the normal forces of all contacts."),
-    "friction": Source("Friction forces", "N", 20.0, "The sum of the forces of friction of all contacts."),
+    "friction": Source("Friction forces", "N", 20.0, "The sum of the friction forces of all contacts."),
 }
-TIP_ACCELERATION = Source(
-    "Tip acceleration", "m/s²", 50.0, "What a sensor on the first tip would give, along its track."
-)
-# As loud as can be: values of probes, by their unit.
+TIP_ACCELERATION = Source("Tip acceleration", "m/s²", 50.0, "The acceleration of the first tip along its track.")
+# Full scale of probes by their unit.
 FULL_SCALES = {"m": 1e-3, "m/s": 0.5, "m/s2": 50.0, "N": 5.0}
 HEIGHT = 0.5
 
 
 def sources_of(system: System, probes: tuple[Probe, ...]) -> dict[str, Source]:
-    """Return what can be heard of a system, what is most worth hearing first.
+    """Return the sources of a system, the most informative first.
 
     Parameters
     ----------
     system : System
         The system.
     probes : tuple of probe
-        What is recorded beside the contacts; the first is an acceleration.
+        Its probes; the first is an acceleration.
     """
     found = {"pressure": SOURCES["pressure"]} if _radiates(system) else {}
     more = {f"probe {number}": _of_probe(probe, system) for number, probe in enumerate(probes[1:], 1)}
     on_supports = {name: one for name, one in more.items() if one.name.startswith("Support force")}
     known = TOGETHER if len(system.contacts) > 1 else SOURCES
-    # A pressed point on a belt feels the same normal force all the time.
+    # The normal force on a point pressed on a belt is constant.
     is_on_track = system.contacts[0].path_body is not None
     forces = {name: known[name] for name in (("force", "friction") if is_on_track else ("friction", "force"))}
     acceleration = SOURCES["acceleration"] if is_on_track else TIP_ACCELERATION
@@ -88,7 +86,7 @@ def _of_probe(probe: Any, system: System) -> Source:
 
 
 def _radiates(system: System) -> bool:
-    """Return whether all that drives a beam or a plate are tips that slide along it."""
+    """Return whether a beam or a plate is driven only by tips that slide along it."""
     track = system.contacts[0].path_body
     others = [point.body for connection in system.connections for point in ends(connection)]
     others += [drive.acted_on for drive in system.drives]
@@ -96,13 +94,13 @@ def _radiates(system: System) -> bool:
 
 
 class Heard(Protocol):
-    """What is heard of a march."""
+    """Sound of a motion."""
 
     def begin(self) -> None:
-        """Let nothing have sounded yet."""
+        """Start from silence."""
 
     def heard(self, chunk: LiveChunk) -> Array:
-        """Return what is heard over a chunk."""
+        """Return the sound over a chunk."""
 
 
 class Pressure:
@@ -113,7 +111,7 @@ class Pressure:
         self.begin()
 
     def begin(self) -> None:
-        """Let nothing have sounded yet."""
+        """Start from silence."""
         for sound in self.sounds:
             sound.begin()
         self.places: list[float | None] = [None] * len(self.sounds)
@@ -132,14 +130,14 @@ class Pressure:
 
 @lru_cache(maxsize=64)
 def _sound(track: ModalBeam | ModalPlate, interval: float, steps: int) -> StreamedSound:
-    """Return the sound of a track before it is heard: to find its paths takes longer than a part of the sound."""
+    """Return the sound of a track, prepared beforehand because that takes longer than a part of the sound."""
     across = getattr(track, "width", 0.0) / 2.0
     return StreamedSound(track, (track.length / 2.0, across, HEIGHT), interval, steps)
 
 
 @dataclass(frozen=True)
 class OfContacts:
-    """What is recorded of the contacts, summed.
+    """A variable of the contacts, summed.
 
     Attributes
     ----------
@@ -150,7 +148,7 @@ class OfContacts:
     variable: str
 
     def begin(self) -> None:
-        """Forget nothing: nothing is known of what was before."""
+        """Do nothing: there is no memory of earlier chunks."""
 
     def heard(self, chunk: LiveChunk) -> Array:
         """Return the sum over a chunk."""
@@ -164,21 +162,21 @@ class OfProbe:
     Attributes
     ----------
     number : int
-        Which one.
+        Number of the probe.
     """
 
     number: int
 
     def begin(self) -> None:
-        """Forget nothing: nothing is known of what was before."""
+        """Do nothing: there is no memory of earlier chunks."""
 
     def heard(self, chunk: LiveChunk) -> Array:
-        """Return it over a chunk."""
+        """Return the probe over a chunk."""
         return chunk.probes[:, self.number]
 
 
 def source_of(name: str, live: LiveMarch) -> Heard:
-    """Return what is to be heard of a march; what sounded before it is silent."""
+    """Return the sound of a motion by name, starting from silence."""
     if name == "pressure":
         return Pressure(live.system.track, len(live.system.contacts), live.interval, live.ratio)
     if name in ("force", "friction"):

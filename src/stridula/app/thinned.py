@@ -1,4 +1,4 @@
-"""Surfaces with fewer corners, as many as a page draws many times a second."""
+"""Surfaces with fewer corners, so that a page can draw them many times per second."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ import numpy as np
 from ..arrays import Array
 from ..bodies.drawn_surfaces import Drawn, DrawnRings, DrawnSurface
 
-# Corners of a surface, and of the outline of a body of revolution, that are drawn at most.
+# Largest numbers of corners drawn of a surface and of the outline of a body of revolution.
 MOST_CORNERS, MOST_OF_OUTLINE = 5000, 160
-# Numbers that say how modes move the corners of a body, at most.
+# Largest number of values in the mode shapes of a body.
 MOST_NUMBERS = 1_000_000
-# Share by which cells grow until few enough are left.
+# Factor by which cells grow until there are few enough.
 GROWS = 1.2
 
 
 @singledispatch
 def thinned(drawn: Any) -> Drawn:
-    """Return a surface with as many corners as the page takes."""
+    """Return a surface with at most as many corners as the page can draw."""
     raise TypeError(type(drawn))
 
 
@@ -36,14 +36,14 @@ def _rings(drawn: DrawnRings) -> Drawn:
 
 
 def clustered(surface: DrawnSurface, most: int) -> DrawnSurface:
-    """Return a surface with at most so many corners: of those in a cell of space the one nearest to their middle.
+    """Return a surface with at most `most` corners: in each cell of space, the corner nearest to their mean.
 
     Parameters
     ----------
     surface : DrawnSurface
         The surface.
     most : int
-        How many.
+        Largest number of corners.
     """
     place = surface.place
     if len(place) <= most:
@@ -58,32 +58,32 @@ def clustered(surface: DrawnSurface, most: int) -> DrawnSurface:
     nearest = np.lexsort((apart, cell))
     kept = nearest[np.searchsorted(cell[nearest], np.arange(cell.max() + 1))]
     polygons = cell[surface.polygons]
-    # A corner that has become the one before it says nothing; of polygons three must be left.
+    # Merged corners count once; a polygon needs at least three.
     has_area = np.array([len(set(corners)) > 2 for corners in polygons.tolist()])
     return DrawnSurface(place[kept], polygons[has_area], surface.shapes[kept])
 
 
 def _cells(place: Array, size: float) -> Array:
-    """Return the number of the cell that each place lies in."""
+    """Return the number of the cell of each place."""
     return np.unique(np.floor(place / size).astype(int), axis=0, return_inverse=True)[1].ravel()
 
 
 def with_fewer_corners(rings: DrawnRings, most: int) -> DrawnRings:
-    """Return a body of revolution whose outline has at most so many corners: those go at which it bends least.
+    """Return a body of revolution whose outline has at most `most` corners, removing those at which it bends least.
 
     Parameters
     ----------
     rings : DrawnRings
         The body.
     most : int
-        How many.
+        Largest number of corners.
     """
     sides = rings.sides
     corners = np.unique(sides)
     while len(corners) > most:
         before, after = _neighbours(sides, len(rings.place))
         inner = corners[(before[corners] >= 0) & (after[corners] >= 0)]
-        # An outline of fewer than three sides is none.
+        # An outline needs at least three sides.
         if len(inner) < 4:
             break
         (x, y), (u, v) = ((rings.place[beside[inner]] - rings.place[inner]).T for beside in (before, after))
@@ -95,7 +95,7 @@ def with_fewer_corners(rings: DrawnRings, most: int) -> DrawnRings:
 
 
 def _neighbours(sides: Array, count: int) -> tuple[Array, Array]:
-    """Return the corner before and the one after each along an outline, -1 where there is none."""
+    """Return the previous and the next corner of each along an outline, -1 where there is none."""
     before, after = np.full(count, -1), np.full(count, -1)
     before[sides[:, 1]], after[sides[:, 0]] = sides.T
     return before, after

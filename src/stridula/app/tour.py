@@ -1,4 +1,4 @@
-"""Six stops for a class: what a contact does, each with its setting, what to look at and what to hear."""
+"""Six stops of a tour for teaching, each with a setting and an explanation of what to see and hear."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ class TourStop:
     Attributes
     ----------
     title, words : str
-        What it is about, and what to look at and to hear.
+        Title, and explanation of what to see and hear.
     look : str
-        Element of the page that shows it.
+        Element of the page to look at.
     case : str
-        Case that is played.
+        Case to play.
     overrides : dict
         Values set by key.
     compared : dict or None
-        Values by key of the second setting, where two are to be compared.
+        Values by key of the second setting, if two are compared.
     """
 
     title: str
@@ -35,9 +35,9 @@ class TourStop:
 STOPS = (
     TourStop(
         "Stick",
-        "The upper end of the slider is drawn along at a tenth of a millimetre a second, and friction holds the "
-        "tip where it landed: the ribbon under the force is orange. The phase portrait is empty, for the "
-        "tip does not move. What you hear is the beams, ringing from the landing.",
+        "The upper end of the slider is pulled along at a tenth of a millimetre per second, and friction holds the "
+        "tip where it landed: the ribbon under the force is orange. The phase portrait is empty because the "
+        "tip does not move. You hear the beams ringing from the landing.",
         "timeline",
         "stable-sliding",
         {
@@ -49,8 +49,8 @@ STOPS = (
     ),
     TourStop(
         "Slip",
-        "Drawn faster, pressed less and with half the friction, the tip slides all the time: the ribbon is "
-        "yellow. The force settles to a steady value and the sound dies away, for nothing feeds it.",
+        "Pulled faster, pressed less and with half the friction, the tip slides all the time: the ribbon is "
+        "yellow. The force settles to a steady value and the sound dies away, since nothing feeds it.",
         "timeline",
         "stable-sliding",
         {"drives.0.kind": "imposed velocity", "drives.0.velocity": 0.01, "drives.0.normal_load": 1.0},
@@ -58,7 +58,7 @@ STOPS = (
     TourStop(
         "Separate",
         "Now the slider leans into its motion and half a newton presses it down: the tip is in the air most of "
-        "the time, which is blue. Each spike of the force is a landing, and you hear them as a rattle.",
+        "the time, shown in blue. Each spike of the force is a landing, and you hear them as a rattle.",
         "timeline",
         "weak-pressure",
         {"drives.0.normal_load": 0.5},
@@ -82,8 +82,8 @@ STOPS = (
     TourStop(
         "Pressure",
         "Setting A presses with 2 N: the tip flies and lands a few hundred times a second. Setting B presses with "
-        "100 N: it has no time to fly, sticks, and what is left is the fast vibration of beams in touch, above "
-        "800 Hz. The buttons A and B, or the key b, go from one to the other.",
+        "100 N: it has no time to fly, sticks, and the remaining sound is the fast vibration of beams in contact, "
+        "above 800 Hz. The buttons A and B, or the key b, switch between them.",
         "spectrogram",
         "strong-pressure",
         {"drives.0.normal_load": 2.0},

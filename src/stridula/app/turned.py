@@ -1,4 +1,4 @@
-"""What one turns of a system: its own numbers, as the schema of scenarios declares them."""
+"""Controls of a system: its own numbers, as declared in the schema of scenarios."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from ..scenarios.outline import Path, look_up
 from ..scenarios.quantities import DEGREES, UNITS
 from .controls import CHOICES, CONTROLS, DEGREE, Choice, Control, Turned
 
-# Tables whose numbers are turned: what acts and rubs before what bodies are.
+# Tables whose numbers have controls: contacts and drives before bodies.
 TURNED = ("contacts", "surfaces", "drives", "connections", "bodies")
-# Where things are, and what hardly matters, is no business of an instrument.
+# Positions, and numbers of little effect, have no controls.
 NOT_TURNED = {"point", "points", "gap", "at", "inclination", "poisson", "profile", "mesh"}
-# How bodies with a mesh are made, too: more modes of theirs take minutes to find.
+# Nor do the settings of bodies with a mesh, whose modes take minutes to compute.
 MESHES, NOT_TURNED_OF_MESHES = {"profile", "mesh"}, {"cutoff", "axis", "origin"}
-# How far a slider goes from the value that a scenario has.
+# Range of a slider, as a factor on the value in the scenario.
 REACH = 5.0
-# Steps of a slider from end to end, at least.
+# Least number of steps of a slider.
 STEPS = 400
 MOST = 40
-# Keys of one beam on another, by the keys that they have in a list of contacts and bodies.
+# Keys of a pair of beams, by patterns of the keys in lists of contacts and bodies.
 _PAIR = (
     (r"^(contacts|surfaces)\.(\d+|\*)\.", "contact."),
     (r"^bodies\.(slider|track)\.", r"\1."),
     (r"^drives\.\*\.", "drives.0."),
 )
-# Units that take prefixes, for numbers that are not handy in those of scenario files.
+# Units with prefixes, for numbers that are too large or small in the units of scenario files.
 PREFIXED = ("m", "N", "N/m", "N s/m", "Pa")
 PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "m": 1e-3, "µ": 1e-6, "n": 1e-9}
 FRICTION_LAW = CHOICES[0]
@@ -40,15 +40,15 @@ GROUPS = {"drives": "Drive", "connections": "Springs", "contacts": "Contact", "s
 
 
 def turned_of_system(tables: dict[str, Any], before: dict[str, Any]) -> Turned:
-    """Return what one turns of a system.
+    """Return the controls of a system.
 
-    Numbers that are the same in all entries of a list, or in all bodies whose names differ by a number, are turned
-    together: their key has a ``*`` in its place.
+    Numbers that are the same in all entries of a list, or in all bodies whose names differ by a number, share one
+    control: their key has a ``*`` in this place.
 
     Parameters
     ----------
     tables : dict
-        The scenario in full as it is played.
+        Complete tables of the played scenario.
     before : dict
         The same before values were set, from which ranges are derived.
     """
@@ -67,25 +67,25 @@ def turned_of_system(tables: dict[str, Any], before: dict[str, Any]) -> Turned:
 
 
 def expanded(overrides: Mapping[str, Any], tables: dict[str, Any]) -> dict[str, Any]:
-    """Return values by key in which a key with a ``*`` is all keys that it means.
+    """Return values by key, with each key with a ``*`` replaced by all keys for which it stands.
 
     Parameters
     ----------
     overrides : mapping
         Values by key.
     tables : dict
-        The scenario in full.
+        Complete tables of the scenario.
     """
     return {one: value for key, value in overrides.items() for one in keys_of(key, tables)}
 
 
 def keys_of(key: str, tables: dict[str, Any]) -> list[str]:
-    """Return the keys that a key means: itself, or with a ``*`` all that it stands for."""
+    """Return the keys for which a key stands: itself, or with a ``*`` all that match."""
     return [".".join(map(str, path)) for path in places_of(key, tables)] if "*" in key else [key]
 
 
 def places_of(key: str, tables: Any) -> list[Path]:
-    """Return the paths that a key means: those that are there, else those whose tables are; of a plain key itself."""
+    """Return the paths that match a key: existing ones, else those in existing tables; for a plain key its own."""
     parts = tuple(key.split("."))
     matching = list(_matching(parts[:-1], tables, ()))
     there = [(*path, parts[-1]) for path in matching if look_up(tables, (*path, parts[-1])) is not None]
@@ -106,13 +106,13 @@ def _matching(parts: tuple[str, ...], tables: Any, path: Path) -> Iterator[Path]
 
 
 def _keys(tables: dict[str, Any], before: dict[str, Any]) -> list[tuple[str, Path]]:
-    """Return the keys of numbers that are turned, what acts and rubs before what bodies are."""
+    """Return the keys of numbers with controls, contacts and drives before bodies."""
     found = [one for one in _together(tables, before, _is_turned) if not _makes_a_mesh(one[1], tables)]
     return sorted(found, key=lambda item: (TURNED.index(_acts_as(item[1])), "friction" not in item[1]))
 
 
 def _acts_as(path: Path) -> str:
-    """Return the table beside whose numbers one stands: a body that turns drives as a force does."""
+    """Return the table with which a number is sorted: the turning of a body counts as a drive."""
     return "drives" if path[-1] == "turning" else str(path[0])
 
 
@@ -128,7 +128,7 @@ def _is_turned(path: Path, node: outline.Node) -> bool:
 
 
 def _makes_a_mesh(path: Path, tables: dict[str, Any]) -> bool:
-    """Return whether a number says how many modes of a body with a mesh there are, or where it stands."""
+    """Return whether a number sets the number of modes of a body with a mesh, or its position."""
     return bool(path[0] == "bodies" and path[2] in NOT_TURNED_OF_MESHES and MESHES & set(look_up(tables, path[:2])))
 
 
@@ -139,11 +139,11 @@ def _is_law(path: Path, node: outline.Node) -> bool:
 def _together(
     tables: dict[str, Any], before: dict[str, Any], is_wanted: Callable[[Path, outline.Node], bool]
 ) -> list[tuple[str, Path]]:
-    """Return the keys that are there, those of the same value everywhere as one, with the first of their paths."""
+    """Return the existing keys, with those of equal value everywhere as one, and the first of their paths."""
     found: dict[str, Path] = {}
     for path, node in outline.paths(tables):
         value = look_up(tables, path)
-        # A zero may be turned again, but one that stood there from the start gives no range.
+        # A number set to zero keeps its control, but one that is zero from the start gives no range.
         is_word = isinstance(value, str) and outline.is_choice(node)
         is_there = is_word or (_is_number(value) and (value or look_up(before, path)))
         if not (is_there and is_wanted(path, node)):
@@ -165,7 +165,7 @@ def _of_pairs() -> dict[str, Control]:
 
 
 def _control(key: str, path: Path, tables: dict[str, Any], value: float) -> Control:
-    """Return what turns a number: as the page has it for one beam on another, else derived from the value."""
+    """Return the control of a number: that of the page for a pair of beams, else one derived from the value."""
     pair_key = key
     for pattern, known in _PAIR:
         pair_key = re.sub(pattern, known, pair_key)
@@ -174,7 +174,7 @@ def _control(key: str, path: Path, tables: dict[str, Any], value: float) -> Cont
     if pair_key in _of_pairs():
         known_one = _of_pairs()[pair_key]
         if known_one.low <= value / known_one.scale <= known_one.high:
-            # What follows the first sentence is of two beams.
+            # Sentences after the first are about two beams.
             first, stop, _ = known_one.words.partition(". ")
             return replace(known_one, key=key, group=group, place="", words=first + stop.strip())
     unit, scale = _shown_in(outline.unit(node), value)
@@ -189,7 +189,7 @@ def _control(key: str, path: Path, tables: dict[str, Any], value: float) -> Cont
 
 
 def _sentence(text: str) -> str:
-    """Return a description as a sentence, without its unit: that is the one shown."""
+    """Return a description as a sentence, without its SI unit."""
     plain = re.sub(r"\s*\[[^\]]*\]", "", text).strip()
     return f"{plain[:1].upper()}{plain[1:]}." if plain else ""
 
@@ -199,7 +199,7 @@ def _rounded(value: float) -> float:
 
 
 def _shown_in(unit: str, value: float) -> tuple[str, float]:
-    """Return a unit in which a value is a handy number, and its SI value."""
+    """Return a unit in which a value is of convenient size, and its SI value."""
     if unit == "1":
         return "", 1.0
     known = {name: DEGREE if factor == DEGREES else float(factor) for name, factor in UNITS[unit].items()}
@@ -213,7 +213,7 @@ def _shown_in(unit: str, value: float) -> tuple[str, float]:
 
 
 def _group(key: str, path: Path, tables: dict[str, Any]) -> str:
-    """Return where a number is shown: with what acts, what rubs or its body."""
+    """Return the group of a number: that of its contact, drive, connection or body."""
     if "friction" in path:
         group = "Friction"
     elif path[0] == "bodies":
@@ -230,7 +230,7 @@ def _group(key: str, path: Path, tables: dict[str, Any]) -> str:
 
 
 def _law(key: str, path: Path) -> Choice:
-    """Return what chooses a law of friction."""
+    """Return the control that chooses a law of friction."""
     prefix = key.rpartition(".")[0]
     begins = {
         kind: {f"{prefix}.{name.rpartition('.')[2]}": value for name, value in given.items()}

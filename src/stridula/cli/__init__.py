@@ -14,7 +14,7 @@ from .exits import BAD_INPUT, GOOD, INTERRUPTED, failed, say, terminated_as_inte
 
 def main() -> None:
     """Run `stridula` and exit: 0 good, 1 a failed run or a full disk, 2 bad input, 130 interrupted."""
-    # At its end Python would look for garbage in all that was imported, for longer than a short run takes.
+    # At exit, Python would search all imported objects for garbage, which takes longer than a short run.
     atexit.register(gc.freeze)
     print_anything()
     with terminated_as_interrupted():

@@ -12,11 +12,11 @@ from ..system import System
 
 
 def print_card(
-    record: xr.Dataset, title: str, files: list[str], doubtful: list[str], system: System | None = None
+    record: xr.Dataset, title: str, files: list[str], doubtful: list[str], system: System, level: str
 ) -> None:
-    """Print the result of a run, of a bowed string the motion that it is in, and which of its values are doubtful."""
+    """Print the result of a run, its level in words or how to get it, and which of its values are doubtful."""
     table = Table(title=escape(title), show_header=False, title_justify="left")
-    for name, words in facts_of(record, system).items():
+    for name, words in facts_of(record, system, level).items():
         table.add_row(name, escape(words))
     if doubtful:
         table.add_row("doubtful", escape("\n".join(doubtful)))

@@ -1,4 +1,4 @@
-"""The verbs; each imports what it needs when called, so that help comes at once."""
+"""The commands; each imports its modules when called, so that help appears at once."""
 
 from __future__ import annotations
 
@@ -37,21 +37,21 @@ NameOrFile = Annotated[
 ]
 
 TextFile = Annotated[
-    str | None, typer.Option("--out", metavar="FILE", help="Write it to a file, in UTF-8, instead of printing it.")
+    str | None, typer.Option("--out", metavar="FILE", help="Write to a file, in UTF-8, instead of printing.")
 ]
 
-# What commands that compute many points share.
+# Options shared by the commands that compute many points.
 Vary = Annotated[
     list[str] | None,
     typer.Option(metavar="KEY=START:STOP:COUNT", help="Vary a value, ends included, or KEY=A,B,C; may be repeated."),
 ]
 Sample = Annotated[
-    int | None, typer.Option(metavar="N", help="Spread N points over the ranges KEY=START:STOP, a Latin hypercube.")
+    int | None, typer.Option(metavar="N", help="Sample N points of a Latin hypercube over the ranges KEY=START:STOP.")
 ]
 SampleSeed = Annotated[int | None, typer.Option(metavar="S", help="Seed of --sample; default: 0.")]
 PointsFile = Annotated[
     str | None,
-    typer.Option(metavar="FILE.csv", help="Read the points from a table: a row of keys, then one point in each row."),
+    typer.Option(metavar="FILE.csv", help="Read the points from a table: a row of keys, then one row for each point."),
 ]
 SetEverywhere = Annotated[
     list[str] | None,
@@ -59,7 +59,7 @@ SetEverywhere = Annotated[
 ]
 Scheduler = Annotated[
     str | None,
-    typer.Option(metavar="ADDRESS", help="Compute on other machines, by a dask scheduler, tcp://host:port."),
+    typer.Option(metavar="ADDRESS", help="Compute on other machines through a dask scheduler, tcp://host:port."),
 ]
 ManyPoints = Annotated[bool, typer.Option("--yes", help="Confirm more than 10 000 points.")]
 
@@ -67,7 +67,7 @@ ManyPoints = Annotated[bool, typer.Option("--yes", help="Confirm more than 10 00
 @app.callback(invoke_without_command=True)
 def start(
     context: typer.Context,
-    version: Annotated[bool, typer.Option("--version", help="Print the version and leave.")] = False,
+    version: Annotated[bool, typer.Option("--version", help="Print the version and exit.")] = False,
 ) -> None:
     """Friction noise in the time domain: squeal, squeak and judder of elastic bodies in exact contact."""
     if version:
@@ -89,14 +89,26 @@ def list_() -> None:
 
 
 @app.command()
-def show(name: NameOrFile, out: TextFile = None) -> None:
-    """Print a scenario as TOML, to copy and edit; doubtful values go to standard error."""
+def show(
+    name: NameOrFile,
+    out: TextFile = None,
+    plot: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Draw the system instead, before its run, in space in perspective."),
+    ] = None,
+) -> None:
+    """Print a scenario as TOML, to copy and edit, or draw its system; doubtful values go to standard error."""
     from pathlib import Path
 
     from ..scenarios.show import scenario_text
     from .consoles import put
 
-    put(scenario_text(name), out)
+    if plot is not None:
+        from .drawing import draw_system
+
+        draw_system(name, plot, out)
+    if plot is None or out is not None:
+        put(scenario_text(name), out)
     # Shipped scenarios have no doubtful values, and need no compiler to be shown.
     if Path(name).is_file():
         from .doubts import say_doubts
@@ -123,19 +135,19 @@ def run(
         typer.Option(
             "--set",
             metavar="KEY=VALUE",
-            help="Change a value, by its full key or any unique ending of it; may be repeated.",
+            help="Change a value, given by its full key or any unique ending of it; may be repeated.",
         ),
     ] = None,
     duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
     out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the record, as NetCDF.")] = None,
     plot: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Draw the record; the ending of the name is the format.")
+        str | None, typer.Option(metavar="FILE", help="Draw the record; the file extension gives the format.")
     ] = None,
     wav: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the sound at two ears a metre above the track, as WAV.")
     ] = None,
 ) -> None:
-    """Run a scenario and print regime, pitch, forces and energies of the run."""
+    """Run a scenario and print the regime, pitch, forces and energies."""
     with _importing():
         from .running import run_scenario
 
@@ -156,7 +168,9 @@ def sound(
     ] = None,
     body: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="A body to be heard; may be repeated; default: all that can be heard."),
+        typer.Option(
+            metavar="NAME", help="A body to include in the sound; may be repeated; default: all that radiate."
+        ),
     ] = None,
     wav: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the sound, one channel for each listener.")
@@ -171,11 +185,11 @@ def sound(
         str, typer.Option(metavar="HZ", help="Sample rate of the sound file: 44.1, 48 or 96 kHz.")
     ] = "48 kHz",
     full_scale: Annotated[
-        str, typer.Option(metavar="PA", help="Pressure of full scale, or `normalised`: 1 dB above the peak.")
+        str, typer.Option(metavar="PA", help="Pressure at full scale, or `normalised`: 1 dB above the peak.")
     ] = "normalised",
     subtype: Annotated[str, typer.Option(metavar="WORD", help="Format of the samples: PCM_24 or FLOAT.")] = "PCM_24",
     unbaffled: Annotated[
-        bool, typer.Option("--unbaffled", help="Take tracks as slim beams in free air, without a baffle.")
+        bool, typer.Option("--unbaffled", help="Treat tracks as slender beams in free air, without a baffle.")
     ] = False,
 ) -> None:
     """Print the sound levels of a record at listeners, and write the sound as WAV."""
@@ -197,14 +211,14 @@ def sweep(
     points: PointsFile = None,
     set_: SetEverywhere = None,
     duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
-    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the map of the regimes over two keys.")] = None,
+    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw a map of the regimes over two keys.")] = None,
     workers: Annotated[
-        int | None, typer.Option(metavar="N", help="Parts computed at a time; default: one on each processor.")
+        int | None, typer.Option(metavar="N", help="Parts computed at a time; default: one per processor.")
     ] = None,
     scheduler: Scheduler = None,
     yes: ManyPoints = False,
 ) -> None:
-    """Run a scenario at many points of its parameters and keep measures of each run; resumes after an interruption."""
+    """Run a scenario at many parameter points and keep measures of each run; resumes after an interruption."""
     with _importing():
         from .points import points_of
         from .sweeping import sweep_scenario
@@ -228,30 +242,31 @@ def survey(
     ] = None,
     longest: Annotated[str, typer.Option(metavar="S", help="Longest time of a run, without --duration.")] = "1 s",
     amplitude: Annotated[
-        float, typer.Option(metavar="X", help="Start of a mode over where a contact would open, stop or slip.")
+        float,
+        typer.Option(
+            metavar="X", help="Initial amplitude of a mode over that at which a contact opens, stops or slips."
+        ),
     ] = 1e-3,
     highest: Annotated[
-        str | None, typer.Option(metavar="HZ", help="Count modes above this frequency, but do not follow them.")
+        str | None, typer.Option(metavar="HZ", help="Count modes above this frequency, but do not simulate them.")
     ] = None,
     velocity: Annotated[
         str | None,
         typer.Option(
-            metavar="M/S", help="Slip velocity where nothing prescribes it; one for each contact, with commas."
+            metavar="M/S", help="Slip velocity where nothing prescribes it; one for each contact, separated by commas."
         ),
     ] = None,
-    plot: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Draw the map of what squeals over two keys.")
-    ] = None,
+    plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw a map of squeal over two keys.")] = None,
     table: Annotated[
         str | None, typer.Option(metavar="FILE.csv", help="Write a row for each mode of each point.")
     ] = None,
     workers: Annotated[
-        int | None, typer.Option(metavar="N", help="Points computed at a time; default: one on each processor.")
+        int | None, typer.Option(metavar="N", help="Points computed at a time; default: one per processor.")
     ] = None,
     scheduler: Scheduler = None,
     yes: ManyPoints = False,
 ) -> None:
-    """Find the modes of sliding that grow over parameters and follow each in time; resumes after an interruption."""
+    """Find the growing modes of sliding at many points and simulate each in time; resumes after an interruption."""
     with _importing():
         from .points import points_of
         from .stability import velocities
@@ -284,34 +299,35 @@ def stability(
         typer.Option(
             "--set",
             metavar="KEY=VALUE",
-            help="Change a value, by its full key or any unique ending of it; may be repeated.",
+            help="Change a value, given by its full key or any unique ending of it; may be repeated.",
         ),
     ] = None,
     status: Annotated[
         str | None,
         typer.Option(
-            metavar="WORD", help="Take the contacts as sliding, sticking or separated; one word for each, with commas."
+            metavar="WORD",
+            help="Status of the contacts: sliding, sticking or separated; one for each, separated by commas.",
         ),
     ] = None,
     velocity: Annotated[
         str | None,
         typer.Option(
-            metavar="M/S", help="Slip velocity where nothing prescribes it; one for each contact, with commas."
+            metavar="M/S", help="Slip velocity where nothing prescribes it; one for each contact, separated by commas."
         ),
     ] = None,
     vary: Annotated[
         str | None,
         typer.Option(
-            metavar="KEY=START:STOP:COUNT", help="Follow the modes over a parameter and find where stability changes."
+            metavar="KEY=START:STOP:COUNT", help="Track the modes over a parameter and find where stability changes."
         ),
     ] = None,
     highest: Annotated[
-        float | None, typer.Option(metavar="HZ", help="Leave out modes above this frequency, with --vary.")
+        float | None, typer.Option(metavar="HZ", help="With --vary: leave out modes above this frequency.")
     ] = None,
     plot: Annotated[str | None, typer.Option(metavar="FILE", help="Draw the modes over the parameter.")] = None,
-    out: Annotated[str | None, typer.Option(metavar="FILE", help="Write them, as NetCDF.")] = None,
+    out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the modes, as NetCDF.")] = None,
 ) -> None:
-    """Print equilibrium, modes and growing modes of sliding by linear theory, also over a parameter."""
+    """Print the equilibrium and the modes of sliding by linear theory, or where stability changes over a parameter."""
     overrides = _pairs(set_ or [])
     if vary is None:
         for option, value in (("--plot", plot), ("--out", out), ("--highest", highest)):
@@ -331,7 +347,10 @@ def stability(
 @app.command()
 def animate(
     name: Annotated[
-        str, typer.Argument(metavar="NAME-OR-RUN.nc", help="A shipped scenario, a TOML file or a record, run again.")
+        str,
+        typer.Argument(
+            metavar="NAME-OR-RUN.nc", help="A shipped scenario, a TOML file or a record, which is run again."
+        ),
     ],
     out: Annotated[str, typer.Option(metavar="FILE", help="Film to write: .mp4 or .gif.")],
     from_: Annotated[str, typer.Option("--from", metavar="S", help="Start of the film, in s or with a unit.")] = "0",
@@ -340,10 +359,12 @@ def animate(
     exaggeration: Annotated[
         float | None, typer.Option(metavar="X", help="Factor by which the vibration is enlarged.")
     ] = None,
-    elevation: Annotated[str, typer.Option(metavar="ANGLE", help="In space, where the eye is above.")] = "30 deg",
-    azimuth: Annotated[str, typer.Option(metavar="ANGLE", help="In space, where it is, from z towards x.")] = "35 deg",
+    elevation: Annotated[str, typer.Option(metavar="ANGLE", help="In space, elevation of the viewpoint.")] = "30 deg",
+    azimuth: Annotated[
+        str, typer.Option(metavar="ANGLE", help="In space, azimuth of the viewpoint, from z towards x.")
+    ] = "35 deg",
 ) -> None:
-    """Film bodies and their contact in slow motion."""
+    """Film the bodies and their contacts in slow motion."""
     from .filming import film_scenario
 
     print(film_scenario(name, out, from_, duration, slowdown, exaggeration, (elevation, azimuth)))
@@ -382,25 +403,25 @@ def calibrate_(
         list[str],
         typer.Option(
             metavar="KEY=LOW:HIGH",
-            help="Range of a parameter; KEY=LOW:HIGH:log on a logarithmic scale; may be repeated.",
+            help="Range of a parameter; KEY=LOW:HIGH:log for a logarithmic scale; may be repeated.",
         ),
     ],
     target: Annotated[
         list[str],
         typer.Option(
             metavar="NAME=LOW:HIGH",
-            help="Bounds of a measure, of which one may be left out, or NAME=WORD; may be repeated.",
+            help="Bounds of a measure, either may be left out, or NAME=WORD; may be repeated.",
         ),
     ],
     set_: SetEverywhere = None,
     duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
-    population: Annotated[int, typer.Option(metavar="N", help="Sets of parameters in a generation.")] = 32,
+    population: Annotated[int, typer.Option(metavar="N", help="Parameter sets in each generation.")] = 32,
     generations: Annotated[int, typer.Option(metavar="N", help="Largest number of generations.")] = 50,
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the search.")] = 0,
     out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the best set as a scenario, TOML.")] = None,
     workers: Annotated[int | None, typer.Option(metavar="N", help="Parts computed at a time.")] = None,
 ) -> int:
-    """Search for parameters whose run has given measures; exit with 1 if a target is not met."""
+    """Search for parameters whose run meets given targets; exit with 1 if a target is not met."""
     from .points import ranges_of
     from .searching import calibrate_scenario
 
@@ -424,7 +445,9 @@ def sensitivity_(
     name: NameOrFile,
     vary: Annotated[
         list[str],
-        typer.Option(metavar="KEY=LOW:HIGH", help="An uncertain parameter, uniform between the ends; may be repeated."),
+        typer.Option(
+            metavar="KEY=LOW:HIGH", help="An uncertain parameter, uniform between LOW and HIGH; may be repeated."
+        ),
     ],
     measure: Annotated[
         list[str] | None,
@@ -433,7 +456,7 @@ def sensitivity_(
     set_: SetEverywhere = None,
     duration: Annotated[str | None, typer.Option(metavar="S", help="Time to simulate, in s or with a unit.")] = None,
     samples: Annotated[
-        int, typer.Option(metavar="N", help="A power of 2; N (parameters + 2) runs are computed.")
+        int, typer.Option(metavar="N", help="Base samples, a power of 2; N (parameters + 2) runs are computed.")
     ] = 256,
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the points.")] = 0,
     out: Annotated[str | None, typer.Option(metavar="FILE", help="Write the indices, as NetCDF.")] = None,
@@ -473,9 +496,9 @@ def paper(
     try:
         rows = reproduce(Path(out), report=lambda line: print(line, file=sys.stderr, flush=True))
     except KeyboardInterrupt:
-        raise Stopped(f"interrupted; what was finished is in {out}", INTERRUPTED) from None
+        raise Stopped(f"interrupted; finished files are in {out}", INTERRUPTED) from None
     except Diverged as error:
-        raise Stopped(f"{error}; what was finished is in {out}", FAILED) from None
+        raise Stopped(f"{error}; finished files are in {out}", FAILED) from None
     print(closing_line(rows))
 
 
@@ -495,7 +518,7 @@ def verify(
         with interrupted_at_once():
             rows = run_cases(out, only, report=lambda line: print(line, file=sys.stderr, flush=True))
     except KeyboardInterrupt:
-        raise Stopped(f"interrupted; the figures of what was finished are in {out}", INTERRUPTED) from None
+        raise Stopped(f"interrupted; figures of the finished cases are in {out}", INTERRUPTED) from None
     print_rows(rows)
     if not all(row["holds"] for row in rows):
         raise Stopped(closing_line(rows), FAILED)
@@ -522,7 +545,7 @@ def app_(
         bool, typer.Option("--open", help="Let other machines connect; needed if --host is not this machine.")
     ] = False,
 ) -> None:
-    """Play the contact on a page: turn the friction and hear it squeal."""
+    """Serve a page in the browser to play the contact: change the friction and hear it squeal."""
     with _importing():
         from ..app.serve import serve
 
@@ -531,7 +554,7 @@ def app_(
 
 @contextmanager
 def _importing() -> Iterator[None]:
-    """Import without garbage collection, and leave what is there out of later ones: there is nothing to collect."""
+    """Import without garbage collection, and exclude the imported objects from later collections."""
     gc.disable()
     try:
         yield

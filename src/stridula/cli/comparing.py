@@ -16,7 +16,7 @@ from ..records.files import load
 
 
 def print_comparison(first: str, second: str, tolerance: float) -> bool:
-    """Print how far two records are apart and return whether that is within the tolerance."""
+    """Print the differences between two records and return whether they are within the tolerance."""
     result = compare(load(first), load(second), tolerance)
     console = Console()
     console.print(_differences(result, f"{first} (a) against {second} (b)"))
@@ -61,7 +61,7 @@ def _table(title: str, words: tuple[str, ...], numbers: tuple[str, ...] = ()) ->
 
 
 def _attributes(result: xr.Dataset) -> Table:
-    table = _table("what else differs", ("key", "a", "b"))
+    table = _table("other differences", ("key", "a", "b"))
     for name in result["attribute"].values:
         table.add_row(*(escape(str(text)) for text in (name, *result["value"].sel(attribute=name).values)))
     return table
@@ -78,7 +78,7 @@ def _closing(result: xr.Dataset) -> list[str]:
     if result.attrs["within_tolerance"]:
         return [*lines, f"Within {tolerance:g} everywhere."]
     words = f"{worst['variable'].item()} by {float(worst['difference']):.2g} {worst['units'].item()}"
-    share = f"{relative.max():.2g} relative" if math.isfinite(relative.max()) else "where a has none"
+    share = f"{relative.max():.2g} relative" if math.isfinite(relative.max()) else "where a is zero"
     others = int((relative > tolerance).sum()) - 1
     beside = f"; {others} more {'is' if others == 1 else 'are'} beyond it" if others else ""
     return [*lines, f"Beyond {tolerance:g}: {words}, {share}{beside}."]

@@ -1,4 +1,4 @@
-"""Where tables and texts are printed."""
+"""Output of tables and texts."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from ..disk import write
 if TYPE_CHECKING:
     from rich.console import Console
 
-# Of a file or a pipe; a terminal has its own.
+# Columns in a file or a pipe; a terminal has its own width.
 WIDTH = 150
 
 
 def wide_console() -> Console:
-    """Return standard output, wide enough for tables where it is no terminal."""
+    """Return a console on standard output, wide enough for tables if it is not a terminal."""
     from rich.console import Console
 
     console = Console()
@@ -24,7 +24,7 @@ def wide_console() -> Console:
 
 
 def put(text: str, out: str | None) -> None:
-    """Write a text to a file, or to standard output, as UTF-8 whatever the encoding of the console."""
+    """Write a text to a file, or to standard output, as UTF-8 regardless of the encoding of the console."""
     if out is not None:
         write(out, text.encode())
         return
@@ -34,7 +34,7 @@ def put(text: str, out: str | None) -> None:
 
 
 def print_anything() -> None:
-    """Let what a console cannot show be shown as a question mark instead of failing."""
+    """Print a question mark for characters that the console cannot encode, instead of failing."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")

@@ -1,4 +1,4 @@
-"""Values of a system that are allowed and hardly meant, as when a prefix of a unit is left out."""
+"""Values of a system that are allowed but probably mistaken, as when the prefix of a unit is left out."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .exits import GOOD, say
 # From soft rubber to diamond [Pa], from foam to osmium [kg/m3].
 YOUNG = (1e5, 2e12)
 DENSITY = (10.0, 3e4)
-# Numbers from here on were MPa, numbers below that were t/mm3: aluminium has 7e4 and 2.7e-9.
+# Values above the first are probably in MPa, below the second in t/mm3: aluminium has 7e4 and 2.7e-9.
 MEGA, TONNES = 2e3, 1e-6
 MOST_MODES = 5000
 
@@ -27,7 +27,7 @@ def doubts(system: System) -> list[str]:
 
 def say_doubts(name: str) -> None:
     """Print a line on standard error about each doubtful value of a scenario that can be loaded."""
-    # What cannot be loaded can be shown; `stridula run` says why it cannot run.
+    # A scenario that cannot be loaded can still be shown; `stridula run` reports why it cannot run.
     with suppress(ScenarioError, OSError):
         for line in doubts(load_scenario(name).system):
             say(f"doubtful: {line}", GOOD)
@@ -50,4 +50,4 @@ def _of(name: str, body: Any) -> Iterator[str]:
         if across > 0.5 * body.length:
             yield f"{name}: {across:.4g} m thick and {body.length:.4g} m long; beams are slender here"
     if isinstance(body, ModalBeam) and sum(body.harmonics) > MOST_MODES:
-        yield f"{name}: {sum(body.harmonics)} modes below its cutoff; a lower one is faster"
+        yield f"{name}: {sum(body.harmonics)} modes below its cutoff; a lower cutoff is faster"

@@ -1,4 +1,4 @@
-"""How the command line ends: exit codes, and one line on standard error."""
+"""Exit codes of the command line, and its one-line errors on standard error."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 
 GOOD, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
-# What befalls a file on the way; any other OSError is a path that was wrong from the start.
+# Errors while a file is being written; any other OSError is due to a wrong path.
 DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
 
 class Stopped(Exception):
-    """A run that ended early, once what was recorded is written; `code` is the exit code."""
+    """A run that ended early, after the samples recorded so far are written; `code` is the exit code."""
 
     def __init__(self, message: str, code: int) -> None:
         super().__init__(message)
@@ -24,7 +24,7 @@ class Stopped(Exception):
 
 
 def failed(error: Exception) -> int:
-    """Say in one line what went wrong and return the exit code; errors of the program itself are raised again."""
+    """Print an error in one line and return the exit code; errors of the program itself are raised again."""
     usage = getattr(error, "format_message", None)
     if usage is not None:
         return say(usage(), BAD_INPUT)
@@ -44,14 +44,14 @@ def failed(error: Exception) -> int:
 
 @contextmanager
 def terminated_as_interrupted() -> Iterator[None]:
-    """Take SIGTERM, by which clusters stop a job, for Ctrl-C, so that what is recorded is kept."""
+    """Treat SIGTERM, by which clusters stop a job, as Ctrl-C, so that recorded samples are kept."""
     process, before = os.getpid(), signal.getsignal(signal.SIGTERM)
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         if os.getpid() == process:
             signal.raise_signal(signal.SIGINT)
         else:
-            # A child is to end.
+            # A child process must end.
             signal.signal(number, signal.SIG_DFL)
             signal.raise_signal(number)
 
@@ -80,6 +80,6 @@ def _failed_file(error: OSError) -> int:
 
 
 def _drop_output() -> None:
-    """Send what is left for standard output nowhere, so that closing it at the end cannot fail."""
+    """Discard the remaining standard output, so that closing it at exit cannot fail."""
     with suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -9,34 +9,34 @@ from pathlib import Path
 from ..checks import ArgumentError
 from ..disk import check_writable
 from ..integration import Diverged, Interrupted
+from ..integration.bars import bar
 from ..plot.films import animate
 from ..plot.moved_bodies import has_surfaces
 from ..records.files import is_record, load
 from ..scenarios.load import load_scenario
 from ..scenarios.quantities import quantity
-from .bars import bar
 from .exits import FAILED, INTERRUPTED, Stopped
 
 
 def film_scenario(
     name: str, out: str, start: str, duration: str, slowdown: float, exaggeration: float | None, view: tuple[str, str]
 ) -> str:
-    """Film a scenario or a record, and return what was written in one line.
+    """Film a scenario or a record, and return the path of the film.
 
     Parameters
     ----------
     name : str
         Name of a shipped scenario, a TOML file or a record.
     out : str
-        The file.
+        File to write.
     start, duration : str
-        The window, in s or with a unit.
+        Start and length of the time window, in s or with a unit.
     slowdown : float
-        How much slower than life.
+        Factor of slow motion.
     exaggeration : float or None
-        How many times larger than life the vibration is drawn.
+        Factor by which the vibration is enlarged.
     view : tuple of str
-        Elevation and azimuth of the eye in space, in rad or with a unit.
+        Elevation and azimuth of the viewpoint in space, in rad or with a unit.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def film_scenario(
 
 
 def _check_beginning(name: str) -> None:
-    """Raise ValueError for a record that continues another one: from its start the film would be of another run."""
+    """Raise ValueError for a record that continues another one: the film, run from its start, would differ."""
     run = load(name)
     interval, first = float(run.attrs["sample_interval"]), float(run["time"][0])
     if first > 1.5 * interval:
@@ -86,7 +86,7 @@ def _check_beginning(name: str) -> None:
 
 @contextmanager
 def _stopped() -> Iterator[None]:
-    """Say in one line how a run ended that was not finished."""
+    """Turn an unfinished run into a one-line message."""
     try:
         yield
     except Diverged as error:

@@ -1,4 +1,4 @@
-"""What a sound comes to: levels, loudness, sharpness and roughness of each listener, as a table."""
+"""Table of sound levels, loudness, sharpness and roughness at each listener."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .consoles import wide_console
 
 
 class Column(NamedTuple):
-    """A column of the table: its head, digits after the point, what stands below, and what that takes [s, Hz]."""
+    """A column of the table: heading, decimals, measure, shortest duration [s] and lowest sample rate [Hz] for it."""
 
     head: str
     digits: int
@@ -32,11 +32,11 @@ class Column(NamedTuple):
 
     @property
     def name(self) -> str:
-        """What is measured, without its unit."""
+        """Name of the measure, without its unit."""
         return self.head.partition(" [")[0]
 
     def lacks(self, lasts: float, rate: float) -> str:
-        """Return what a sound of a duration [s] at a rate [Hz] lacks for it, in words; nothing where it is enough."""
+        """Return the duration or rate needed if a sound of `lasts` [s] at `rate` [Hz] is too little, else nothing."""
         words = [] if is_enough(lasts, self.shortest) else [f"{at_least(self.shortest)} s"]
         words += [] if is_enough(rate, self.lowest_rate) else [f"{at_least(self.lowest_rate / 1e3)} kHz"]
         return " and ".join(words)
@@ -47,7 +47,7 @@ LEVELS = (
     Column("LAeq [dB]", 1, lambda pressure: equivalent_level(pressure, "A"), levels.SHORTEST, levels.LOWEST_RATE),
     Column("LAFmax [dB]", 1, lambda pressure: sound_level(pressure).max("time"), levels.SHORTEST, levels.LOWEST_RATE),
 )
-# These take MoSQITo.
+# These need MoSQITo.
 SENSATIONS = (
     Column(
         "loudness N5 [sone]",
@@ -68,7 +68,7 @@ SENSATIONS = (
 
 
 def loudest(pressure: xr.DataArray) -> str:
-    """Return the levels of the listener who hears most, in words; nothing where the sound is too little for them."""
+    """Return the levels at the loudest listener as text; empty if the sound is too short or too coarse for them."""
     values, rate = channels(pressure)
     known = [column for column in LEVELS if not column.lacks(len(values) / rate, rate)]
     levels = [(column, float(column.measure(pressure).max())) for column in known]
@@ -77,9 +77,9 @@ def loudest(pressure: xr.DataArray) -> str:
 
 
 def print_levels(pressure: xr.DataArray) -> None:
-    """Print a table of what each listener hears, and why where something cannot be said.
+    """Print a table of the sound at each listener, and the reasons for missing columns.
 
-    Levels are re 20 µPa; loudness is that exceeded in 5 % of the time (ISO 532-1), sharpness that of the whole sound
+    Levels are re 20 µPa; loudness is the value exceeded 5 % of the time (ISO 532-1), sharpness that of the whole sound
     (DIN 45692), roughness the mean over its frames (Daniel & Weber).
 
     Parameters
@@ -110,7 +110,7 @@ def print_levels(pressure: xr.DataArray) -> None:
 
 
 def _too_little(left_out: Sequence[Column], lasts: float, rate: float) -> str:
-    """Return in one line what a sound is too short or too coarse for, and what that takes."""
+    """Return in one line which measures a sound is too short or too coarse for, and the least they need."""
     parts = []
     for lacks, alike in groupby(left_out, lambda column: column.lacks(lasts, rate)):
         *names, last = (column.name for column in alike)
@@ -119,7 +119,7 @@ def _too_little(left_out: Sequence[Column], lasts: float, rate: float) -> str:
 
 
 def _names(pressure: xr.DataArray) -> list[str]:
-    """Return what to call each listener: its name or number, and its place where that is known."""
+    """Return a label for each listener: its name or number, and its position if known."""
     if "listener" not in pressure.dims:
         return ["1"]
     names = [str(name) for name in pressure["listener"].values]

@@ -1,4 +1,4 @@
-"""`stridula stability --vary`: modes of sliding over a parameter, and where stability changes."""
+"""`stridula stability --vary`: modes of sliding over a parameter, and the values at which stability changes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def print_loci(
     plot: str | None,
     **options: Any,
 ) -> None:
-    """Print where stability changes over a parameter, and draw or write the modes over it if asked to."""
+    """Print the parameter values at which stability changes, and optionally draw or write the modes."""
     check_outputs(out, plot)
     key, numbers, unit = numbers_of(vary)
     about = {"units": unit, "overrides": overrides, **options}
@@ -43,18 +43,18 @@ def print_loci(
 
 
 def _change(one: xr.Dataset, key: str, unit: str) -> str:
-    """Return a line that says from where on what holds."""
+    """Return a line with the critical value and the state beyond it."""
     width, beyond = abs(float(one["unstable"]) - float(one["stable"])), str(one.attrs["beyond"])
     place = f"{key} = {float(one['value']):.7g} {unit}".rstrip() + f" (within {width:.1g}) on"
     if float(one["unstable"]) > float(one["stable"]):
         before = "" if beyond == "stable" else f"; {beyond} before"
         return f"unstable from {place}, at {float(one['frequency']):.5g} Hz{before}"
-    # What jams or is held has no frequency.
+    # A system that jams or is held has no frequency.
     return f"{beyond} from {place}" + (f", at {float(one['frequency']):.5g} Hz" if beyond == "stable" else "")
 
 
 def _unchanged(loci: xr.Dataset) -> str:
-    """Return a line that says what holds at all values."""
+    """Return a line about a parameter range without a change of stability."""
     key, kinds = parameter_of(loci), loci["equilibrium"].values
     if bool((loci["unstable_modes"] > 0).all()):
         return f"unstable at all {kinds.size} values of {key}"

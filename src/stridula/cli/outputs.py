@@ -1,4 +1,4 @@
-"""Whether what a verb is to write can be written."""
+"""Checks that the output files of a command can be written."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from ..disk import check_writable
 
 
 def check_outputs(out: str | None, plot: str | None, word: str = "--out", figure: str = "--plot") -> None:
-    """Raise ValueError or OSError if a file and a figure cannot be written there; write nothing.
+    """Raise ValueError or OSError if a file or a figure cannot be written; write nothing.
 
     Parameters
     ----------
     out, plot : str or None
-        The files, None for one that is not asked for.
+        Paths of the file and the figure, None if not requested.
     word, figure : str, optional
-        The options of both.
+        Their options, for messages.
     """
     if out is not None and plot is not None and Path(out).resolve() == Path(plot).resolve():
         raise ArgumentError(figure, f"be another file than {word}", plot, got=f"{plot!r} for both")

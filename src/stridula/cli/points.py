@@ -1,4 +1,4 @@
-"""Points of a sweep as the command line and tables give them."""
+"""Points of a sweep, from options of the command line or from tables."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from ..scenarios.quantities import parts
 from ..studies.points import Grid, LatinHypercube, Range
 
 Points = Grid | LatinHypercube | list[dict[str, str]]
-# More points than these are asked about.
+# More points than this need confirmation.
 MANY = 10_000
 _WHOLE = re.compile(r"[+-]?\d+")
 
 
 @dataclass(frozen=True)
 class Span:
-    """Numbers from one to another.
+    """Evenly spaced numbers between two ends.
 
     Attributes
     ----------
     low, high : float
-        The ends, in `unit`.
+        Ends, in `unit`.
     unit : str
-        Unit as written, empty if there is none.
+        Unit as written, empty if none.
     count : int or None
-        How many, None if not said.
+        Number of values, None if not given.
     """
 
     low: float
@@ -43,7 +43,7 @@ class Span:
     count: int | None
 
     def ends(self) -> tuple[float, float] | tuple[str, str]:
-        """Return both ends, as texts where there is a unit."""
+        """Return both ends, as texts if there is a unit."""
         return (f"{self.low!r} {self.unit}", f"{self.high!r} {self.unit}") if self.unit else (self.low, self.high)
 
     @property
@@ -52,14 +52,14 @@ class Span:
         return self.count or 1
 
     def values(self) -> list[float] | list[str]:
-        """Return the numbers, ends included, as texts where there is a unit."""
+        """Return the numbers, ends included, as texts if there is a unit."""
         numbers: list[float] = np.linspace(self.low, self.high, self.size).tolist()
         return [f"{number!r} {self.unit}" for number in numbers] if self.unit else numbers
 
 
 @dataclass(frozen=True)
 class Words:
-    """Values one by one.
+    """Values given as a list.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class Words:
         return len(self.words)
 
     def ends(self) -> None:
-        """Return None: there is no range."""
+        """Return None: a list has no range."""
 
     def values(self) -> list[str]:
         """Return the values."""
@@ -83,23 +83,23 @@ class Words:
 
 
 def points_of(vary: list[str], sample: int | None, seed: int | None, table: str | None, yes: bool) -> Points:
-    """Return the points that options ask for.
+    """Return the points given by options.
 
     Parameters
     ----------
     vary : list of str
         ``KEY=START:STOP:COUNT``, ``KEY=START:STOP`` or ``KEY=A,B,C``.
     sample, seed : int or None
-        Points of a Latin hypercube, and its seed.
+        Number of points of a Latin hypercube, and its seed.
     table : str or None
-        CSV file with a point in each row.
+        CSV file with one point per row.
     yes : bool
         Whether there may be more than 10 000 points.
 
     Raises
     ------
     ValueError
-        If an option is wrong, or does not go with the others.
+        If an option is invalid, or excluded by another one.
     OSError
         If the table cannot be read.
     """
@@ -119,7 +119,7 @@ def points_of(vary: list[str], sample: int | None, seed: int | None, table: str 
 
 
 def numbers_of(text: str) -> tuple[str, list[float], str]:
-    """Return the key, the numbers and the unit that ``KEY=START:STOP:COUNT`` or ``KEY=A,B,C`` ask for.
+    """Return the key, the numbers and the unit of ``KEY=START:STOP:COUNT`` or ``KEY=A,B,C``.
 
     Raises
     ------
@@ -150,12 +150,12 @@ def _asked(vary: list[str], is_sampled: bool) -> dict[str, Span | Words]:
 
 
 def ranges_of(vary: list[str]) -> dict[str, Range]:
-    """Return the ranges that ``KEY=LOW:HIGH`` or ``KEY=LOW:HIGH:log`` ask for.
+    """Return the ranges given by ``KEY=LOW:HIGH`` or ``KEY=LOW:HIGH:log``.
 
     Raises
     ------
     ValueError
-        If one is anything else, or a key comes twice.
+        If a text has another form, or a key appears twice.
     """
     found: dict[str, Range] = {}
     for text in vary:
@@ -191,7 +191,7 @@ def _grid(asked: dict[str, Span | Words], yes: bool) -> Grid:
 
 
 def check_count(count: int, yes: bool) -> None:
-    """Raise ValueError if there are more than 10 000 points and nobody said yes."""
+    """Raise ValueError if there are more than 10 000 points and they are not confirmed."""
     if count > MANY and not yes:
         raise ArgumentError(f"a sweep of more than {MANY} points", "be confirmed with --yes", got=f"{count} points")
 
@@ -235,7 +235,7 @@ def _count(text: str, piece: str) -> int:
 
 
 def _rows(path: str) -> list[dict[str, str]]:
-    """Return the rows of a table, by its header."""
+    """Return the rows of a table as dictionaries keyed by its header."""
     try:
         text = read(path).decode("utf-8-sig")
         lines = [(number, row) for number, row in enumerate(csv.reader(io.StringIO(text)), start=1) if any(row)]

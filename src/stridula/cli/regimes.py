@@ -1,4 +1,4 @@
-"""The table of regimes against what linear theory says."""
+"""Table of the regimes against the verdicts of linear theory."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .consoles import wide_console
 
 
 def print_agreement(found: xr.Dataset) -> None:
-    """Print how often each regime was seen under each verdict of linear theory, and how often the two agree."""
+    """Print the number of runs in each regime by verdict of linear theory, and how often the two agree."""
     counts = agreement(found)
     seen = [str(word) for word in counts["regime"].values if int(counts["runs"].sel(regime=word).sum())]
     if not seen:
@@ -26,7 +26,7 @@ def print_agreement(found: xr.Dataset) -> None:
         if int(row.sum()):
             table.add_row(escape(str(verdict)), *(str(int(row.sel(regime=word))) for word in seen))
     console = wide_console()
-    # A title of the table would be folded to its width.
+    # A table title would be wrapped to the width of the table.
     console.print("Runs by linear theory and regime")
     console.print(table)
     agree, compared, missed, false = (int(counts[word]) for word in ("agree", "compared", "missed", "false_alarms"))
@@ -36,7 +36,7 @@ def print_agreement(found: xr.Dataset) -> None:
 
 
 def _comparison(compared: int, agree: int, missed: int, false: int) -> Table:
-    """Return how many runs vibrate as linear theory says, and how many do not."""
+    """Return a table of the runs in which vibration agrees with linear theory or not."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     rows = {
         "runs compared": compared,

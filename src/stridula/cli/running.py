@@ -1,9 +1,7 @@
-"""`stridula run`: check the outputs, march under a progress bar, write, and close with a card."""
+"""`stridula run`: check the outputs, simulate under a progress bar, write the outputs and print a summary."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -12,32 +10,33 @@ import xarray as xr
 from ..checks import ArgumentError, at_least
 from ..disk import check_writable
 from ..integration import Diverged, Interrupted
-from ..integration.watchers import Progress, Watcher
+from ..integration.bars import bar, told_of_time
 from ..records.files import save
 from ..scenarios.load import Scenario, load_scenario
-from .bars import bar
 from .card import print_card
 from .doubts import doubts
 from .exits import FAILED, INTERRUPTED, Stopped
 from .outputs import check_outputs
 
-# What a record is not written as, whatever its name says.
+# Ends of runs that can be heard.
+WHOLE = ("finished", "off the track")
+# Extensions that are refused for a record.
 OTHER_FORMATS = (".csv", ".mat", ".png", ".pdf", ".svg", ".wav", ".toml")
 
 
 def run_scenario(
     name: str, overrides: dict[str, Any], out: str | None, plot: str | None, wav: str | None = None
 ) -> None:
-    """Run a scenario, write what was asked for, and print the card.
+    """Run a scenario, write the requested files, and print a summary.
 
     Raises
     ------
     ValueError
-        If the scenario, an override or an output is not usable; nothing is written then.
+        If the scenario, an override or an output is invalid; nothing is written then.
     OSError
         If an output cannot be written.
     Stopped
-        On Ctrl-C, or if the run failed, once what was recorded is written.
+        On Ctrl-C, or if the run failed, after the samples recorded so far are written.
     """
     check_outputs(out, plot)
     if out is not None and Path(out).suffix.lower() in OTHER_FORMATS:
@@ -48,23 +47,19 @@ def run_scenario(
     if wav is not None:
         _check_wav(wav, name, out, plot, scenario)
     try:
-        with _progress(scenario.title or name) as watcher:
-            record = scenario.simulate(watchers=[watcher])
+        with bar(scenario.title or name) as show:
+            record = scenario.simulate(watchers=[told_of_time(show)])
     except (Interrupted, Diverged) as stop:
         interrupted = isinstance(stop, Interrupted)
         kept = _finish(stop.record, scenario, name, out, None if interrupted else plot)
         words = [stop.reason]
-        words.append("nothing was asked to be kept (no --out)" if out is None else f"the record so far is in {out}")
+        words.append("nothing was kept (no --out)" if out is None else f"the record so far is in {out}")
         if plot is not None:
             words.append(f"it is drawn in {plot}" if plot in kept else f"no figure was drawn{_why(stop)}")
         if wav is not None:
             words.append("no sound was written")
         raise Stopped("; ".join(words), INTERRUPTED if interrupted else FAILED) from None
-    _finish(record, scenario, name, out, plot)
-    if wav is not None:
-        from .sounding import write_sound
-
-        print(write_sound(record, scenario.system, wav))
+    _finish(record, scenario, name, out, plot, wav)
 
 
 def _check_wav(wav: str, name: str, out: str | None, plot: str | None, scenario: Scenario) -> None:
@@ -75,7 +70,7 @@ def _check_wav(wav: str, name: str, out: str | None, plot: str | None, scenario:
         if other is not None and Path(other).resolve() == Path(wav).resolve():
             raise ArgumentError("--wav", f"be another file than {option}", wav, got=f"{wav!r} for both")
     if Path(name).is_file() and Path(name).resolve() == Path(wav).resolve():
-        raise ArgumentError("--wav", "be another file than what is run", wav, got=f"{wav!r} for both")
+        raise ArgumentError("--wav", "be another file than the scenario", wav, got=f"{wav!r} for both")
     check_writable(wav)
     check_ending(wav)
     check_hearable(scenario.system, scenario.surface_rate)
@@ -84,9 +79,12 @@ def _check_wav(wav: str, name: str, out: str | None, plot: str | None, scenario:
         raise ArgumentError("duration", words, scenario.duration)
 
 
-def _finish(record: xr.Dataset, scenario: Scenario, name: str, out: str | None, plot: str | None) -> list[str]:
+def _finish(
+    record: xr.Dataset, scenario: Scenario, name: str, out: str | None, plot: str | None, wav: str | None = None
+) -> list[str]:
     """Write the outputs and print the card, which also comes when one of them fails; return the files written."""
     written: list[str] = []
+    level, notes = how_to_get_the_level(record, scenario, out), ""
     try:
         if out is not None:
             save(record, out)
@@ -94,14 +92,37 @@ def _finish(record: xr.Dataset, scenario: Scenario, name: str, out: str | None, 
         if plot is not None and record.sizes["time"] > 1:
             _draw(record, plot)
             written.append(plot)
+        if wav is not None:
+            from .sounding import write_sound
+
+            sound, loud, notes = write_sound(record, scenario.system, wav)
+            level = f"at 1 m, {loud}" if loud else "none: too short, or recorded too coarsely, for a level"
+            written.append(sound)
     finally:
-        print_card(record, scenario.title or name, written, doubts(scenario.system), scenario.system)
+        print_card(record, scenario.title or name, written, doubts(scenario.system), scenario.system, level)
+    if notes:
+        print(notes)
     return written
+
+
+def how_to_get_the_level(record: xr.Dataset, scenario: Scenario, out: str | None) -> str:
+    """Return how the level of a run is found; nothing of one that failed."""
+    from ..acoustics.hearable import check_hearable, hearable
+
+    if record.attrs["ended"] not in WHOLE:
+        return ""
+    if not hearable(scenario.system):
+        return "none: no body of the system can be heard"
+    try:
+        check_hearable(scenario.system, scenario.surface_rate)
+    except ArgumentError as error:
+        return f"none: {error.argument} must {error.allowed}"
+    return f"not computed: {f'`stridula sound {out}` prints it' if out else '--wav FILE.wav computes it'} at 1 m"
 
 
 def _why(stop: Interrupted | Diverged) -> str:
     samples = stop.record.sizes["time"]
-    return f": a figure takes two samples, got {samples}" if samples < 2 else ""
+    return f": a figure needs two samples, got {samples}" if samples < 2 else ""
 
 
 def _draw(record: xr.Dataset, path: str) -> None:
@@ -109,16 +130,3 @@ def _draw(record: xr.Dataset, path: str) -> None:
     from ..plot import save as save_figure
 
     save_figure(overview(record), path)
-
-
-@contextmanager
-def _progress(title: str) -> Iterator[Watcher]:
-    """Show the simulated time and the speed against real time."""
-    with bar(title) as show:
-
-        def watch(report: Progress) -> None:
-            speed = report.time / max(report.wall_time, 1e-9)
-            words = f"{report.time:.3f} of {report.duration:.3f} s, {speed:.2f} x real time"
-            show(report.time, report.duration, words)
-
-        yield watch

@@ -1,4 +1,4 @@
-"""`stridula calibrate` and `stridula sensitivity`: searches and statistics over many parameters, in tables."""
+"""`stridula calibrate` and `stridula sensitivity`: searches and statistics over parameters, printed as tables."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def calibrate_scenario(
     out: str | None,
     **options: Any,
 ) -> bool:
-    """Search parameters that meet targets, print them, write the scenario, and return whether all targets are met."""
+    """Search for parameters that meet targets, print and write them, and return whether all targets are met."""
     if out is not None:
         check_writable(out)
     aimed = targets_of(targets)
@@ -59,22 +59,22 @@ def calibrate_scenario(
         values = {key: _written(float(found[key]), one.unit) for key, one in ranges.items()}
         if options.get("duration") is not None:
             values["simulation.duration"] = options["duration"]
-        # Runs side by side share a step.
+        # Runs in one batch share a step.
         values["simulation.step"] = float(found["step"])
         values["simulation.sample_rate"] = 1.0 / float(found["sample_interval"])
-        # Keys are known by now, and all problems with them.
+        # The keys were checked by `calibrate`.
         tables, _ = overridden(read_tables(name), overrides | values)
         write(out, text_of(with_matrices(tables, tables)).encode())
     return bool(found["met"].all())
 
 
 def targets_of(texts: list[str]) -> dict[str, Target | str]:
-    """Return what ``NAME=LOW:HIGH``, an end left out or not, ``NAME=LOW:HIGH:SCALE`` or ``NAME=WORD`` ask for.
+    """Return the targets given by ``NAME=LOW:HIGH`` (either end optional), ``NAME=LOW:HIGH:SCALE`` or ``NAME=WORD``.
 
     Raises
     ------
     ValueError
-        If one is anything else, or a measure comes twice.
+        If a text has another form, or a measure appears twice.
     """
     found: dict[str, Target | str] = {}
     for text in texts:
@@ -89,7 +89,7 @@ def targets_of(texts: list[str]) -> dict[str, Target | str]:
 
 
 def _bounds(text: str, pieces: list[str]) -> Target:
-    """Return the target between two ends, and its scale."""
+    """Return the target with two bounds and a scale."""
     try:
         low, high, scale = (float(piece) if piece else None for piece in [*pieces, ""][:3])
     except ValueError:
@@ -182,7 +182,7 @@ def _why_no_indices(found: xr.Dataset) -> str:
     """Return why no output has indices."""
     used = int(found["used"].max()) if found.sizes["output"] else 0
     if used < FEWEST:
-        return f"No shares of the variance: they take {FEWEST} samples in which all runs give numbers, got {used}."
+        return f"No shares of the variance: they need {FEWEST} samples in which all runs give numbers, got {used}."
     return "No shares of the variance: no quantity varies."
 
 

@@ -40,12 +40,12 @@ def sound_of_record(
     subtype: str,
     baffled: bool | None,
 ) -> None:
-    """Print what is heard of a record, and write it as a sound file and as figures, by their options, if asked to.
+    """Print the sound levels of a record, and optionally write the sound and draw figures, keyed by their options.
 
     Raises
     ------
     ValueError
-        If the record, a listener or an output is not usable; nothing is written then.
+        If the record, a listener or an output is invalid; nothing is written then.
     OSError
         If an output cannot be written.
     """
@@ -83,27 +83,26 @@ def sound_of_record(
 
 
 def _played(record: xr.Dataset) -> Scenario:
-    """Return the scenario of a record, of one that was changed while it was played the last within its times."""
+    """Return the scenario of a record; if it was changed while it was played, the last one within the record."""
     changes = played(record)
     return scenario_of_tables(tables_of_text(changes[-1][1], "changes")) if changes else load_scenario(record)
 
 
-def write_sound(record: xr.Dataset, system: System, wav: str) -> str:
-    """Write what two ears a metre above what sounds hear of a record; return what was written and how loud it is."""
+def write_sound(record: xr.Dataset, system: System, wav: str) -> tuple[str, str, str]:
+    """Write the sound of a record at two ears a metre above its sources; return the path, levels and notes as text."""
     pressure = radiate(record, system)
-    words = [str(write_wav(wav, pressure)), loudest(pressure), pressure.attrs["notes"]]
-    return "\n".join(word for word in words if word)
+    return str(write_wav(wav, pressure)), loudest(pressure), pressure.attrs["notes"]
 
 
 def check_ending(wav: str) -> None:
-    """Raise ValueError unless the name of a sound file ends as its format, ImportError if none can be written."""
+    """Raise ValueError unless the name of a sound file ends in .wav, ImportError if sound files cannot be written."""
     require("soundfile")
     if not wav.lower().endswith(".wav"):
         raise ArgumentError("--wav", "end in .wav", wav)
 
 
 def _left_alone(record: xr.Dataset, system: System) -> list[Any]:
-    """Return the tracks of a record on which bodies or drives were changed, for these alone are in it."""
+    """Return the tracks if bodies or drives were changed during the record, which then holds the tracks only."""
     try:
         check_one_system(record)
     except ArgumentError:
@@ -113,7 +112,7 @@ def _left_alone(record: xr.Dataset, system: System) -> list[Any]:
 
 
 def _body_of(system: System, name: str) -> Any:
-    """Return the body of a name; errors name the option."""
+    """Return the body with this name; errors name the option."""
     try:
         return body_named(system, name)
     except ArgumentError as error:
@@ -129,7 +128,7 @@ def _written(wav: str, pressure: xr.DataArray, options: dict[str, Any]) -> str:
 
 
 def place_of(text: str) -> tuple[float, ...]:
-    """Return the place that ``X,Y,Z`` says, in metres or with a unit each."""
+    """Return the position given by ``X,Y,Z``, each in metres or with a unit."""
     try:
         place = tuple(quantity(part.strip(), "m") for part in text.split(","))
     except ValueError:
@@ -140,7 +139,7 @@ def place_of(text: str) -> tuple[float, ...]:
 
 
 def wav_options(sample_rate: str, full_scale: str, subtype: str) -> dict[str, Any]:
-    """Return the arguments of `write_wav` that options ask for."""
+    """Return the arguments of `write_wav` given by options."""
     try:
         rate = quantity(sample_rate, "Hz")
     except ValueError:
@@ -180,5 +179,5 @@ def _bands(pressure: xr.DataArray, _record: xr.Dataset, title: str) -> Any:
         raise error.renamed("--bands") from None
 
 
-# How a figure is drawn, by its option.
+# Drawing functions by option.
 FIGURES = {"--plot": _spectrogram, "--bands": _bands}

@@ -27,7 +27,7 @@ KINDS = {
 
 
 def print_stability(name: str, overrides: dict[str, Any], status: str | None, velocity: str | None) -> None:
-    """Print equilibrium and modes of a scenario: those that grow, or the few nearest to it."""
+    """Print the equilibrium and modes of a scenario: those that grow, or the few nearest to growth."""
     scenario = load_scenario(name, overrides)
     given = statuses(status)
     modes = sliding_stability(scenario.system, status=given, velocity=velocities(velocity))
@@ -38,12 +38,12 @@ def print_stability(name: str, overrides: dict[str, Any], status: str | None, ve
 
 
 def statuses(status: str | None) -> list[str] | None:
-    """Return the statuses that an option gives, in turn with commas."""
+    """Return the statuses given by an option, separated by commas."""
     return None if status is None else [word.strip() for word in status.split(",")]
 
 
 def velocities(velocity: str | None) -> float | list[float] | None:
-    """Return the slip velocities [m/s] that an option gives, in turn with commas, one of them for all contacts."""
+    """Return the slip velocities [m/s] given by an option: one for all contacts, or a list separated by commas."""
     if velocity is None:
         return None
     try:
@@ -85,7 +85,7 @@ def _closing(modes: xr.Dataset, given: bool) -> list[str]:
 
 
 def _size(component: xr.DataArray) -> float:
-    """Return a number, or in space the size of its components along both tangents."""
+    """Return a number, or in space the magnitude of its components along both tangents."""
     return float(component) if component.ndim == 0 else float(np.hypot(*component.values))
 
 

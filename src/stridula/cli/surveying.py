@@ -1,4 +1,4 @@
-"""`stridula survey`: check the arguments, compute under a progress bar, and print what becomes of each mode."""
+"""`stridula survey`: check the arguments, compute under a progress bar, and print the fate of each mode."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from .outputs import check_outputs
 from .points import Points
 from .sweeping import check_two_keys, closing, computing
 
-# Digits after the point of a level, and digits of other numbers.
+# Formats of levels, forces and other numbers.
 LEVEL, FORCE, NUMBER = ".1f", ".3g", ".4g"
-# Fates of one mode that have a line each.
+# Fates of one mode listed on separate lines.
 MOST_FATES = 3
 
 
@@ -38,12 +38,12 @@ def survey_scenario(
     scheduler: str | None,
     **options: Any,
 ) -> str:
-    """Survey a scenario, write what came of it, print a table of its modes, and return the closing lines.
+    """Survey a scenario, write the results, print a table of its modes, and return the closing lines.
 
     Raises
     ------
     ValueError
-        If anything that was asked for is not usable; nothing is written then.
+        If an argument is invalid; nothing is written then.
     OSError
         If an output cannot be written; finished parts are kept.
     Stopped
@@ -80,7 +80,7 @@ def _check_table(table: str, out: str, plot: str | None) -> None:
 
 
 def _modes(found: xr.Dataset, title: str) -> Table:
-    """Return a table of the modes that grow anywhere, by rising frequency, each with what it becomes most often."""
+    """Return a table of the modes that grow at any point, by rising frequency, each with its most frequent fates."""
     table = Table(title=escape(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
     heads = ("mode", "frequency [Hz]", "growth [1/s]", "in time [1/s]", "first unstable at")
     for head in (*heads, "becomes", "points", "tone [Hz]", "force [N rms]", "sound [dB(A)]"):
@@ -98,7 +98,7 @@ def _modes(found: xr.Dataset, title: str) -> Table:
 
 
 def _place(found: xr.Dataset, at: int) -> str:
-    """Return the values of the keys at a point, in words."""
+    """Return the values of the keys at a point as text."""
     verdict = found["verdict"]
     where = verdict.isel(dict(zip(verdict.dims, np.unravel_index(at, verdict.shape), strict=True)))
     keys = [str(name) for name in where.coords if name != "point"]
@@ -112,7 +112,7 @@ def _value(one: xr.DataArray) -> str:
 
 
 def _fates(one: xr.Dataset) -> Iterator[tuple[str, ...]]:
-    """Go through what becomes of a mode and how loud that is, in words, the most frequent first."""
+    """Yield the fates of a mode and their levels as text, the most frequent first."""
     names = ("fate", "joined", "regime")
     words = np.array([_group(*told) for told in zip(*(one[name].values.tolist() for name in names), strict=True)])
     kinds, counts = np.unique(words, return_counts=True)
@@ -129,14 +129,14 @@ def _fates(one: xr.Dataset) -> Iterator[tuple[str, ...]]:
 
 
 def _group(fate: str, joined: float, regime: str) -> str:
-    """Return in words what becomes of a mode, without numbers."""
+    """Return the fate of a mode as text, without numbers."""
     if fate == JOINS:
         return f"joins mode {joined:.0f}, {regime}" if np.isfinite(joined) else f"joins another mode, {regime}"
     return {LIVES: regime, CHANGES: f"{regime}, other tone"}.get(fate, fate)
 
 
 def _span(values: Any, form: str) -> str:
-    """Return the least and the largest of some numbers in words, one if they are the same so."""
+    """Return the range of some numbers as text, a single number if both ends read the same."""
     known = values[np.isfinite(values)]
     if not known.size:
         return "-"
@@ -145,7 +145,7 @@ def _span(values: Any, form: str) -> str:
 
 
 def _verdicts(found: xr.Dataset) -> str:
-    """Return how many points linear theory has of each kind."""
+    """Return the number of points with each verdict of linear theory."""
     kinds, counts = np.unique(found["verdict"].values.astype(str), return_counts=True)
     order = np.argsort(-counts, kind="stable")
     return "linear theory: " + ", ".join(f"{kinds[k]} at {counted(int(counts[k]), 'point')}" for k in order)

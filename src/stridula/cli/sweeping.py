@@ -10,14 +10,14 @@ from typing import Any
 import xarray as xr
 
 from ..checks import ArgumentError
+from ..integration.bars import bar
 from ..scenarios.read import read_tables
-from ..studies.computed import SweepProgress, Watcher
+from ..studies.computed import SweepProgress, Watcher, told_of_points
 from ..studies.machines import client_of
 from ..studies.measures import asked_for
 from ..studies.points import Grid
 from ..studies.sweeps import sweep
 from ..studies.swept import failures, usual_failure
-from .bars import bar
 from .exits import FAILED, INTERRUPTED, Stopped
 from .outputs import check_outputs
 from .points import Points
@@ -35,12 +35,12 @@ def sweep_scenario(
     workers: int | None,
     scheduler: str | None,
 ) -> str:
-    """Sweep a scenario, write what came of it, and return the closing lines.
+    """Sweep a scenario, write the results, and return the closing lines.
 
     Raises
     ------
     ValueError
-        If anything that was asked for is not usable; nothing is written then.
+        If an argument is invalid; nothing is written then.
     OSError
         If an output cannot be written; finished parts are kept.
     Stopped
@@ -88,7 +88,7 @@ def _draw(found: xr.Dataset, path: str) -> None:
 
 
 def closing(found: xr.Dataset, out: str) -> str:
-    """Return the closing lines of a study in points: how many are done, and the most frequent message."""
+    """Return the closing lines of a study: the number of points done, and the most frequent failure."""
     messages = failures(found)
     points, failed = found["message"].size, len(messages)
     if not failed:
@@ -99,7 +99,7 @@ def closing(found: xr.Dataset, out: str) -> str:
 
 @contextmanager
 def computing(title: str, out: str, scheduler: str | None) -> Iterator[dict[str, Any]]:
-    """Give what computes the points of a study, ``client`` and ``watchers``, and say where it may go on if it stops.
+    """Yield the arguments ``client`` and ``watchers`` of a study, and report how to resume if it is interrupted.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def computing(title: str, out: str, scheduler: str | None) -> Iterator[dict[str,
         words = f"interrupted; {reached.done} of {reached.points} points are saved in {out}.parts"
         raise Stopped(f"{words}; the same command resumes from there", INTERRUPTED) from None
     except RuntimeError as error:
-        # What other machines raise; points that fail are no errors.
+        # Raised by other machines; failed points raise nothing.
         raise Stopped(f"{error} in {out}.parts", FAILED) from None
 
 
@@ -132,7 +132,7 @@ def _client(address: str | None) -> Iterator[Any]:
     if address is None:
         yield None
         return
-    # What it has to say of lost machines comes as one line of ours.
+    # Its messages about lost machines are replaced by one line of our own.
     logging.disable(logging.CRITICAL)
     try:
         with client_of(address) as client:
@@ -143,6 +143,6 @@ def _client(address: str | None) -> Iterator[Any]:
 
 @contextmanager
 def points_done(title: str) -> Iterator[Watcher]:
-    """Show the points done."""
+    """Show the number of points done."""
     with bar(title) as show:
-        yield lambda reached: show(reached.done, reached.points, f"{reached.done} of {reached.points} points")
+        yield told_of_points(show)

@@ -1,4 +1,4 @@
-"""`stridula verify`: the table of what was expected and what came out."""
+"""`stridula verify`: table of expected and obtained values."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from .consoles import wide_console
 def interrupted_at_once() -> Iterator[None]:
     """Let Ctrl-C stop between two instructions, not at the end of a run.
 
-    A run keeps a Ctrl-C until its chunk is done, and one that ends with that chunk returns as if nothing had been. Of
-    hundreds of short runs hardly one would stop.
+    A run handles Ctrl-C only after its current chunk, and a run that ends with that chunk returns normally. With
+    hundreds of short runs, Ctrl-C would hardly ever have an effect.
     """
 
     def stop(number: int, frame: FrameType | None) -> None:

@@ -5,9 +5,9 @@ from .compiled_code import find_a_place
 
 find_a_place()
 
+from ..lowering.schemes import SCHEMES, CentralDifference, ExactModal
 from .contact_solve import GaussSeidel
 from .many import simulate_many
-from .schemes import SCHEMES, CentralDifference, ExactModal
 from .simulate import simulate
 from .stops import Diverged, Interrupted
 from .watchers import Progress

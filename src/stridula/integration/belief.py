@@ -7,9 +7,9 @@ import numpy as np
 from .._kernels import layout as at
 from .._kernels.ledger import believed, keep_beside
 from ..arrays import Array
-from ..assembly import Assembly
+from ..lowering import Assembly
+from ..lowering.blocks import Blocks
 from ..system import System
-from .blocks import Blocks
 from .marches import Chunk
 
 

@@ -10,12 +10,12 @@ import numpy as np
 
 from .._kernels import layout as at
 from ..arrays import Array
-from ..assembly import Assembly
 from ..bodies import AxisymmetricBody, BodyPoint, FiniteElementBeam, ModalBeam, ModalPlate
 from ..contact import PointContact
+from ..lowering import Assembly
+from ..lowering.schemes import Scheme
 from ..records.state import State
 from ..system import System
-from .schemes import Scheme
 
 # Of a body of revolution, what has no share in its modes.
 NO_SHAPE = ("damping", "turning", "turning_history")

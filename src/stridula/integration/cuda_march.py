@@ -12,8 +12,8 @@ from numba.core import config
 from .._kernels.parts import Imposed, Parts, Records
 from ..arrays import Array
 from ..extras import how_to_install
+from ..lowering.blocks import Blocks
 from ..records.state import State
-from .blocks import Blocks
 from .contact_solve import GaussSeidel
 from .marches import March
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..assembly import Assembly
 from ..linear.starts import start_of
+from ..lowering import Assembly
 from ..system import System
 
 

@@ -9,8 +9,8 @@ from .._kernels.contacts import solve_closed
 from .._kernels.parts import Contacts, Sizes, Timing
 from .._kernels.vectors import LANES
 from ..arrays import Array
+from ..lowering.packing import PLAIN, aligned, columns, compliance_in_blocks, room_to_solve, side_by_side
 from .contact_solve import GaussSeidel
-from .packing import PLAIN, aligned, columns, compliance_in_blocks, room_to_solve, side_by_side
 
 
 def forces_of(

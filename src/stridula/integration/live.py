@@ -12,23 +12,23 @@ import numpy as np
 from .._kernels import layout as at
 from .._kernels.contact import SEPARATED
 from ..arrays import Array
-from ..assembly import Assembly, Signal, assemble, with_travel
 from ..checks import instance, positive
 from ..contact import PointContact
 from ..histories import Constant
+from ..lowering import Assembly, Signal, assemble, with_travel
+from ..lowering.blocks import Blocks, blocks_of
+from ..lowering.schemes import ExactModal, Scheme
 from ..records import Probe
 from ..records.state import State
 from ..records.variables import ALONG_TANGENTS
 from ..system import System
 from .belief import Belief
-from .blocks import Blocks, blocks_of
 from .carry_over import Before
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
 from .equilibrium_start import in_equilibrium
 from .marches import Impositions, March
 from .run import CONTACT_COLUMN, ENERGY_COLUMN, along_both
-from .schemes import ExactModal, Scheme
 from .simulate import choose_timing
 from .start import rows_at, state_at_start, stored_in_contacts
 from .stops import ENDED

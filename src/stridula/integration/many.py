@@ -15,17 +15,18 @@ import xarray as xr
 
 from .._kernels.layout import FINISHED
 from .._kernels.vectors import LANES
-from ..assembly import Assembly, ContactRows
-from ..checks import ArgumentError, choice, count
+from ..checks import ArgumentError, choice, count, counted
+from ..lowering import Assembly, ContactRows
+from ..lowering.schemes import Scheme
 from ..records import Probe
 from ..records.dataset import RECORDED
 from ..records.plain import PlainRecord
 from ..system import System
+from .bars import time_shown
 from .contact_solve import GaussSeidel
 from .cuda_march import CudaMarch, require_cuda
 from .marches import March
 from .run import Run
-from .schemes import Scheme
 from .simulate import Arrays, Asked
 from .surface_records import ALL_POINTS
 from .together import march_together
@@ -53,6 +54,7 @@ class Options(TypedDict, total=False):
     device: str
     workers: int | None
     watchers: Sequence[Watcher]
+    progress: bool
     title: str
     provenance: bool
     variables: Sequence[str] | None
@@ -125,6 +127,7 @@ def simulate_many(
     provenance: bool = True,
     labelled: bool = True,
     variables: Sequence[str] | None = None,
+    progress: bool = False,
 ) -> list[Any]:
     """March many systems in time, several at once on each processor.
 
@@ -173,6 +176,8 @@ def simulate_many(
         a fraction of the time. `analysis.regime_of` takes both.
     variables : sequence of str, optional
         Names of the variables that plain records hold; all if left out.
+    progress : bool, optional
+        Whether a bar on standard error shows the simulated time of all runs together, the speed and the time left.
 
     Returns
     -------
@@ -209,6 +214,17 @@ def simulate_many(
         surface_rate = ALL_POINTS
     asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve, surface_rate)
     results = _Results(errors == "return")
+    record = partial(Run.record, provenance=provenance) if labelled else Run.plain_record
+    with time_shown(progress, title or f"simulate {counted(len(systems), 'system')}") as more:
+        arrays = _arrays(systems, asked, results)
+        told = [*watchers, *more]
+        together = _Together(asked, arrays, record, reduce, told, DEVICES[device], title, results, wanted)
+        together.march_all(_groups(arrays, device), workers or os.cpu_count() or 1)
+    return [results.found[number] for number in range(len(systems))]
+
+
+def _arrays(systems: Sequence[System], asked: Asked, results: _Results) -> dict[int, Arrays]:
+    """Return the systems that can be simulated as flat arrays, and let all have the shortest of their steps."""
     arrays: dict[int, Arrays] = {}
     steps = []
     for number, system in enumerate(systems):
@@ -216,12 +232,9 @@ def simulate_many(
             one = asked.arrays(system)
             steps.append(asked.timing(one).step)
             arrays[number] = one
-    if step is None:
+    if asked.step is None:
         asked.common_step = min(steps, default=None)
-    record = partial(Run.record, provenance=provenance) if labelled else Run.plain_record
-    together = _Together(asked, arrays, record, reduce, watchers, DEVICES[device], title, results, wanted)
-    together.march_all(_groups(arrays, device), workers or os.cpu_count() or 1)
-    return [results.found[number] for number in range(len(systems))]
+    return arrays
 
 
 def _wanted(variables: Sequence[str] | None, labelled: bool) -> Sequence[str]:

@@ -18,12 +18,9 @@ from .._kernels.parts import Imposed as ImposedOnRuns
 from .._kernels.turning import OF_CONTACT
 from .._kernels.vectors import LANES
 from ..arrays import Array
-from ..assembly import Assembly
-from ..records.state import State
-from .blocks import Blocks, ContactBlocks, ProbeBlocks
-from .compiled_code import forget_other_sources
-from .contact_solve import GaussSeidel
-from .packing import (
+from ..lowering import Assembly
+from ..lowering.blocks import Blocks, ContactBlocks, ProbeBlocks
+from ..lowering.packing import (
     PLAIN,
     aligned,
     at_start,
@@ -40,6 +37,9 @@ from .packing import (
     turns_of,
     waves_of,
 )
+from ..records.state import State
+from .compiled_code import forget_other_sources
+from .contact_solve import GaussSeidel
 
 if not PLAIN:
     forget_other_sources(march_run)

@@ -12,16 +12,16 @@ import xarray as xr
 
 from .._kernels import layout as at
 from ..arrays import Array
-from ..assembly import Assembly, Signal, going_on, with_travel
 from ..checks import ArgumentError, brief, instance, listed
 from ..contact import LAWS
+from ..lowering import Assembly, Signal, going_on, with_travel
+from ..lowering.blocks import Recurrence
+from ..lowering.schemes import Scheme
 from ..records import Probe
 from ..records.provenance import scenario_toml
 from ..records.state import LAYOUT, State
 from ..system import System
-from .blocks import Recurrence
 from .decimation import Decimator
-from .schemes import Scheme
 from .timing import Timing
 
 # Laws whose internal state is carried on: another law has no use for it.

@@ -11,7 +11,9 @@ import xarray as xr
 
 from .._kernels import layout as at
 from ..arrays import Array
-from ..assembly import Assembly
+from ..lowering import Assembly
+from ..lowering.blocks import blocks_of
+from ..lowering.schemes import Scheme
 from ..records import Probe
 from ..records.dataset import RECORDED, over_time, to_dataset
 from ..records.plain import PlainRecord
@@ -21,13 +23,11 @@ from ..records.variables import ALONG_TANGENTS, FRICTION_STATE, STATUS_SHARE
 from ..system import System
 from ..version import __version__
 from .belief import Belief
-from .blocks import blocks_of
 from .contact_solve import GaussSeidel
 from .decimation import Decimator
 from .equilibrium_start import in_equilibrium
 from .marches import Chunk, Imposed, Impositions
 from .restart import imposed_at, motion_about, moved_on, state_of
-from .schemes import Scheme
 from .start import state_at_start
 from .stops import ENDED, contact_words, divergence_words, rank_words
 from .surface_records import ALL_POINTS, SurfaceRecord

@@ -9,19 +9,20 @@ import numpy as np
 import xarray as xr
 
 from .._kernels.layout import COLUMNS, ENERGIES
-from ..assembly import Assembly, assemble
 from ..bodies import is_track
 from ..bodies.ordinary import of_ordinary_size
 from ..checks import ArgumentError, at_least, at_most, instance, positive
+from ..lowering import Assembly, assemble
+from ..lowering.schemes import CentralDifference, ExactModal, Scheme
+from ..lowering.stepping import Stepping
 from ..records import Acceleration, Probe
 from ..records.by_surface import groups
 from ..system import System
+from .bars import time_shown
 from .contact_solve import GaussSeidel
 from .marches import March
 from .point_records import PointRecord, bytes_of
 from .run import Run
-from .schemes import CentralDifference, ExactModal, Scheme
-from .stepping import Stepping
 from .stops import Diverged, Interrupted
 from .surface_records import ALL_POINTS, SurfaceRecord
 from .timing import Timing
@@ -48,6 +49,7 @@ def simulate(
     watchers: Sequence[Watcher] = (),
     title: str = "",
     surface_rate: float | str | None = None,
+    progress: bool = False,
 ) -> xr.Dataset:
     """March a system in time and return its record.
 
@@ -82,6 +84,9 @@ def simulate(
         Maps a second to record of surfaces [Hz] and nothing else of their points; the nearest rate at which an interval
         is a whole number of samples. If left out, maps at 1 kHz, and what sound and regimes need of the points of
         surfaces whose areas are known. With ``"all"`` every point is a contact of the record.
+    progress : bool, optional
+        Whether a bar on standard error shows the simulated time, the speed and the time left, in terminals, notebooks
+        and logs.
 
     Returns
     -------
@@ -109,10 +114,10 @@ def simulate(
     if not isinstance(watchers, Sequence):
         raise ArgumentError("watchers", "be a list of callables", watchers)
     asked = Asked(duration, scheme, step, sample_rate, probes, contact_solve, surface_rate)
-    run = asked.run(asked.arrays(system), start, title)
-    timing = run.timing
-    march = March([run.blocks], [run.state], timing.step, timing.ratio, asked.solve)
-    interrupted = march_together([run], march, watchers)
+    with time_shown(progress, title or "simulate") as more:
+        run = asked.run(asked.arrays(system), start, title)
+        march = March([run.blocks], [run.state], run.timing.step, run.timing.ratio, asked.solve)
+        interrupted = march_together([run], march, [*watchers, *more])
     record = run.record(interrupted)
     if interrupted:
         raise Interrupted(record)

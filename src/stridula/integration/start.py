@@ -11,16 +11,16 @@ from .._kernels.bristles import bristles_ratio, next_bristles_of_run
 from .._kernels.contact import SEPARATED, SLIDING, STICKING
 from .._kernels.friction import next_state, set_valued, sliding_ratio, state_ratio
 from ..arrays import Array
-from ..assembly import Assembly, ContactRows
 from ..checks import ArgumentError
 from ..contact import FrictionLaw
 from ..contact.stiffness import stored_at, tangent_of
+from ..lowering import Assembly, ContactRows
+from ..lowering.blocks import Blocks
+from ..lowering.schemes import Scheme
+from ..lowering.stepping import Stepping
 from ..records.state import State
-from .blocks import Blocks
 from .contact_solve import GaussSeidel
 from .forces import forces_of
-from .schemes import Scheme
-from .stepping import Stepping
 
 # Share of the terms of a gap that rounding may make, where each has come out of a sum or a solve of its own.
 ROUND_OFF = 512.0 * np.finfo(float).eps

@@ -8,11 +8,11 @@ import xarray as xr
 from .._kernels import layout as at
 from .._kernels.ledger import believed
 from ..arrays import Array
-from ..assembly import Assembly
 from ..checks import listed
+from ..lowering import Assembly
+from ..lowering.blocks import Blocks
 from ..records.state import State
 from ..records.variables import STATUS_WORDS
-from .blocks import Blocks
 from .start import rows_at
 
 ENDED = {

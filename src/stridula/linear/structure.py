@@ -12,10 +12,10 @@ import numpy as np
 import scipy.linalg
 
 from ..arrays import Array
-from ..assembly import Assembly, ContactRows, assemble
 from ..checks import STATUS_WORDS, ArgumentError
 from ..contact import PointContact, RigidTrack
 from ..histories import History
+from ..lowering import Assembly, ContactRows, assemble
 from ..system import System
 
 Found = TypeVar("Found")

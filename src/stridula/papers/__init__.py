@@ -1,4 +1,4 @@
-"""Papers reproduced, claim by claim."""
+"""Reproductions of papers, claim by claim."""
 
 from . import laulagnet_2011
 

@@ -1,4 +1,4 @@
-"""Figures from Datasets and views of systems (matplotlib and pyvista live here and nowhere else)."""
+"""Figures of Datasets and views of systems (the only package that uses matplotlib and pyvista)."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ _HOME = {
     "bodies": "space_films",
     "directivity": "directivities",
     "friction": "laws",
+    "mobility": "mobilities",
+    "mode_shapes": "shapes_of_modes",
     "overview": "timelines",
     "regime_map": "maps",
     "root_loci": "loci",
@@ -25,16 +27,18 @@ _HOME = {
     "spectrum": "spectra",
     "squeal_map": "squeals",
     "surface": "surfaces",
+    "system": "systems",
     "third_octaves": "bands",
     "timeline": "timelines",
     "view": "views",
     "view_mode": "views",
+    "waterfall": "waterfalls",
 }
 __all__ = list(_HOME)
 
 
 def __getattr__(name: str) -> Any:
-    """Import a figure from its home on first use: films and spectra are slow to import."""
+    """Import a figure from its module on first use: films and spectra are slow to import."""
     return on_first_use(__name__, _HOME, name)
 
 

@@ -13,14 +13,14 @@ from ..checks import ArgumentError, positive
 from .colours import LINES
 
 RANGE = 60.0
-# Edges of a band over its centre.
+# Ratio of the upper edge of a band to its centre.
 EDGE = 10.0**0.05
 
 
 def third_octaves(pressure: xr.DataArray, *, dynamic_range: float = RANGE, title: str = "") -> Figure:
-    """Draw the levels of a sound in third-octave bands, a staircase for each listener.
+    """Draw the levels of a sound in third-octave bands, as a staircase for each listener.
 
-    Bands are those that the sound is long enough and finely sampled enough for, within 25 Hz to 16 kHz. The legend has
+    Bands from 25 Hz to 16 kHz are drawn where the duration and the sample rate of the sound suffice. The legend gives
     LAeq of each listener.
 
     Parameters
@@ -87,7 +87,7 @@ def _ends(lasts: float, rate: float) -> tuple[float, float]:
 
 
 def _labels(pressure: xr.DataArray, lasts: float, rate: float) -> list[str]:
-    """Return what to call each listener, with LAeq where the rate carries it."""
+    """Return a label for each listener, with LAeq where sample rate and duration suffice."""
     places = positions(pressure)
     count = pressure.sizes.get("listener", 1)
     names = ["" if count == 1 else f"listener {number}" for number in range(1, count + 1)]

@@ -1,11 +1,11 @@
-"""Colours of figures, told apart by colour-blind eyes."""
+"""Colours of figures, distinguishable with colour blindness."""
 
 LINE = "#1f4e79"
-# Okabe & Ito's others, for several lines in one panel.
+# The other colours of Okabe & Ito, for several lines in one panel.
 LINES = (LINE, "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 # Okabe & Ito's colours.
 STATUS_COLOURS = {"separated": "#56b4e9", "sticking": "#d55e00", "sliding": "#f0e442"}
-# Those that do not vibrate are pale.
+# Regimes without vibration are pale.
 REGIME_COLOURS = {
     "stable sliding": "#cfe8f5",
     "sticking": "#b9b9b9",

@@ -33,15 +33,15 @@ def directivity(
     Parameters
     ----------
     pressure : xarray.DataArray, shape (time, listener)
-        Sound pressure [Pa], with where the listeners are in the coordinates ``x``, ``y``, ``z`` [m].
+        Sound pressure [Pa], with the positions of the listeners as coordinates ``x``, ``y``, ``z`` [m].
     centre : sequence of float, shape (3,), optional
-        The point [m].
+        Point around which the angle is taken [m].
     plane : {"xy", "xz", "yz"}, optional
         Plane of the angle, which counts from its first axis to its second.
     bands : sequence of float, optional
-        Nominal centres of third-octave bands [Hz], each a line; the whole level if left out.
+        Nominal centres of third-octave bands [Hz], a line for each; if left out, the overall level.
     weighting : {"Z", "A"}, optional
-        Weighting of the whole level.
+        Weighting of the overall level.
     dynamic_range : float, optional
         Range of the levels [dB], below the largest.
     title : str, optional
@@ -55,7 +55,7 @@ def directivity(
     Raises
     ------
     ValueError
-        If there are no positions, less than 3 listeners off the centre in this plane, or only silence.
+        If there are no positions, fewer than 3 listeners off the centre in this plane, or only silence.
     """
     positive("dynamic_range", dynamic_range)
     angles = _angles(pressure, centre, plane)
@@ -89,7 +89,7 @@ def _angles(pressure: xr.DataArray, centre: Sequence[float], plane: str) -> Arra
     choice("plane", plane, PLANES)
     places = positions(pressure)
     if places is None:
-        raise ArgumentError("pressure", "say where its listeners are, coordinates x, y, z [m]", pressure, got="none")
+        raise ArgumentError("pressure", "have the places of its listeners as coordinates x, y, z", pressure, got="none")
     axes = ["xyz".index(letter) for letter in plane]
     arms = places - np.array([finite(f"centre[{k}]", value) for k, value in enumerate(centre)])
     across, along = arms[:, axes[0]], arms[:, axes[1]]

@@ -1,4 +1,4 @@
-"""Figures written to files."""
+"""Write figures to files."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..disk import check_path, write
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure in the format that the name's end asks for, whole or not at all.
+    """Write a figure in the format of the file suffix, whole or not at all.
 
     Raises
     ------

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from ..cards import VIEW
 from ..checks import instance, positive
-from ..integration.schemes import Scheme
 from ..lines import check_in_plane
+from ..lowering.schemes import Scheme
 from ..records.variables import STATUS_WORDS
 from ..system import System
 from .motion import SAMPLE_RATE, Timing, motion_of
@@ -24,7 +24,7 @@ from .space_films import SpacePicture, exaggeration_of
 from .timelines import draw_contact
 
 DURATION, SLOWDOWN = 0.01, 1000.0
-# Without a number, the largest vibration is drawn as this share of the bodies' extent.
+# By default, the largest vibration is drawn as this share of the bodies' extent.
 SHARE = 0.1
 
 
@@ -43,59 +43,59 @@ def animate(
     title: str = "",
     progress: Callable[[int, int], None] = still,
 ) -> Film:
-    """Film bodies in slow motion, the points of contact coloured by their status.
+    """Film bodies in slow motion, with contact points coloured by their status.
 
     The system is simulated from its start to the end of the window, with probes of all modes of its bodies. With
-    the scheme and the step of a record the film shows that very run. What is faster than the frames is smoothed away,
-    and never seen as something slower.
+    the scheme and the step of a record, the film shows exactly that run. Motion faster than the frames is filtered out
+    before sampling, so it never appears as slower motion.
 
-    Of a system in the plane one sees its bodies as lines: the mean shape of each, and its slide along a track, are to
-    scale; the vibration about them is exaggerated, the gap with it. Motion of a track along itself is not drawn. Of a
-    plate one sees the cut along the line of contact, of bodies that are known at points only these points. A pale band
-    is what a body without a tip sweeps over in the window. A line with strokes is a rigid track, or the side of the tip
-    that slides past a point with a ``surface_velocity``: what sticks moves along with its strokes.
+    Bodies in the plane are drawn as lines. The mean shape of each and its slide along a track are to scale; the
+    vibration about them is exaggerated, and so is the gap. The motion of a track along itself is not drawn. A plate is
+    drawn as its cut along the line of contact, and a body defined at points only as these points. A pale band is the
+    region that a body without a tip sweeps in the window. A line with strokes is a rigid track, or the side of the tip
+    that slides past a point with a ``surface_velocity``; a sticking point moves along with the strokes.
 
-    Of a system in space one sees the surfaces of its meshed bodies and bodies of revolution in perspective, coloured by
-    the velocity out of them, and its contact points by their status. What departs from the mean over the window is
-    exaggerated. Rigid bodies that touch them, or are joined to them, also by way of others, are hulls of their points,
-    or small balls; others are not drawn.
+    In space, meshed bodies and bodies of revolution are drawn as surfaces in perspective, coloured by their outward
+    velocity, and contact points are coloured by status. Departures from the mean over the window are exaggerated. Rigid
+    bodies that touch these bodies, or are joined to them directly or through others, are drawn as hulls of their points
+    or as small balls; other bodies are not drawn.
 
     Parameters
     ----------
     system : System
         Any system in the plane, or with a `SolidBody` or an `AxisymmetricBody`.
     out : str or Path
-        The file, ``.mp4`` or ``.gif``, written whole or not at all. MP4 takes an encoder: ``pip install
-        .[video]`` in the sources, or an ffmpeg on the path.
+        The file, ``.mp4`` or ``.gif``, written whole or not at all. MP4 requires an encoder: ``pip install
+        .[video]`` in the sources, or ffmpeg on the path.
     start, duration : float, optional
         The window of time [s].
     slowdown : float, optional
-        How much slower than life; made a whole number of steps for each frame.
+        Slow-motion factor, adjusted to a whole number of steps for each frame.
     exaggeration : float, optional
-        How many times larger than life the vibration is drawn; what brings it near 10 % of their extent, in space
-        4 %, if left out.
+        Factor by which the vibration is drawn larger. If left out, the vibration is drawn near 10 % of the bodies'
+        extent, in space 4 %.
     view : tuple of float, optional
         In space, elevation of the eye above the plane across y and its azimuth from z towards x [rad].
     scheme : ExactModal or CentralDifference, optional
-        Time scheme, the exact modal one if left out.
+        Time scheme; if left out, the exact modal one.
     step : float, optional
-        Time step [s], that of `simulate` at `sample_rate` if left out.
+        Time step [s]; if left out, that of `simulate` at `sample_rate`.
     sample_rate : float, optional
-        Sample rate [Hz] of the run that is shown, of no effect where a step is given.
+        Sample rate [Hz] of the run shown; no effect with a given `step`.
     title : str, optional
         Title of the film.
     progress : callable, optional
-        Told the number of each frame drawn, and of how many.
+        Called after each frame with its number and the number of frames.
 
     Returns
     -------
     Film
-        What was written, with the slowdown and the exaggeration.
+        Properties of the film written, with its slowdown and exaggeration.
 
     Raises
     ------
     ValueError
-        If an argument is out of its range, the system is of another kind, the run ends before the window, or there is
+        If an argument is out of its range, the system cannot be filmed, the run ends before the window, or there is
         no encoder for the file.
     OSError
         If the file cannot be written.
@@ -130,9 +130,9 @@ class Picture:
     Parameters
     ----------
     motion : PlaneMotion
-        What to draw.
+        Motion to draw.
     exaggeration, slowdown : float
-        What is said of them, and done with the first.
+        Both factors, which the title states; the first scales the departures.
     title : str
         Title.
 
@@ -156,7 +156,7 @@ class Picture:
         self.frames = self.scene.frames
         if motion.largest > 0.0:
             self.scene.draw_scale(bodies, rounded(motion.largest))
-        # On two lines from one edge: side by side they would run into each other above a tall picture.
+        # On two lines from one edge: side by side they would overlap above a tall picture.
         self.words = bodies.set_title("", fontsize=9, loc="left")
         self.cursors = draw_contact(force, status, self.run)
         self.figure.suptitle(title, fontsize=11)
@@ -172,6 +172,6 @@ class Picture:
         time = float(self.run["time"].values[frame])
         for cursor in self.cursors:
             cursor.set_xdata([time, time])
-        # Of several contacts the marks say it.
+        # With several contacts, the markers show the status.
         word = f", {STATUS_WORDS[int(status[0])]}" if status.size == 1 else ""
         self.words.set_text(f"{self.scales}\nt = {1e3 * time:.3f} ms{word}")

@@ -1,4 +1,4 @@
-"""Laws of friction."""
+"""Figures of friction laws."""
 
 from __future__ import annotations
 
@@ -17,16 +17,15 @@ from .colours import LINE, LINES
 def friction(law: FrictionLaw, velocities: Array | Sequence[float] | None = None) -> Figure:
     """Draw the coefficient of friction of a law over slip velocity, in steady sliding.
 
-    Where the law sticks, all that it can hold at rest is a vertical line; where bristles or the state of the contact
-    hold, a dotted one or none. Rate and state, which goes over decades of speed, is drawn over its logarithm, forward
-    sliding only.
+    The range of forces that the law can hold at rest is a vertical line, solid for sticking and dotted for bristles.
+    Rate and state, which spans decades of speed, is drawn over the logarithm of speed, for forward sliding only.
 
     Parameters
     ----------
     law : Coulomb, StaticKinetic, Stribeck, ExponentialWeakening, LinearWeakening, LuGre or RateAndState
         The law.
     velocities : array_like, optional
-        Slip velocities to draw it at [m/s], of both signs or one; a range that shows it all if left out.
+        Slip velocities at which to draw it [m/s], of either or both signs; if left out, a range that covers the law.
 
     Returns
     -------
@@ -36,7 +35,7 @@ def friction(law: FrictionLaw, velocities: Array | Sequence[float] | None = None
     Raises
     ------
     ValueError
-        If an argument is of another kind, or there are less than 2 velocities.
+        If an argument is of the wrong type, or there are fewer than 2 velocities.
     """
     instance("law", law, LAWS)
     chosen = np.unique(_shown_range(law) if velocities is None else _velocities(velocities))
@@ -72,7 +71,7 @@ def _velocities(given: Array | Sequence[float]) -> Array:
 
 
 def _shown_range(law: FrictionLaw) -> Array:
-    """Return velocities over which a law shows all that it does."""
+    """Return velocities that cover the whole characteristic of a law."""
     if law.over_decades:
         return law.reach * np.geomspace(1e-8, 1.0, 401)
     # Dense about rest, where most laws fall.
@@ -81,7 +80,7 @@ def _shown_range(law: FrictionLaw) -> Array:
 
 
 def _draw_rest(axes: Axes, law: FrictionLaw, velocities: Array) -> None:
-    """Draw what a law can hold at rest, if rest is in sight."""
+    """Draw the range that a law can hold at rest, if the velocities include rest."""
     if velocities[0] > 0.0 or velocities[-1] < 0.0:
         return
     style, words = ("-", "sticking") if law.set_valued else (":", "bristles hold")

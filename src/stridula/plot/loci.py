@@ -1,4 +1,4 @@
-"""Modes of sliding over a parameter."""
+"""Figures of the modes of sliding over a parameter."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from .colours import LINE, LINES
 UNSTABLE = LINES[1]
 # Share of the axis that a label takes.
 LABEL_WIDTH = 0.09
-# Words for what is no steady sliding, drawn as bands.
+# States without steady sliding, drawn as bands.
 BANDS = {"held": "#cccccc", "lifted off": "#56b4e9", "jammed": "#cc79a7"}
 
 
 def root_loci(loci: xr.Dataset, critical: Sequence[xr.Dataset] = ()) -> Figure:
     """Draw frequencies and growth rates of the modes of sliding over a parameter.
 
-    Modes that grow are drawn thick and in another colour; where two frequencies become one, modes lock in. Values
+    Modes that grow are drawn thick and in another colour. Modes lock in where two frequencies merge. Values
     without steady sliding have a band in the background.
 
     Parameters
     ----------
     loci : xarray.Dataset
-        What `root_loci` returned.
+        Result of `root_loci`.
     critical : sequence of xarray.Dataset, optional
         Values of the parameter where stability changes, as `critical_value` returns them.
 
@@ -41,14 +41,14 @@ def root_loci(loci: xr.Dataset, critical: Sequence[xr.Dataset] = ()) -> Figure:
     Raises
     ------
     ValueError
-        If they are no root loci.
+        If `loci` is not a result of `root_loci`.
     """
     instance("loci", loci, xr.Dataset)
     lacking = [name for name in ("frequency", "growth_rate", "unstable", "equilibrium") if name not in loci]
     if lacking or loci["equilibrium"].ndim != 1:
-        raise ArgumentError("loci", "be what root_loci returned", loci, got=listed(map(str, loci.data_vars)))
+        raise ArgumentError("loci", "be the result of root_loci", loci, got=listed(map(str, loci.data_vars)))
     if not isinstance(critical, Sequence) or not all(map(_is_critical, critical)):
-        raise ArgumentError("critical", "be a list of what critical_value returned", critical)
+        raise ArgumentError("critical", "be a list of results of critical_value", critical)
     key = str(loci["equilibrium"].dims[0])
     figure = Figure(figsize=(8.0, 7.0), layout="constrained", dpi=120)
     above, below = figure.subplots(2, 1, sharex=True)
@@ -83,7 +83,7 @@ def _draw_modes(axes: Axes, loci: xr.Dataset, key: str, name: str) -> None:
 
 
 def _name_critical(axes: Axes, grid: Array, critical: Sequence[xr.Dataset]) -> None:
-    """Write at each critical value where it is and what vibrates, below the last label if that is in the way."""
+    """Label each critical value with its value and the mode that vibrates, below the last label if they overlap."""
     reach, width, row = -np.inf, LABEL_WIDTH * float(grid[-1] - grid[0]), 0
     for one in sorted(critical, key=lambda one: float(one["value"])):
         value, beyond = float(one["value"]), str(one.attrs["beyond"])
@@ -112,7 +112,7 @@ def _draw_bands(axes: Axes, loci: xr.Dataset, key: str) -> None:
 
 
 def _scale_growth(axes: Axes, loci: xr.Dataset) -> None:
-    """Let decades of growth be seen, on both sides of zero: it may rise without bound where sliding jams."""
+    """Scale the growth axis over decades on both sides of zero: growth may rise without bound where sliding jams."""
     rates = np.abs(loci["growth_rate"].values[loci["unstable"].values])
     if rates.size:
         typical, largest = float(np.median(rates)), float(rates.max())

@@ -1,4 +1,4 @@
-"""Maps of regimes over two parameters, with the linear analysis over them."""
+"""Maps of regimes over two parameters, overlaid with the linear analysis."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ PERCENTILES = (15.0, 45.0, 75.0)
 
 
 def regime_map(found: xr.Dataset) -> Figure:
-    """Draw the regimes of a sweep over two parameters by colour, with the linear analysis as lines over them.
+    """Draw the regimes of a sweep over two parameters by colour, overlaid with the linear analysis as lines.
 
-    The first parameter is along x. A thick line bounds where linear theory has a mode that grows, thin ones are
-    contours of its growth rate [1/s]; a dashed line bounds where it has a contact that slides steadily. Where colours
-    and lines do not go together, the two disagree. Numbers are drawn in rising order, words as they come.
+    The first parameter is along x. A thick line bounds the region where a mode of linear theory grows, thin lines are
+    contours of its growth rate [1/s], and a dashed line bounds the region of steady sliding. Runs and linear theory
+    disagree where colours and lines do not match. Numbers are drawn in rising order, words in the order given.
 
     Parameters
     ----------
     found : xarray.Dataset
-        What `sweep` returned for a grid of two parameters and the measure ``regime``.
+        Result of `sweep` for a grid of two parameters and the measure ``regime``.
 
     Returns
     -------
@@ -40,7 +40,7 @@ def regime_map(found: xr.Dataset) -> Figure:
     Raises
     ------
     ValueError
-        If there is no regime over two parameters of at least 2 values each.
+        If it lacks the regime over two parameters of at least 2 values each.
     """
     instance("found", found, xr.Dataset)
     if "regime" not in found or found["regime"].ndim != 2 or min(found["regime"].shape) < 2:
@@ -69,7 +69,7 @@ def regime_map(found: xr.Dataset) -> Figure:
 
 
 def in_order(found: xr.Dataset, key: str) -> xr.Dataset:
-    """Return a sweep with the numbers of a key rising, each once."""
+    """Return a sweep with the numbers of a key in rising order, each once."""
     if not _is_number(found, key):
         return found
     return found.isel({key: np.unique(found[key].values, return_index=True)[1]})
@@ -80,12 +80,12 @@ def _is_number(found: xr.Dataset, key: str) -> bool:
 
 
 def places_of(found: xr.Dataset, key: str) -> Array:
-    """Return where the values of a key lie on their axis: numbers where they are, words one beside another."""
+    """Return the places of the values of a key on their axis: numbers at their value, words at 0, 1, 2, ..."""
     return found[key].values.astype(float) if _is_number(found, key) else np.arange(found.sizes[key], dtype=float)
 
 
 def edges(places: Array) -> Array:
-    """Return the bounds of cells about their places: halfway between them, the outer ones as far on the other side."""
+    """Return the bounds of cells about their places: halfway between them, the outer ones symmetric about theirs."""
     if places.size == 1:
         return np.array([places[0] - 0.5, places[0] + 0.5])
     middle = 0.5 * (places[1:] + places[:-1])
@@ -101,7 +101,7 @@ def _codes(regimes: Array) -> Array:
 
 
 def _draw_linear(axes: Axes, found: xr.Dataset, x: Array, y: Array) -> list[Line2D]:
-    """Draw what linear theory says, and return the handles of the legend."""
+    """Draw the bounds of linear theory, and return the handles of the legend."""
     if "equilibrium" not in found or "unstable_modes" not in found:
         return []
     handles: list[Line2D] = []
@@ -109,7 +109,7 @@ def _draw_linear(axes: Axes, found: xr.Dataset, x: Array, y: Array) -> list[Line
     grows = slides & (np.nan_to_num(found["unstable_modes"].values) > 0)
     if grows.any():
         words = "linear theory: bound of growth" if not grows.all() else "linear theory: a mode grows everywhere"
-        # Where sliding ends, growth does, too: that bound is another.
+        # Growth also ends where sliding ends, but that bound is the dashed one.
         handles.append(draw_bound(axes, np.where(slides, grows, np.nan), x, y, "-", words))
         drawn = _draw_growth(axes, np.where(grows, found["growth_rate"].values, np.nan), x, y)
         handles += [Line2D([], [], color="black", linewidth=0.7, label="its growth rate")] if drawn else []
@@ -120,7 +120,7 @@ def _draw_linear(axes: Axes, found: xr.Dataset, x: Array, y: Array) -> list[Line
 
 
 def draw_bound(axes: Axes, inside: Array, x: Array, y: Array, style: str, words: str) -> Line2D:
-    """Draw the sides of cells that part those inside, 1, from the others, 0, and return the handle of the legend."""
+    """Draw the cell sides between cells inside, 1, and outside, 0, and return the handle of the legend."""
     look: dict[str, Any] = {"linewidth": 2.2 if style == "-" else 1.4, "linestyle": style}
     if np.nanmin(inside) < np.nanmax(inside):
         # Each cell with its own corners: the level between two of them lies on the side that they share.
@@ -132,7 +132,7 @@ def draw_bound(axes: Axes, inside: Array, x: Array, y: Array, style: str, words:
 
 
 def _draw_growth(axes: Axes, rates: Array, x: Array, y: Array) -> bool:
-    """Draw contours of the growth rate where there are any to be seen, and return whether there are."""
+    """Draw contours of the growth rate, and return whether there are any."""
     known = rates[np.isfinite(rates)]
     levels = [level for level in _round_levels(known) if known.min() < level < known.max()]
     if min(rates.shape) < 2 or not levels:
@@ -143,7 +143,7 @@ def _draw_growth(axes: Axes, rates: Array, x: Array, y: Array) -> bool:
 
 
 def _round_levels(rates: Array) -> list[float]:
-    """Return growth rates that part all evenly, rounded; they may rise without bound where sliding jams."""
+    """Return rounded percentiles of the growth rates: these may rise without bound where sliding jams."""
     return sorted({float(f"{rate:.1g}") for rate in np.percentile(rates, PERCENTILES)})
 
 

@@ -1,4 +1,4 @@
-"""Films of the modes that linear theory finds."""
+"""Films of the modes of linear theory."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..arrays import Array
-from ..assembly import assemble
 from ..cards import VIEW
 from ..checks import ArgumentError, count, instance
 from ..lines import lines_of
+from ..lowering import assemble
 from ..system import System
 from .motion import ModalMotion
 from .moved_bodies import MovedBodies, extent_of, has_surfaces, surfaces_of
@@ -41,37 +41,37 @@ def animate_mode(
     title: str = "",
     progress: Callable[[int, int], None] = still,
 ) -> Film:
-    """Film one period of a mode of linear theory, its largest displacement drawn as 5 % of the bodies' extent.
+    """Film one period of a mode of linear theory, with its largest displacement drawn as 5 % of the bodies' extent.
 
-    Growth and damping are left out. In space colours show the velocity out of the surfaces, relative to the largest.
+    Growth and damping are left out. In space, colours show the outward surface velocity relative to the largest.
 
     Parameters
     ----------
     system : System
-        The system, of a kind that `animate` films.
+        A system that `animate` can film.
     theory : xarray.Dataset
-        What `sliding_stability` returned for the system.
+        Result of `sliding_stability` for the system.
     number : int
         Number of the mode, from 0.
     out : str or Path
-        The file, ``.mp4`` or ``.gif``, written whole or not at all. MP4 takes an encoder, as for `animate`.
+        The file, ``.mp4`` or ``.gif``, written whole or not at all. MP4 requires an encoder, as for `animate`.
     view : tuple of float, optional
         In space, elevation of the eye above the plane across y and its azimuth from z towards x [rad].
     title : str, optional
         Title of the film.
     progress : callable, optional
-        Told the number of each frame drawn, and of how many.
+        Called after each frame with its number and the number of frames.
 
     Returns
     -------
     Film
-        What was written.
+        Properties of the film written.
 
     Raises
     ------
     ValueError
-        If an argument is out of its range, the mode does not oscillate, the system is of another kind than can be
-        drawn or not that of the theory, or there is no encoder for the file.
+        If an argument is out of its range, the mode does not oscillate, the system cannot be drawn or is not that
+        of the theory, or there is no encoder for the file.
     OSError
         If the file cannot be written.
     """
@@ -109,13 +109,13 @@ def motion_of_mode(system: System, shapes: dict[str, Array], exponent: complex) 
 
 
 def over_largest(moved: MovedBodies) -> ModalMotion:
-    """Return the motion of bodies with velocities over the largest one across their surfaces."""
+    """Return the motion of bodies with velocities relative to the largest across their surfaces."""
     largest = moved.largest_velocity or 1.0
     return replace(moved.motion, velocity={name: v / largest for name, v in moved.motion.velocity.items()})
 
 
 class _InSpace:
-    """A mode of a system in space, frame by frame."""
+    """Picture of a mode of a system in space, frame by frame."""
 
     def __init__(self, system: System, shapes: dict[str, Array], exponent: complex, view: tuple[float, float]) -> None:
         self.frames, self.figure = FRAMES, Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI)
@@ -133,7 +133,7 @@ class _InSpace:
 
 
 class _InPlane:
-    """A mode of a system in the plane, frame by frame."""
+    """Picture of a mode of a system in the plane, frame by frame."""
 
     def __init__(self, system: System, shapes: dict[str, Array]) -> None:
         lines, touches = lines_of(system)
@@ -160,7 +160,7 @@ def shapes_of_mode(system: System, theory: xr.Dataset, number: int) -> dict[str,
     instance("system", system, System)
     instance("theory", theory, xr.Dataset)
     if "mode_shape" not in theory or not theory.sizes.get("mode"):
-        raise ArgumentError("theory", "be what sliding_stability returned, with at least one mode", theory)
+        raise ArgumentError("theory", "be the result of sliding_stability, with at least one mode", theory)
     count("number", number, low=0, high=theory.sizes["mode"] - 1)
     if not theory["frequency"].values[number] > 0.0:
         raise ArgumentError("number", "be that of a mode that oscillates", number)

@@ -1,4 +1,4 @@
-"""Motion of the modes of all bodies over a window of time, as it is to be drawn."""
+"""Motion of the modes of all bodies over a window of time, for drawing."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from ..assembly import assemble
 from ..checks import ArgumentError, at_most, non_negative, positive
 from ..integration import simulate
-from ..integration.schemes import ExactModal, Scheme
 from ..integration.simulate import choose_timing
+from ..lowering import assemble
+from ..lowering.schemes import ExactModal, Scheme
 from ..records import Displacement, ModalDisplacement, ModalVelocity, Probe
 from ..system import System
 from .reels import FEWEST_FRAMES, check_frames
@@ -23,16 +23,16 @@ SAMPLE_RATE = 100e3
 
 
 class Timing(NamedTuple):
-    """How a run that is shown goes in time; with scheme and step of a record it is that of the record, to the last bit.
+    """Time integration of a run that is drawn; with scheme and step of a record, the run equals it to the last bit.
 
     Attributes
     ----------
     scheme : ExactModal or CentralDifference or None
-        Time scheme, the exact modal one if None.
+        Time scheme; if None, the exact modal one.
     step : float or None
-        Time step [s], that of `simulate` at the sample rate if None.
+        Time step [s]; if None, that of `simulate` at the sample rate.
     sample_rate : float
-        Sample rate [Hz], of no effect where a step is given.
+        Sample rate [Hz]; no effect with a given step.
     """
 
     scheme: Scheme | None = None
@@ -42,12 +42,12 @@ class Timing(NamedTuple):
 
 @dataclass(frozen=True)
 class ModalMotion:
-    """The modes of bodies in frames.
+    """Motion of the modes of bodies, frame by frame.
 
     Attributes
     ----------
     displacement, velocity : mapping
-        Of the modes of each body by its name, shape (frames, modes); velocities may be left out.
+        Modal values by body name, shape (frames, modes); velocities may be left out.
     """
 
     displacement: Mapping[str, Array]
@@ -61,7 +61,7 @@ class ModalMotion:
 
 @dataclass(frozen=True)
 class Motion:
-    """A system over a window of time, in frames.
+    """Motion of a system over a window of time, frame by frame.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class Motion:
     modes : ModalMotion
         Motion of the modes of its bodies.
     travel : ndarray, shape (frames,)
-        Displacement along x of the body under an imposed velocity, beyond that of its modes [m].
+        Displacement along x of the body under an imposed velocity, in addition to that of its modes [m].
     """
 
     run: xr.Dataset
@@ -94,7 +94,7 @@ def motion_of(
     timing : Timing
         Scheme and step.
     velocities : bool, optional
-        Whether the velocities of the modes are wanted, too.
+        Whether to probe the velocities of the modes as well.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Bodies in space as they are drawn, in pictures, films and views: where their corners are, and how fast."""
+"""Bodies in space as drawn in pictures, films and views: positions and velocities of their corners."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..system import System
 from .motion import ModalMotion
 from .rigid_surfaces import rigid_surfaces
 
-# Cosine between an outward normal and the direction of the eye below which a side is not seen, perspective included.
+# Cosine between an outward normal and the direction of the eye below which a side is hidden, also in perspective.
 AWAY = -0.3
 
 
@@ -27,11 +27,11 @@ class ShownBody:
     Attributes
     ----------
     name : str
-        Its name.
+        Name of the body.
     surface : DrawnSurface
-        The surface.
+        Its surface.
     seen : ndarray of bool, shape (polygons,)
-        Which of its polygons can be seen.
+        Whether each of its polygons can be seen.
     """
 
     name: str
@@ -40,7 +40,7 @@ class ShownBody:
 
 
 class MovedBodies:
-    """The bodies of a system that have a surface, frame by frame.
+    """Bodies of a system that have a surface, frame by frame.
 
     Parameters
     ----------
@@ -49,9 +49,9 @@ class MovedBodies:
     motion : ModalMotion
         Motion of its modes.
     exaggeration : float
-        How many times larger than life departures from the mean are drawn.
+        Factor by which departures from the mean are drawn larger.
     eye : ndarray, shape (3,)
-        Direction from which one looks; all polygons are seen where it is zero.
+        Direction of the eye; if zero, all polygons are seen.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class MovedBodies:
 
     @property
     def largest_velocity(self) -> float:
-        """Largest velocity across the surfaces that are seen, of all frames [m/s]."""
+        """Largest velocity across the visible surfaces in all frames [m/s]."""
         return max(
             float(np.abs(self.velocities(one, frame)).max())
             for frame in range(self.motion.frames)
@@ -76,28 +76,28 @@ class MovedBodies:
         )
 
     def places(self, one: ShownBody, frame: int) -> Array:
-        """Return where the corners of a body are [m], shape (corners, 3)."""
+        """Return the places of the corners of a body [m], shape (corners, 3)."""
         return np.asarray(one.surface.place + one.surface.shapes @ self._departure(one.name, frame))
 
     def velocities(self, one: ShownBody, frame: int) -> Array:
-        """Return the velocities out of the polygons that are seen [m/s], means over their corners."""
+        """Return the outward velocities of the visible polygons [m/s], means over their corners."""
         speed = one.surface.shapes @ self.motion.velocity[one.name][frame]
         mean = speed[one.surface.polygons[one.seen]].mean(axis=1)
         return np.asarray(np.einsum("pi,pi->p", mean, one.surface.normals[one.seen]))
 
     def contacts(self, frame: int) -> Array:
-        """Return where the contacts are whose place is known [m], shape (contacts, 3)."""
+        """Return the places of the contacts whose place is known [m], shape (contacts, 3)."""
         return np.array([one.at(self._departure(one.body, frame)) for one in self.points]).reshape(-1, 3)
 
     def _departure(self, name: str, frame: int) -> Array:
-        """Return the displacement of the modes of a body with what departs from the mean exaggerated."""
+        """Return the displacement of the modes of a body with its departure from the mean exaggerated."""
         mean = self.mean[name]
         return np.asarray(mean + self.exaggeration * (self.motion.displacement[name][frame] - mean))
 
 
 @dataclass(frozen=True)
 class PlacedContact:
-    """Where a contact is: a place of a body whose place is known.
+    """Place of a contact, on a body whose place is known.
 
     Attributes
     ----------
@@ -123,27 +123,27 @@ class PlacedContact:
 
     @property
     def at_rest(self) -> Array:
-        """Where it is at rest [m], shape (3,)."""
+        """Place at rest [m], shape (3,)."""
         body: Any = self._end.body
         return np.asarray(body.place(self._end.position))
 
     def at(self, modal: Array) -> Array:
-        """Return where it is, with its modes displaced [m], shape (3,)."""
+        """Return the place with the modes displaced [m], shape (3,)."""
         body: Any = self._end.body
         return np.asarray(self.at_rest + body.trace(self._end.position) @ modal)
 
 
 def places_of_contacts(system: System) -> tuple[list[int], list[PlacedContact]]:
-    """Return the contacts whose place is known: their numbers and where they are."""
+    """Return the numbers and the places of the contacts whose place is known."""
     numbers = [k for k, contact in enumerate(system.contacts) if contact.placed_end is not None]
     return numbers, [PlacedContact(system.contacts[k], system) for k in numbers]
 
 
 def surfaces_of(system: System, eye: Array, moving: bool = True) -> list[ShownBody]:
-    """Return the bodies of a system that are drawn, and which of their polygons face the eye.
+    """Return the drawn bodies of a system, with the polygons that face the eye.
 
-    Those that have a surface, and rigid bodies that are joined to one of them. Where they do not move their modes need
-    not be known.
+    These are the bodies that have a surface, and rigid bodies joined to one of them. With ``moving=False`` the modes of
+    the bodies are not computed.
     """
     shown: dict[Any, Any] = {body: body for body in system.bodies if is_drawn(body)}
     surfaces = {body: (one.drawn if moving else one.drawn_at_rest).swept for body, one in shown.items()}
@@ -154,13 +154,13 @@ def surfaces_of(system: System, eye: Array, moving: bool = True) -> list[ShownBo
 
 
 def has_surfaces(system: System) -> bool:
-    """Return whether a system has bodies whose surface is known."""
+    """Return whether a system has a body with a known surface."""
     instance("system", system, System)
     return any(is_drawn(body) for body in system.bodies)
 
 
 def check_surfaces(system: System) -> None:
-    """Raise ValueError unless a system has a body whose surface is known."""
+    """Raise ValueError unless a system has a body with a known surface."""
     if not has_surfaces(system):
         kinds = sorted({type(body).__name__ for body in system.bodies})
         words = "have a SolidBody or an AxisymmetricBody, whose surface is drawn"
@@ -179,5 +179,5 @@ def largest_departure(bodies: list[ShownBody], motion: ModalMotion) -> float:
 
 
 def extent_of(bodies: list[ShownBody]) -> float:
-    """Return the largest extent of what is drawn [m]."""
+    """Return the largest extent of the drawn bodies [m]."""
     return float(np.ptp(np.concatenate([one.surface.place for one in bodies]), axis=0).max())

@@ -1,4 +1,4 @@
-"""Motion of systems in the plane as it is drawn: what is to scale, and what departs from it and is exaggerated."""
+"""Motion of systems in the plane as drawn: a part to scale, and exaggerated departures from it."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ from ..lines import Line, Touch, lines_of
 from ..system import System
 from .motion import Motion
 
-# Length of a rigid track on both sides of what is seen of it, as a share of the bodies' extent.
+# Length by which a rigid track is drawn beyond its contact on both sides, as a share of the bodies' extent.
 BEYOND = 0.1
-# Extent of what has none: a point that rests [m].
+# Extent assumed for a point at rest [m].
 SMALLEST = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """A straight surface that moves along itself: a rigid track, or what slides past a point.
+    """A straight surface that moves along itself: a rigid track, or a surface that slides past a point.
 
     Attributes
     ----------
     place : ndarray, shape (frames, 2)
         World place of its abscissa 0, drawn to scale [m].
     departure : ndarray, shape (frames, 2)
-        What is exaggerated of it [m].
+        Departure from that place, drawn exaggerated [m].
     tangent, outwards : ndarray, shape (2,)
-        Its direction, and the one from its surface to its inside.
+        Direction of the surface, and the direction from the surface to its inside.
     ends : ndarray, shape (2,)
         Abscissas between which it is drawn [m].
     travel : ndarray, shape (frames,)
-        How far it has moved along itself [m].
+        Distance moved along itself [m].
     is_exaggerated : bool
-        Whether its travel is exaggerated, as the slip of a point on it is.
+        Whether its travel is exaggerated like the slip of a point on it.
     """
 
     place: Array
@@ -49,22 +49,22 @@ class Surface:
 
 @dataclass(frozen=True, eq=False)
 class PlaneMotion:
-    """A system in the plane over a window of time, in frames.
+    """Motion of a system in the plane over a window of time, frame by frame.
 
-    What is to scale of a body: its mean shape, moved so that its contacts are just closed, which rides on the mean
-    shape of what it slides on. Departures from that are exaggerated. So a closed contact is closed in the picture, and
-    a gap is as large as the vibration beside it.
+    The part to scale is the mean shape of each body, moved so that its contacts are just closed, on the mean shape of
+    the surface that it slides on. Departures from it are exaggerated. A closed contact is thus closed in the picture,
+    and a gap has the same scale as the vibration.
 
     Attributes
     ----------
     run : xarray.Dataset
         Record over the window, a sample for each frame.
     lines : list of Line
-        What is drawn.
+        Lines that are drawn.
     touches : list of Touch
-        Where lines touch, contact by contact.
+        Places where lines touch, one for each contact.
     reference, departure : list of ndarray, shape (frames, points, 2)
-        Of each line the world places drawn to scale, and what departs from them [m].
+        World places of each line drawn to scale, and the departures from them [m].
     surfaces : list of Surface
         Rigid tracks, and surfaces that slide past points.
     """
@@ -87,17 +87,17 @@ class PlaneMotion:
 
     @property
     def extent(self) -> float:
-        """Largest extent of what is to scale [m]."""
+        """Largest extent of the part to scale [m]."""
         return extent_of(self.reference)
 
 
 def extent_of(places: list[Array]) -> float:
-    """Return the largest extent of places, 1 mm if they are one and the same [m]."""
+    """Return the largest extent of places [m], 1 mm if they coincide."""
     return float(np.ptp(np.concatenate([one.reshape(-1, 2) for one in places]), axis=0).max()) or SMALLEST
 
 
 def plane_motion(system: System, motion: Motion) -> PlaneMotion:
-    """Return how the lines of a system in the plane move."""
+    """Return the motion of the lines of a system in the plane."""
     lines, touches = lines_of(system)
     places = []
     for line in lines:
@@ -121,14 +121,14 @@ def rest(touch: Touch, lines: list[Line]) -> Array:
 
 
 def _raised(touch: Touch, time: Array) -> Array:
-    """Return how far a rigid track has moved towards the tip [m]."""
+    """Return the distance that a rigid track has moved towards the tip [m]."""
     track = touch.contact.rigid_track
     assert track is not None
     return track.normal_travel(time)
 
 
 class _References:
-    """What is to scale of each line, those that are touched before those that touch them."""
+    """Places to scale of each line; a touched line is computed before the lines that touch it."""
 
     def __init__(self, lines: list[Line], touches: list[Touch], places: list[Array], time: Array) -> None:
         self._lines, self._places, self._time = lines, places, time
@@ -141,7 +141,7 @@ class _References:
                 for k, found in ours.items()
                 if all(one.touched is None or one.touched[0] in self.found for one in found)
             )
-            # Two that touch each other cannot both come first.
+            # Of two lines that touch each other only one can come first.
             number = next(ready, left[0])
             left.remove(number)
             known = [one for one in ours[number] if one.touched is None or one.touched[0] in self.found]
@@ -163,7 +163,7 @@ class _References:
         return found - np.einsum("fki,kp->fpi", opened, shares) if rows else found
 
     def _below(self, touch: Touch) -> Array:
-        """Return what a tip rides on over time: its track to scale, shape (frames, 2)."""
+        """Return the place of the track below a tip over time, to scale, shape (frames, 2)."""
         normal, tangent = touch.contact.frame
         tip = self._places[touch.tip[0]][:, touch.tip[1]]
         if touch.touched is None:

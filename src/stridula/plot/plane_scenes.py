@@ -1,4 +1,4 @@
-"""Bodies in the plane: lines, the surfaces that they slide on, and where they touch."""
+"""Pictures of bodies in the plane: lines, the surfaces that they slide on, and their contacts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ THICK, MARKER, SMALL_MARKER = 2.5, 8.0, 5.5
 TRACK = "0.45"
 # Strokes of a surface: their distance and their length along it and across it, shares of the picture's extent.
 STROKES, STROKE = 0.03, 0.012
-# Height of a picture, at least, as a share of its width.
+# Smallest height of a picture, as a share of its width.
 LOWEST = 0.3
 MARGIN = 0.04
 
@@ -32,17 +32,17 @@ class PlaneScene:
     Parameters
     ----------
     axes : Axes
-        Where to draw.
+        Axes to draw in.
     lines : list of Line
         The bodies.
     touches : list of Touch
-        Where they touch.
+        Places where they touch.
     places : list of ndarray, shape (frames, points, 2)
         World places of the points of each line, as they are drawn [m].
     surfaces : list of Surface, optional
-        What they slide on.
+        Surfaces that they slide on.
     exaggeration : float, optional
-        How many times larger than life departures of surfaces are drawn.
+        Factor by which departures of surfaces are drawn larger.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class PlaneScene:
             axes.add_collection(LineCollection([], colors="0.55", linewidths=0.8)) for _ in self.surfaces
         ]
         tips = {one.tip[0] for one in touches}
-        # What slides past stands for them.
+        # The surface that slides past is drawn in their place.
         hidden = {one.tip[0] for one in touches if one.touched is not None and one.contact.surface_velocities[0]}
         self.bodies = [
             axes.plot(
@@ -99,7 +99,7 @@ class PlaneScene:
         axes.tick_params(labelsize=8)
 
     def draw_scale(self, axes: Axes, length: float) -> None:
-        """Draw a length of the vibration [m] as large as it is drawn, in the lower right corner."""
+        """Draw a scale bar for a length of the vibration [m] in the lower right corner."""
         (_, right), (low, _) = axes.get_xlim(), axes.get_ylim()
         room = MARGIN * self.extent
         x, y = right - 0.5 * room, low + 0.5 * room
@@ -108,7 +108,7 @@ class PlaneScene:
         axes.text(x - 0.2 * room, y, words, fontsize=8, horizontalalignment="right", verticalalignment="bottom")
 
     def show(self, frame: int, status: Array | None = None) -> None:
-        """Draw a frame; `status` is that of each contact, of which none is drawn without."""
+        """Draw a frame; `status` is that of each contact, and without it no contact is drawn."""
         for drawn, line, places in zip(self.bodies, self.lines, self.places, strict=True):
             drawn.set_data(*places[frame, : line.count].T)
         for strokes, surface in zip(self._strokes, self.surfaces, strict=True):
@@ -120,7 +120,7 @@ class PlaneScene:
             self.markers[word].set_data(*marks[status == number].T)
 
     def _mark(self, touch: Touch, frame: int) -> Array:
-        """Return where a contact is marked: at the point that is touched, else at the tip that slides."""
+        """Return the place of the mark of a contact: the touched point, else the sliding tip."""
         line, row = touch.fixed or touch.tip
         found: Array = self.places[line][frame, row]
         return found
@@ -134,7 +134,7 @@ class PlaneScene:
         travel = surface.travel[frame] * (times if surface.is_exaggerated else 1.0)
         along = np.arange(math.ceil((low - travel) / distance), (high - travel) / distance) * distance + travel
         strokes = place + along[:, None] * surface.tangent
-        # Straight across, strokes of what slides past several points make one ladder.
+        # Perpendicular strokes of a surface that slides past several points would look like a ladder.
         slant = size * (surface.outwards - (0.0 if surface.is_exaggerated else surface.tangent))
         return [place + np.outer([low, high], surface.tangent), *np.stack([strokes, strokes + slant], axis=1)]
 
@@ -145,7 +145,7 @@ class PlaneScene:
         return surface.ends * self._exaggeration + np.array([-1.0, 1.0]) * MARGIN * self.extent
 
     def _draw_swept(self, axes: Axes) -> None:
-        """Draw what bodies that touch nothing with a tip sweep over: how far they move is seen at once."""
+        """Draw the region swept by bodies without a tip, to show how far they move."""
         for number, (line, places) in enumerate(zip(self.lines, self.places, strict=True)):
             if number not in {one.tip[0] for one in self.touches} and line.count > 1:
                 x, y = places[:, : line.count].mean(axis=0)[:, 0], places[:, : line.count, 1]

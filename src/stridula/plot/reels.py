@@ -1,4 +1,4 @@
-"""Files of films: what was written, its formats and the encoder."""
+"""Files of films: their properties, formats and the encoder."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ WIDTH, HEIGHT, DPI = 960, 600, 100
 
 @dataclass(frozen=True)
 class Film:
-    """A film that was written; in print, one line that says it all.
+    """Properties of a film that was written; `str` gives a one-line summary.
 
     Attributes
     ----------
@@ -41,9 +41,9 @@ class Film:
     start, duration : float
         The window of time shown [s].
     slowdown : float
-        How much slower than life it is.
+        Slow-motion factor.
     exaggeration : float or None
-        How much larger than life the vibration is drawn, None where none is.
+        Factor by which the vibration is drawn larger; None if no vibration is drawn.
     """
 
     path: str
@@ -80,11 +80,11 @@ class Drawn(Protocol):
 
 
 def still(number: int, of: int) -> None:
-    """Tell nobody of a frame."""
+    """Report no progress."""
 
 
 def check_frames(duration: float, frame: float) -> int:
-    """Return how many frames a window of time gives [s], if they are neither too few nor too many."""
+    """Return the number of frames in a window of time [s]; raise if there are too few or too many."""
     frames = duration / frame
     if not FEWEST_FRAMES <= round(frames) <= MOST_FRAMES:
         raise ArgumentError(
@@ -97,7 +97,7 @@ def check_frames(duration: float, frame: float) -> int:
 
 
 def writer_for(out: str | Path) -> AbstractMovieWriter:
-    """Return what writes films of the format that a name's end asks for, where the name can be written.
+    """Return a writer of films in the format of the file suffix, after checking that the file can be written.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def write_film(
 
 
 def _encoder() -> str | None:
-    """Return the path of ffmpeg: the one that comes as a package, or the one on the path."""
+    """Return the path of ffmpeg: that of the Python package, or that on the path."""
     if find_spec("imageio_ffmpeg") is None:
         return shutil.which("ffmpeg")
     import imageio_ffmpeg
@@ -144,7 +144,7 @@ def _writer(out: str | Path) -> AbstractMovieWriter:
 
 
 def rounded(number: float) -> float:
-    """Return the largest of 1, 2 and 5 times a power of ten that is not above a number; 1 for what does not move."""
+    """Return the largest of 1, 2 and 5 times a power of ten that is not above a number, or 1 for 0."""
     if not np.isfinite(number):
         return 1.0
     power = 10.0 ** np.floor(np.log10(number))
@@ -160,7 +160,7 @@ def _encoding() -> Iterator[None]:
 
 
 def _filmed(picture: Drawn, writer: AbstractMovieWriter, kind: str, progress: Callable[[int, int], None]) -> bytes:
-    """Return the film as it will be in its file."""
+    """Return the film as the bytes of its file."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"film{kind}"
         try:

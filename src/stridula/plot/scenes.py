@@ -1,4 +1,4 @@
-"""Bodies in space in perspective: their surfaces, coloured by the velocity across them, and where they touch."""
+"""Bodies in space in perspective: surfaces coloured by their outward velocity, and contacts."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from ..checks import STATUS_WORDS, ArgumentError, finite
 from ..system import System
 from .colours import STATUS_COLOURS
 from .motion import ModalMotion
-from .moved_bodies import MovedBodies
+from .moved_bodies import MovedBodies, ShownBody
 
 VELOCITIES = "RdBu_r"
-# Of units of velocity, and what they stand for.
+# Prefixes of units of velocity, and their factors.
 PREFIXES = (("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9))
-# Darkest a side that turns away from the light gets.
+# Brightness of a side that faces away from the light.
 DARK = 0.72
-# Share of the room that bodies at rest fill.
-FILLED = 0.92
+# Share of the room that bodies at rest fill, and rounds in which the zoom for it is found.
+FILLED, ROUNDS = 0.92, 3
 MARKER = 3.5
 
 
-class Scene:
-    """The bodies of a system that have a surface, in perspective, to be drawn frame by frame.
+class Stage:
+    """Axes in space on which polygons at rest are seen in perspective as large as a room in a figure lets them be.
 
     Parameters
     ----------
@@ -40,12 +40,102 @@ class Scene:
         The figure.
     room : tuple of float
         Where in it: left and lower edge, width and height, shares of the figure.
+    bodies : list of ShownBody
+        What is seen.
+    view : tuple of float
+        Elevation and azimuth of the eye [rad].
+
+    Attributes
+    ----------
+    axes : mpl_toolkits.mplot3d.axes3d.Axes3D
+        The axes.
+    shade : ndarray, shape (polygons,)
+        How light the polygons are that are seen, body by body.
+    """
+
+    def __init__(
+        self,
+        figure: Figure,
+        room: tuple[float, float, float, float],
+        bodies: list[ShownBody],
+        view: tuple[float, float],
+    ) -> None:
+        self._figure, self._room, self.bodies = figure, room, bodies
+        self.axes = _axes_in_space(figure, room)
+        light = eye_of((view[0] + 0.5, view[1] - 0.5))
+        normals = np.concatenate([one.surface.normals[one.seen] for one in bodies])
+        self.shade = DARK + (1.0 - DARK) * np.clip(normals @ light, 0.0, 1.0)
+        places = np.concatenate([one.surface.place for one in bodies])
+        low, high = places.min(axis=0), places.max(axis=0)
+        margin = 0.03 * float((high - low).max())
+        low, high = low - margin, high + margin
+        self.axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+        self.axes.view_init(*np.degrees(view), vertical_axis="y")
+        self._sides = tuple((high - low).tolist())
+        self.axes.set_box_aspect(self._sides)
+        self.axes.set_axis_off()
+
+    def drawn(self, polygons: Array, **look: Any) -> Any:
+        """Draw polygons, and return them."""
+        sides: Any = Poly3DCollection(polygons, zorder=1, **look)
+        # The axes are a square in the middle of their room, which may be wider.
+        sides.set_clip_on(False)
+        self.axes.add_collection3d(sides)
+        return sides
+
+    def polygons(self, places: list[Array]) -> Array:
+        """Return the polygons that are seen of all bodies at places."""
+        found = [place[one.surface.polygons[one.seen]] for one, place in zip(self.bodies, places, strict=True)]
+        most = max(corners.shape[1] for corners in found)
+        # All with as many corners: drawn at once they hide each other as they should.
+        return np.concatenate([np.pad(one, ((0, 0), (0, most - one.shape[1]), (0, 0)), mode="edge") for one in found])
+
+    def seen_at(self, places: Array) -> Array:
+        """Return where places are seen in the figure, shares of it, shape (places, 2)."""
+        x, y, _ = proj3d.proj_transform(*places.T, self.axes.get_proj())
+        drawn = self.axes.transData.transform(np.stack([x, y], axis=1))
+        return np.asarray(self._figure.transFigure.inverted().transform(drawn))
+
+    def fill(self) -> None:
+        """Draw the bodies as large as the room lets them be."""
+        self._figure.draw_without_rendering()
+        at = self.seen_at(np.concatenate([one.surface.place for one in self.bodies]))
+        left, low, width, height = self._room
+        reach = np.abs(at - [left + 0.5 * width, low + 0.5 * height]).max(axis=0)
+        zoom = FILLED * 0.5 * float((np.array([width, height]) / reach).min())
+        self.axes.set_box_aspect(self._sides, zoom=zoom)
+
+    def fill_with(self, places: Array) -> None:
+        """Draw places as large as the room lets them be, in its middle."""
+        left, low, width, height = self._room
+        corner, room, zoom = np.array([left, low]), np.array([width, height]), 1.0
+        # In perspective nothing becomes larger by exactly the zoom.
+        for _ in range(ROUNDS):
+            self._figure.draw_without_rendering()
+            at = self.seen_at(places)
+            zoom *= FILLED * float((room / np.ptp(at, axis=0)).min())
+            self.axes.set_box_aspect(self._sides, zoom=zoom)
+        self._figure.draw_without_rendering()
+        at = self.seen_at(places)
+        moved = corner + 0.5 * room - 0.5 * (at.min(axis=0) + at.max(axis=0))
+        self.axes.set_position((*(corner + moved).tolist(), width, height))
+
+
+class Scene(Stage):
+    """The bodies of a system that have a surface, in perspective, to be drawn frame by frame.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    room : tuple of float
+        Area in the figure: left and lower edge, width and height, as shares of the figure.
     system : System
         The system.
     motion : ModalMotion
         Motion of its modes.
     exaggeration : float
-        How many times larger than life departures from the mean are drawn.
+        Factor by which departures from the mean are drawn larger.
     view : tuple of float
         Elevation and azimuth of the eye [rad].
 
@@ -68,19 +158,10 @@ class Scene:
         exaggeration: float,
         view: tuple[float, float],
     ) -> None:
-        eye = eye_of(view)
-        self._figure, self._room = figure, room
-        self.moved = MovedBodies(system, motion, exaggeration, eye)
-        self.bodies = self.moved.bodies
-        self.axes = _axes_in_space(figure, room)
-        light = eye_of((view[0] + 0.5, view[1] - 0.5))
-        normals = np.concatenate([one.surface.normals[one.seen] for one in self.bodies])
-        self._shade = DARK + (1.0 - DARK) * np.clip(normals @ light, 0.0, 1.0)
+        self.moved = MovedBodies(system, motion, exaggeration, eye_of(view))
+        super().__init__(figure, room, self.moved.bodies, view)
         self.scale = Normalize(-1.0, 1.0)
-        self.sides: Any = Poly3DCollection(self._polygons(0), linewidths=0.15, edgecolors="0.45", zorder=1)
-        # The axes are a square in the middle of their room, which may be wider.
-        self.sides.set_clip_on(False)
-        self.axes.add_collection3d(self.sides)
+        self.sides: Any = self.drawn(self._polygons(0), linewidths=0.15, edgecolors="0.45")
         self.markers: dict[str, Any] = {
             word: self.axes.plot(
                 [],
@@ -98,12 +179,11 @@ class Scene:
             )[0]
             for word, colour in STATUS_COLOURS.items()
         }
-        self._set_view(view)
 
     def colour_bar(
         self, axes: Axes, largest: float, words: str = "velocity out of the surface", unit: str = "m/s"
     ) -> None:
-        """Have colours go up to a velocity, and say so, with a prefix to its unit that leaves short numbers."""
+        """Scale the colours to a velocity and draw their bar, with a unit prefix that keeps the numbers short."""
         largest = largest or 1.0
         self.scale = Normalize(-largest, largest)
         prefix, size = next((one for one in PREFIXES if largest >= one[1]), PREFIXES[-1])
@@ -111,24 +191,12 @@ class Scene:
         self._figure.colorbar(shown, cax=axes).set_label(f"{words} [{prefix}{unit}]", fontsize=9)
         axes.tick_params(labelsize=8)
 
-    def fill(self) -> None:
-        """Draw the bodies as large as the room lets them be."""
-        self._figure.draw_without_rendering()
-        places = np.concatenate([one.surface.place for one in self.bodies])
-        x, y, _ = proj3d.proj_transform(*places.T, self.axes.get_proj())
-        drawn = self.axes.transData.transform(np.stack([x, y], axis=1))
-        at = self._figure.transFigure.inverted().transform(drawn)
-        left, low, width, height = self._room
-        reach = np.abs(at - [left + 0.5 * width, low + 0.5 * height]).max(axis=0)
-        zoom = FILLED * 0.5 * float((np.array([width, height]) / reach).min())
-        self.axes.set_box_aspect(self._sides, zoom=zoom)
-
     def show(self, frame: int, status: Array | None = None) -> None:
-        """Draw a frame; `status` is that of each contact, of which none is drawn without."""
+        """Draw a frame; `status` is that of each contact, and without it no contact is drawn."""
         self.sides.set_verts(self._polygons(frame))
         self.values = np.concatenate([self.moved.velocities(one, frame) for one in self.bodies])
         colours = colormaps[VELOCITIES](self.scale(self.values))
-        colours[:, :3] *= self._shade[:, None]
+        colours[:, :3] *= self.shade[:, None]
         self.sides.set_facecolor(colours)
         if status is None:
             return
@@ -137,21 +205,7 @@ class Scene:
             self.markers[word].set_data_3d(*places[status[self.moved.numbers] == number].T)
 
     def _polygons(self, frame: int) -> Array:
-        found = [self.moved.places(one, frame)[one.surface.polygons[one.seen]] for one in self.bodies]
-        most = max(corners.shape[1] for corners in found)
-        # All with as many corners: drawn at once they hide each other as they should.
-        return np.concatenate([np.pad(one, ((0, 0), (0, most - one.shape[1]), (0, 0)), mode="edge") for one in found])
-
-    def _set_view(self, view: tuple[float, float]) -> None:
-        places = np.concatenate([one.surface.place for one in self.bodies])
-        low, high = places.min(axis=0), places.max(axis=0)
-        margin = 0.03 * float((high - low).max())
-        low, high = low - margin, high + margin
-        self.axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-        self.axes.view_init(*np.degrees(view), vertical_axis="y")
-        self._sides = tuple((high - low).tolist())
-        self.axes.set_box_aspect(self._sides)
-        self.axes.set_axis_off()
+        return self.polygons([self.moved.places(one, frame) for one in self.bodies])
 
 
 def checked_view(view: Any) -> tuple[float, float]:

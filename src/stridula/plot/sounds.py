@@ -1,4 +1,4 @@
-"""What figures of sounds share: one signal, and the reference of its levels."""
+"""Common parts of figures of sounds: one signal, and the reference of its levels."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from ..analysis.signals import samples
 from ..arrays import Array
 from ..checks import ArgumentError, instance
 
-# Levels of silence [dB] below the reference, in place of minus infinity, which has no colour.
+# Level of silence [dB] re the reference, in place of minus infinity, which has no colour.
 SILENCE = -200.0
 
 
 @dataclass(frozen=True)
 class Reference:
-    """What levels refer to.
+    """Reference of levels.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class Reference:
 
 
 def reference(signal: xr.DataArray, per: str = "") -> Reference:
-    """Return what the levels of a signal refer to: 20 µPa for a sound pressure, else its own unit."""
+    """Return the reference of the levels of a signal: 20 µPa for a sound pressure, else its own unit."""
     units = str(signal.attrs.get("units", "Pa" if "listener" in signal.dims else "1"))
     if units == "Pa":
         return Reference(REFERENCE, f"dB re (20 µPa)²{per}" if per else "dB re 20 µPa")

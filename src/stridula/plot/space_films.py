@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from ..cards import VIEW
 from ..checks import positive
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..system import System
 from .motion import SAMPLE_RATE, ModalMotion, Motion, Timing, motion_of
 from .moved_bodies import check_surfaces, extent_of, largest_departure, surfaces_of
@@ -15,12 +15,12 @@ from .reels import DPI, HEIGHT, WIDTH, rounded
 from .scenes import Scene, checked_view
 from .timelines import draw_contact
 
-# Without a number, the largest vibration is drawn as this share of the bodies' extent.
+# By default, the largest vibration is drawn as this share of the bodies' extent.
 SHARE = 0.04
 # Time before a picture over which the mean is taken, and between its samples [s].
 BEFORE, FRAME = 2e-3, 4e-5
-# Where things are in the figure: left and lower edge, width, height. A layout found by matplotlib makes way for
-# axes in space as if all of them were seen.
+# Areas in the figure: left and lower edge, width, height. The layouts of matplotlib reserve space for axes in space
+# even if they are hidden.
 SCENE, COLOUR_BAR = (0.02, 0.31, 0.86, 0.62), (0.905, 0.36, 0.015, 0.5)
 FORCE, STATUS = (0.09, 0.17, 0.79, 0.11), (0.09, 0.075, 0.79, 0.03)
 
@@ -36,27 +36,27 @@ def bodies(
     sample_rate: float = SAMPLE_RATE,
     title: str = "",
 ) -> Figure:
-    """Draw the bodies of a system in space at a time, coloured by the velocity across their surfaces.
+    """Draw the bodies of a system in space at one time, coloured by the velocity across their surfaces.
 
-    The system is simulated from its start. Contact points have the colour of their status. What departs from the mean
-    of the last 2 ms is exaggerated.
+    The system is simulated from its start. Contact points are coloured by status. Departures from the mean of the last
+    2 ms are exaggerated.
 
     Parameters
     ----------
     system : System
         A system with a `SolidBody` or an `AxisymmetricBody`.
     time : float
-        When [s].
+        Time of the picture [s].
     exaggeration : float, optional
-        How many times larger than life the vibration is drawn; what brings it near 4 % of their extent if left out.
+        Factor by which the vibration is drawn larger; if left out, the vibration is drawn near 4 % of the extent.
     view : tuple of float, optional
         Elevation of the eye above the plane across y and its azimuth from z towards x [rad].
     scheme : ExactModal or CentralDifference, optional
-        Time scheme, the exact modal one if left out.
+        Time scheme; if left out, the exact modal one.
     step : float, optional
-        Time step [s], that of `simulate` at `sample_rate` if left out.
+        Time step [s]; if left out, that of `simulate` at `sample_rate`.
     sample_rate : float, optional
-        Sample rate [Hz] of the run that is shown, of no effect where a step is given.
+        Sample rate [Hz] of the run shown; no effect with a given `step`.
     title : str, optional
         Title of the picture.
 
@@ -83,7 +83,7 @@ def bodies(
 
 
 def exaggeration_of(system: System, modes: ModalMotion, given: float | None) -> float:
-    """Return how many times larger than life vibration is drawn: as given, else near `SHARE` of the bodies' extent."""
+    """Return the exaggeration of the vibration: as given, else to draw it near `SHARE` of the bodies' extent."""
     if given is not None:
         return positive("exaggeration", given)
     shown = surfaces_of(system, np.zeros(3))
@@ -99,11 +99,11 @@ class SpacePicture:
     system : System
         The system.
     motion : Motion
-        How it moves.
+        Its motion.
     exaggeration : float
-        How many times larger than life vibration is drawn.
+        Factor by which the vibration is drawn larger.
     slowdown : float or None
-        How much slower than life it is, None for a picture that stands.
+        Slow-motion factor, None for a still picture.
     title : str
         Title.
     view : tuple of float

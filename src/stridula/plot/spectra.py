@@ -29,21 +29,21 @@ def spectrum(
 ) -> Figure:
     """Draw the power spectral density of a sound or a recorded signal.
 
-    Natural frequencies of the bodies, free of contact, are ticks above, a row for each body. Modes of sliding that grow
-    are lines through, named by frequency and growth rate.
+    Natural frequencies of the bodies without contact are ticks above the spectrum, a row for each body. Modes of
+    sliding that grow are dashed lines, labelled with frequency and growth rate.
 
     Parameters
     ----------
     signal : xarray.DataArray, shape (time,) or (time, listener)
-        Sound pressure [Pa], each listener a line, or a recorded signal.
+        Sound pressure [Pa], with a line for each listener, or a recorded signal.
     system : System, optional
         The system, for natural frequencies.
     stability : xarray.Dataset, optional
-        What `sliding_stability` returned, for modes that grow.
+        Result of `sliding_stability`, for modes that grow.
     highest : float, optional
-        Upper end of the frequency axis [Hz], half of the sample rate at most.
+        Upper end of the frequency axis [Hz], at most half the sample rate.
     resolution : float, optional
-        Distance of the frequencies [Hz]; a short signal has no finer one than its length gives.
+        Frequency spacing [Hz], at least the inverse of the duration of the signal.
     title : str, optional
         Title of the figure.
 
@@ -55,7 +55,7 @@ def spectrum(
     Raises
     ------
     ValueError
-        If an argument is of another kind or out of its range.
+        If an argument is of the wrong type or out of its range.
     """
     positive("highest", highest)
     positive("resolution", resolution)
@@ -86,7 +86,7 @@ def spectrum(
 
 
 def _signals(signal: xr.DataArray) -> dict[str, xr.DataArray]:
-    """Return the signals by what to call them."""
+    """Return the signals by label."""
     instance("signal", signal, xr.DataArray)
     if "listener" not in signal.dims:
         return {"": signal}
@@ -98,7 +98,7 @@ def _density(signal: xr.DataArray, resolution: float) -> tuple[Array, Array]:
     values, interval = one_signal(signal)
     size = min(values.size, round(1.0 / (resolution * interval)))
     frequency, density = welch(values, 1.0 / interval, nperseg=max(size, 2), detrend="constant")
-    # The first frequency holds what the mean leaves.
+    # Only the residue of the mean is left at frequency 0.
     return frequency[1:], density[1:]
 
 

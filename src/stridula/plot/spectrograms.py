@@ -1,4 +1,4 @@
-"""Sound over time and frequency, over what the contact does."""
+"""Spectrograms, with the state of the contact."""
 
 from __future__ import annotations
 
@@ -28,25 +28,25 @@ def spectrogram(
     dynamic_range: float = RANGE,
     title: str | None = None,
 ) -> Figure:
-    """Draw the spectrogram of a sound, or of a recorded signal, with the contact's life on the same time axis.
+    """Draw the spectrogram of a sound or of a recorded signal, with the contact on the same time axis.
 
-    A tone has its own level: of a sound pressure in dB re 20 µPa, of any other signal in dB re its own unit. With a
-    record the normal force is drawn above and the status below. Sound comes later than what makes it, by 3 ms a metre.
+    A pure tone shows its own level, in dB re 20 µPa for a sound pressure and in dB re its unit for other signals. With
+    a record, the normal force is drawn above and the status below. Sound is delayed by its travel, 3 ms per metre.
 
     Parameters
     ----------
     signal : xarray.DataArray, shape (time,) or (time, 1)
         Sound pressure [Pa] of one listener, or a recorded signal such as ``run.normal_force``.
     run : xarray.Dataset, optional
-        Record of one contact that made it.
+        Record with one contact, the source of the sound.
     window : float, optional
-        Length of the Hann window [s]; its frequencies are as wide as 1.5 over it.
+        Length of the Hann window [s]; the frequency resolution is 1.5 divided by it.
     highest : float, optional
-        Upper end of the frequency axis [Hz], half of the sample rate at most.
+        Upper end of the frequency axis [Hz], at most half the sample rate.
     dynamic_range : float, optional
         Range of the colours [dB], below the loudest.
     title : str, optional
-        Title of the figure; the record's own if left out.
+        Title of the figure; if left out, that of the record.
 
     Returns
     -------
@@ -98,7 +98,7 @@ def _levels(values: Array, interval: float, size: int, level: Reference) -> tupl
     hop = max(size // 8, values.size // COLUMNS, 1)
     transform = ShortTimeFFT(hann(size, sym=False), hop, 1.0 / interval, scale_to="magnitude")
     first, last = transform.lower_border_end[1], transform.upper_border_begin(values.size)[1]
-    # Only windows that lie inside; of a signal as short as one window, the one about its middle.
+    # Only windows that lie inside; for a signal as short as one window, the window about its middle.
     first, last = (first, last) if last > first else ((values.size // 2) // hop, (values.size // 2) // hop + 1)
     # A tone shares its amplitude with its negative frequency: its mean square is twice the square of either.
     squares = 2.0 * np.abs(transform.stft(values, p0=first, p1=last)) ** 2

@@ -1,4 +1,4 @@
-"""Maps of squeal surveys over two parameters: what lives where, and where linear theory has a mode that grows."""
+"""Maps of squeal surveys over two parameters: persistent vibrations, and the bounds of linear theory."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .colours import FAILED_COLOUR
 from .maps import draw_bound, edges, in_order, name_axis, places_of
 
 NEEDED = ("verdict", "fate", "tone_frequency", "normal_force_rms")
-# Of points where nothing vibrates, by what their colour says; the rest have that of their frequency.
+# Colours of points without vibration, by state; the other points are coloured by frequency.
 QUIET = {
     "stable": "#cfe8f5",
     "no steady sliding": "#b9b9b9",
@@ -29,23 +29,23 @@ QUIET = {
 LINEAR = ("stable", "unstable")
 VIBRATES = ("lives", "joins", "changes")
 FREQUENCIES = "viridis"
-# Ratio of the highest to the lowest from which colours stand for ratios.
+# Ratio of the highest to the lowest frequency above which the colour scale is logarithmic.
 WIDE = 4.0
-# Cells up to which the number of living modes is written into them.
+# Largest number of cells into which the number of living modes is written.
 MOST_NUMBERS = 400
 
 
 def squeal_map(found: xr.Dataset) -> Figure:
-    """Draw over two parameters how a survey vibrates, with the bounds of linear theory over it.
+    """Draw the vibrations of a survey over two parameters, overlaid with the bounds of linear theory.
 
-    The first parameter is along x. Colours show the frequency of the strongest tone, of the run whose normal force
-    fluctuates most; numbers say how many modes live on in limit cycles of their own. A thick line bounds where linear
-    theory has a mode that grows; a dashed line bounds where a contact slides steadily.
+    The first parameter is along x. Colours show the frequency of the strongest tone of the run whose normal force
+    fluctuates most; numbers count the modes that persist in limit cycles of their own. A thick line bounds the region
+    where a mode of linear theory grows; a dashed line bounds the region of steady sliding.
 
     Parameters
     ----------
     found : xarray.Dataset
-        What `squeal_survey` returned for a grid of two parameters.
+        Result of `squeal_survey` for a grid of two parameters.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def squeal_map(found: xr.Dataset) -> Figure:
     Raises
     ------
     ValueError
-        If it is no survey over two parameters of at least 2 values each.
+        If it is not a survey over two parameters of at least 2 values each.
     """
     instance("found", found, xr.Dataset)
     if any(name not in found for name in NEEDED) or found["verdict"].ndim != 2 or min(found["verdict"].shape) < 2:
@@ -100,7 +100,7 @@ def strongest_tones(found: xr.Dataset) -> Array:
 
 
 def _quiet(found: xr.Dataset) -> Array:
-    """Return the number in `QUIET` of each point, as if none vibrated."""
+    """Return the number in `QUIET` of each point, regardless of vibration."""
     verdict, fates = found["verdict"].values.astype(str), found["fate"].values.astype(str)
     words = list(QUIET)
     quiet = np.full(verdict.shape, words.index("no steady sliding"))
@@ -130,7 +130,7 @@ def _rgb(colour: str) -> tuple[float, ...]:
 
 
 def _scale(tones: Array) -> Normalize | None:
-    """Return how frequencies become colours, by their ratios where they differ much; None if there are none."""
+    """Return the colour scale of frequencies, logarithmic over a wide range; None if there are none."""
     known = tones[np.isfinite(tones)]
     if not known.size:
         return None
@@ -145,7 +145,7 @@ def _write_numbers(axes: Axes, living: Array, shade: Array, x: Array, y: Array) 
 
 
 def _draw_bounds(axes: Axes, verdict: Array, x: Array, y: Array) -> list[Line2D]:
-    """Draw what linear theory says, and return the handles of the legend."""
+    """Draw the bounds of linear theory, and return the handles of the legend."""
     slides, grows = np.isin(verdict, LINEAR), verdict == "unstable"
     handles = []
     if grows.any():

@@ -35,13 +35,13 @@ QUANTITIES = ("pressure", "slip_velocity", "shear", "status")
 NEEDED = ("pressure", "slip_velocity", "shear", "status_share", "place", "area")
 COLOURS = "viridis"
 SLOWDOWN = 1000.0
-# Sides of triangles beyond this share of the usual one bridge what is no part of the face.
+# Triangles with a side longer than this multiple of the median bridge gaps in the face.
 BRIDGE = 3.0
 # Cosine of the angle opposite to a side at the edge, below which a triangle is flat.
 FLAT = -0.85
-# Share of the largest moment of area by which two must differ for their axes to be known.
+# Difference of two moments of area, as a share of the largest, below which their axes are arbitrary.
 ALIKE = 1e-6
-# Cosine from which an axis of the face is one of the world.
+# Cosine above which an axis of the face counts as an axis of the world.
 ALONG = 1.0 - 1e-9
 
 
@@ -55,22 +55,23 @@ def surface(
 ) -> Figure:
     """Draw a quantity over a face in contact, in the plane of the face.
 
-    Colours are linear between the points of the face, which are marked. Both axes are principal axes of the face, those
-    of the world where it has none of its own. Of a face that is not flat one sees what is projected on its mean plane.
+    Colours are interpolated linearly between the points of the face, which are marked. Both axes are principal axes of
+    the face, or those nearest to the world's where principal axes are arbitrary. A face that is not flat is projected
+    on its mean plane.
 
     Parameters
     ----------
     found : xarray.Dataset
-        What `analysis.surface` returned.
+        Result of `analysis.surface`.
     quantity : str, optional
-        ``pressure``, ``slip_velocity`` or ``shear``, of these the size; ``status`` draws the shares of time that the
-        points are separated, stick and slide.
+        ``pressure``, or the magnitude of ``slip_velocity`` or ``shear``; ``status`` draws the shares of time in which
+        the points are separated, stick and slide.
     time : float, optional
-        Show the sample interval that holds this time [s].
+        Show the sample interval that contains this time [s].
     span : tuple of float, optional
-        Show the mean from one time to another [s]; over all of it if neither is given.
+        Show the mean from one time to another [s]; without `time` or `span`, the mean over the whole record.
     title : str, optional
-        Title of the figure; the name of the surface and the time if left out.
+        Title of the figure; if left out, the name of the surface and the time.
 
     Returns
     -------
@@ -80,7 +81,7 @@ def surface(
     Raises
     ------
     ValueError
-        If it is no face, or nothing of it was recorded then.
+        If it is not a recorded face, or has no sample at that time.
     """
     choice("quantity", quantity, QUANTITIES)
     found = _over_time(found, quantity)
@@ -104,35 +105,35 @@ def animate_surface(
     title: str | None = None,
     progress: Callable[[int, int], None] = still,
 ) -> Film:
-    """Film a quantity over a face in contact in slow motion, each frame the mean of its time.
+    """Film a quantity over a face in contact in slow motion, each frame a mean over its duration.
 
     Parameters
     ----------
     found : xarray.Dataset
-        What `analysis.surface` returned.
+        Result of `analysis.surface`.
     out : str or Path
-        The file, ``.mp4`` or ``.gif``, written whole or not at all. MP4 takes an encoder, as for `animate`.
+        The file, ``.mp4`` or ``.gif``, written whole or not at all. MP4 requires an encoder, as for `animate`.
     quantity : str, optional
         As for `surface`.
     span : tuple of float, optional
-        Start and end of what is shown [s]; all of it if left out.
+        Start and end [s]; if left out, the whole record.
     slowdown : float, optional
-        How much slower than life; made a whole number of samples for each frame.
+        Slow-motion factor, adjusted to a whole number of samples for each frame.
     title : str, optional
-        Title of the film; the name of the surface if left out.
+        Title of the film; if left out, the name of the surface.
     progress : callable, optional
-        Told the number of each frame drawn, and of how many.
+        Called after each frame with its number and the number of frames.
 
     Returns
     -------
     Film
-        What was written.
+        Properties of the film written.
 
     Raises
     ------
     ValueError
-        If it is no face, nothing of it was recorded then, frames are too few or too many, or there is no encoder for
-        the file.
+        If it is not a recorded face, the span has no sample, frames are too few or too many, or there is no encoder
+        for the file.
     OSError
         If the file cannot be written.
     """
@@ -164,7 +165,7 @@ def animate_surface(
 
 @dataclass(frozen=True)
 class _Face:
-    """The points of a face in its own plane, [m]."""
+    """Points of a face in its own plane [m]."""
 
     triangles: Triangulation
     labels: tuple[str, str]
@@ -207,7 +208,7 @@ class _Maps:
 
 
 class _FilmOfMaps:
-    """Maps that are drawn frame by frame."""
+    """Maps drawn frame by frame."""
 
     def __init__(self, maps: _Maps, values: list[Array], start: float, frame: float, words: str) -> None:
         self.figure, self.frames = maps.figure, len(values[0])
@@ -225,17 +226,17 @@ class _FilmOfMaps:
 
 
 def _over_time(found: xr.Dataset, quantity: str) -> xr.Dataset:
-    """Return what is drawn of a face over ``time``, whatever rate it has."""
+    """Return the drawn variables of a face over ``time``, from either sample rate."""
     instance("found", found, xr.Dataset)
     if any(name not in found for name in NEEDED):
-        raise ArgumentError("found", "be what analysis.surface returned, with at least one sample", found)
+        raise ArgumentError("found", "be the result of analysis.surface, with at least one sample", found)
     shown = found[["status_share" if quantity == "status" else quantity, "place", "area"]]
     return shown.rename(map_time="time") if "map_time" in shown.dims else shown
 
 
 def _face(found: xr.Dataset) -> _Face:
     if not found.sizes.get("time"):
-        raise ArgumentError("found", "be what analysis.surface returned, with at least one sample", found)
+        raise ArgumentError("found", "be the result of analysis.surface, with at least one sample", found)
     places, areas = found["place"].values, found["area"].values
     if len(places) < 3:
         raise ArgumentError("found", "have at least 3 points", found, got=len(places))
@@ -258,7 +259,7 @@ def _axes(places: Array, areas: Array) -> Array:
     moments, ways = np.linalg.eigh((apart * areas[:, None]).T @ apart)
     first, second, normal = ways[:, 2], ways[:, 1], ways[:, 0]
     if moments[2] - moments[1] < ALIKE * moments[2]:
-        # Any two would do: those nearest to the world's.
+        # Principal axes are arbitrary: take those nearest to the world's.
         world = np.eye(3)[int(np.abs(normal).argmin())]
         first = world - (world @ normal) * normal
         first /= np.linalg.norm(first)
@@ -267,7 +268,7 @@ def _axes(places: Array, areas: Array) -> Array:
 
 
 def _mask_bridges(triangles: Triangulation) -> None:
-    """Leave out triangles that bridge what is no part of the face: far longer than usual, or flat ones at its edge."""
+    """Leave out triangles that bridge gaps in the face: far longer than usual, or flat ones at its edge."""
     corners = np.stack([triangles.x, triangles.y], axis=1)[triangles.triangles]
     following = np.roll(corners, -1, axis=1) - corners
     sides = np.linalg.norm(following, axis=2)
@@ -280,12 +281,12 @@ def _mask_bridges(triangles: Triangulation) -> None:
     while before is None or (mask != before).any():
         before = mask
         triangles.set_mask(mask)
-        # What is left out leaves others at the edge.
+        # Each removal exposes others at the edge.
         mask = mask | (is_flat & (triangles.neighbors < 0)).any(axis=1)
 
 
 def _chosen(found: xr.Dataset, time: float | None, span: tuple[float, float] | None) -> tuple[xr.Dataset, str]:
-    """Return the samples of a time or a span, all of them without, and what they are in words."""
+    """Return the samples of a time or a span, by default all, and a description of them."""
     times = found["time"].values
     if time is not None and span is not None:
         raise ArgumentError("time", "be left out with a span", time)
@@ -312,7 +313,7 @@ def _ends(span: Any) -> tuple[float, float]:
 
 
 def _maps(found: xr.Dataset, quantity: str) -> list[tuple[str, Array]]:
-    """Return the maps of a quantity: their words, and their values over time and points."""
+    """Return the maps of a quantity: their labels, and their values over time and points."""
     if quantity == "status":
         share = found["status_share"].values
         return [(word, share[..., k]) for k, word in enumerate(STATUS_WORDS)]

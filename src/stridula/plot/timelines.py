@@ -1,4 +1,4 @@
-"""Records over time."""
+"""Figures of records over time."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ from ..records.variables import STATUS_WORDS
 from .colours import LINES, STATUS_COLOURS
 
 COLUMNS = 1600
-# Variation of a force, as a share of it, below which it counts as steady.
+# Relative variation of a force below which it counts as steady.
 STEADY = 1e-3
 
 
 def timeline(
     run: xr.Dataset, variables: Sequence[str], span: tuple[float, float] | None = None, title: str | None = None
 ) -> Figure:
-    """Draw recorded variables under each other over one time axis.
+    """Draw recorded variables in panels over one time axis.
 
-    A ``status`` is drawn as a ribbon: at every instant its height is shared among the three states. Of several contacts
-    each is a line, and has its own ribbon. The points of a surface are one: forces add up, and of all else there is the
-    mean.
+    A ``status`` is drawn as a ribbon whose height is divided among the three states at every instant. Each of several
+    contacts has its own line and ribbon. The points of a surface are drawn as one contact, with the sum of the forces
+    and the mean of other variables.
 
     Parameters
     ----------
     run : xarray.Dataset
         A record of `simulate`.
     variables : sequence of str
-        Names of variables over time; of one with several contacts or probes, each is a line with a legend.
+        Names of variables over time; each of several contacts or probes has its own line in the legend.
     span : tuple of float, optional
-        Start and end of the time axis [s]; the whole run if left out.
+        Start and end of the time axis [s]; if left out, the whole run.
     title : str, optional
-        Title of the figure; the run's own if left out.
+        Title of the figure; if left out, that of the run.
 
     Returns
     -------
@@ -102,7 +102,7 @@ def draw_line(axes: Axes, run: xr.Dataset, name: str) -> None:
 
 
 def _labels(variable: xr.DataArray) -> list[str]:
-    """Return what to call each line of a variable with more dimensions than time."""
+    """Return a label for each line of a variable with more dimensions than time."""
     named = [variable[dimension].values if dimension in variable.coords else None for dimension in variable.dims[1:]]
     sizes = variable.shape[1:]
     return [
@@ -122,7 +122,7 @@ def _unit(variable: xr.DataArray) -> str:
 
 
 def _draw(axes: Axes, time: Array, values: Array, colour: str, label: str) -> None:
-    """Draw a line, or where there are more samples than pixels the band from minimum to maximum of each column."""
+    """Draw a line or, with more samples than pixels, the band from minimum to maximum of each column."""
     if time.size <= 2 * COLUMNS:
         axes.plot(time, values, color=colour, linewidth=0.9, label=label)
         return
@@ -154,10 +154,10 @@ def draw_status(axes: Axes, run: xr.Dataset, name: str) -> None:
 
 
 def draw_contact(above: Axes, below: Axes, run: xr.Dataset) -> list[Line2D]:
-    """Draw forces and status under a film, and return the lines that say where in time it is.
+    """Draw forces and status under a film, and return the lines that mark the current time.
 
-    Of several contacts there are the forces of all together and the mean of their shares. Tangential forces in space,
-    which have directions of their own, are left out.
+    For several contacts, the total force and the mean shares are drawn. Tangential forces in space, which have
+    different directions, are left out.
     """
     names = [name for name in ("normal_force", "tangential_force") if "tangent" not in run[name].dims]
     lines = run[names].to_array("force_name").assign_attrs(units="N")
@@ -168,7 +168,7 @@ def draw_contact(above: Axes, below: Axes, run: xr.Dataset) -> list[Line2D]:
     lines["force_name"] = [one.removesuffix("_force") for one in names]
     draw_line(above, xr.Dataset({name: lines.transpose("time", "force_name")}), name)
     if np.ptp(lines.values) < STEADY * np.abs(lines.values).max():
-        # Magnified, what hardly varies has numbers that nobody reads.
+        # The automatic range would magnify a force that hardly varies and give illegible ticks.
         above.set_ylim(*sorted((0.0, 1.2 * float(lines.mean()))))
     shown = run[[]].assign(status_share=share)
     draw_status(below, shown, "status")

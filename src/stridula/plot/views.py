@@ -1,4 +1,4 @@
-"""Systems in space to turn, to zoom and to look into: pyvista lives here and nowhere else."""
+"""Interactive views of systems in space (the only module that uses pyvista)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..arrays import Array
 from ..cards import VIEW, eye_of
 from ..checks import STATUS_WORDS, positive
 from ..extras import named_extras
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..system import System
 from .colours import STATUS_COLOURS
 from .mode_films import motion_of_mode, over_largest, shapes_of_mode
@@ -24,9 +24,9 @@ from .space_films import exaggeration_of
 
 # Colour of bodies at rest, and sizes of a contact point and of words, in pixels.
 PALE, POINT, WORDS = "#b9c4cc", 14, 10
-# Shares of the light that comes from everywhere and of that from the eye, together no more than white.
+# Shares of ambient light and of light from the eye, with a sum below white.
 AMBIENT, DIFFUSE = 0.3, 0.65
-# Where the bar of colours is, in shares of the window; its title is cut off nearer to the edge.
+# Place of the colour bar, in shares of the window; nearer to the edge, its title is cut off.
 BAR = {"vertical": True, "position_x": 0.86, "position_y": 0.25, "width": 0.06, "height": 0.5, "title_font_size": 16}
 
 
@@ -42,10 +42,10 @@ def view(
     step: float | None = None,
     sample_rate: float = SAMPLE_RATE,
 ) -> Any:
-    """Show a system in space in a window, or in a notebook, to be turned and looked into.
+    """Show a system in space in an interactive window or notebook.
 
-    Without a duration its bodies are at rest, with the contact points. With one a slider goes through the window of
-    time, and so do the keys Right and Left, with the same motion, colours and scales as in the film of `animate`.
+    Without a duration, the bodies are shown at rest with the contact points. With a duration, a slider and the keys
+    Right and Left step through the window of time, with the same motion, colours and scales as the film of `animate`.
 
     Parameters
     ----------
@@ -54,24 +54,24 @@ def view(
     start : float, optional
         Start of the window of time [s].
     duration : float, optional
-        Its duration [s]; bodies are at rest if left out.
+        Duration of the window [s]; if left out, bodies are at rest.
     slowdown : float, optional
-        How much slower than life frames follow each other 25 times a second; says how many there are.
+        Slow-motion factor at 25 frames a second, which sets the number of frames.
     exaggeration : float, optional
-        How many times larger than life the vibration is drawn; what brings it near 4 % of their extent if left out.
+        Factor by which the vibration is drawn larger; if left out, the vibration is drawn near 4 % of the extent.
     view : tuple of float, optional
-        Elevation of the eye at first above the plane across y, and its azimuth from z towards x [rad].
+        Initial elevation of the eye above the plane across y, and its azimuth from z towards x [rad].
     scheme : ExactModal or CentralDifference, optional
-        Time scheme, the exact modal one if left out.
+        Time scheme; if left out, the exact modal one.
     step : float, optional
-        Time step [s], that of `simulate` at `sample_rate` if left out.
+        Time step [s]; if left out, that of `simulate` at `sample_rate`.
     sample_rate : float, optional
-        Sample rate [Hz] of the run that is shown, of no effect where a step is given.
+        Sample rate [Hz] of the run shown; no effect with a given `step`.
 
     Returns
     -------
     pyvista.Plotter
-        Call its ``show()``; ``screenshot("view.png")`` where it was made with ``pyvista.OFF_SCREEN = True``.
+        Call its ``show()``, or ``screenshot("view.png")`` if ``pyvista.OFF_SCREEN = True`` was set before.
 
     Raises
     ------
@@ -106,23 +106,23 @@ def view(
 
 
 def view_mode(system: System, theory: xr.Dataset, number: int, *, view: tuple[float, float] = VIEW) -> Any:
-    """Show one period of a mode of linear theory in a window, or in a notebook, as `animate_mode` films it.
+    """Show one period of a mode of linear theory in a window or notebook, as filmed by `animate_mode`.
 
     Parameters
     ----------
     system : System
         A system with a `SolidBody` or an `AxisymmetricBody`.
     theory : xarray.Dataset
-        What `sliding_stability` returned for the system.
+        Result of `sliding_stability` for the system.
     number : int
         Number of the mode, from 0.
     view : tuple of float, optional
-        Elevation of the eye at first above the plane across y, and its azimuth from z towards x [rad].
+        Initial elevation of the eye above the plane across y, and its azimuth from z towards x [rad].
 
     Returns
     -------
     pyvista.Plotter
-        Call its ``show()``; a slider and the keys Right and Left go through the period.
+        Call its ``show()``; a slider and the keys Right and Left step through the period.
 
     Raises
     ------
@@ -147,7 +147,7 @@ def view_mode(system: System, theory: xr.Dataset, number: int, *, view: tuple[fl
 
 
 class _Frames:
-    """What a plotter shows, frame by frame."""
+    """Contents of a plotter, frame by frame."""
 
     def __init__(
         self,
@@ -238,7 +238,7 @@ def _mesh(one: ShownBody, places: Array) -> Any:
 
 
 def _show_points(plotter: Any, name: str, places: Array, colour: str) -> None:
-    """Show points as small balls, or none of the name where there are none."""
+    """Show points as small balls, or remove those of this name if there are none."""
     if len(places):
         plotter.add_points(places, color=colour, point_size=POINT, render_points_as_spheres=True, name=name)
     else:

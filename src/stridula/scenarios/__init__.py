@@ -1,4 +1,4 @@
-"""Ready cases as TOML, in the same words as the Python API, and their loader."""
+"""Shipped scenarios as TOML, with the names of the Python API, and their loader."""
 
 from __future__ import annotations
 
@@ -19,5 +19,5 @@ __all__ = [*_HOME]
 
 
 def __getattr__(name: str) -> Any:
-    """Import a name from its home on first use, so that a list of cases needs no compiler."""
+    """Import a name from its module on first use, so that a list of cases needs no compiler."""
     return on_first_use(__name__, _HOME, name)

@@ -1,4 +1,4 @@
-"""Checked tables become a system: the dataclasses of the Python API."""
+"""Build a system, the dataclasses of the Python API, from checked tables."""
 
 from __future__ import annotations
 
@@ -67,15 +67,15 @@ STIFFNESS: dict[str, Callable[..., Any]] = {kind.kind: kind for kind in STIFFNES
 CONNECTIONS: dict[str, Callable[..., Any]] = {connection.kind: connection for connection in connections.CONNECTIONS}
 Tables = dict[str, Any]
 Place = tuple[str | int, ...]
-# How a value that another problem left out looks.
+# Representation of a value left out because of another problem.
 NOTHING = repr(None)
-# Arguments that are keys of a table, or two of them.
+# Arguments that are keys of a table, or a pair of them.
 _KEY = re.compile(r"[a-z_]\w*(?:\.\w+|\[(?:\d+|'[^']*')\])*(?: and \w+)?")
 _ENTRY = re.compile(r"\[(?:(\d+)|'([^']*)')\]")
 
 
 class Builder:
-    """Builds a system and its probes from tables, and gathers every problem on the way.
+    """Builder of a system and its probes from tables, which collects every problem on the way.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ class Builder:
         return tuple(probes)
 
     def contact_solve(self) -> GaussSeidel | None:
-        """Return how several contacts are solved together, None for the default."""
+        """Return the solver of several contacts, None for the default."""
         table = self.tables["simulation"].get("contact_solve")
         if table is None:
             return None
@@ -150,7 +150,7 @@ class Builder:
         built = {name: self._body(name, dict(table), used) for name, table in tables.items()}
         self._stop_at_problems()
         bodies = list(built.values())
-        # Bodies that are equal are told apart by their names in the file.
+        # Equal bodies are distinguished by their names in the file.
         built = {k: replace(b, name=k) if not b.name and bodies.count(b) > 1 else b for k, b in built.items()}
         aliases = {body.name: name for name, body in built.items() if body.name}
         aliases |= {"slider": used[0]}
@@ -191,7 +191,7 @@ class Builder:
         return list(dict.fromkeys(named.values()))
 
     def _touching(self) -> Iterator[tuple[Place, Tables]]:
-        """Go through the tables of contacts, then through those of surfaces."""
+        """Yield the tables of contacts, then those of surfaces."""
         for key in TOUCHING:
             for number, table in enumerate(self.tables.get(key) or []):
                 yield (key, number), table
@@ -233,7 +233,7 @@ class Builder:
         return self._beam(path, FiniteElementBeam if kind == "finite-element beam" else ModalBeam, table)
 
     def _default_name(self, name: str, used: list[str]) -> str:
-        """Return what a body is called that has no name of its own, so that records can leave it without one."""
+        """Return the default name of a body without its own, so that records can leave it unnamed."""
         if name == used[0]:
             return "slider"
         return "track" if name == self._first_track.get("body") else f"body {used.index(name) + 1}"
@@ -284,7 +284,7 @@ class Builder:
             return ModalPlate(material, **table)
 
     def _friction(self, path: Place, table: Tables) -> dict[str, Any]:
-        """Take the law of friction out of the table of a contact, if it has one."""
+        """Remove the friction from the table of a contact, and return it built."""
         given = dict(table.pop("friction", None) or {})
         if not given:
             return {}
@@ -293,7 +293,7 @@ class Builder:
         return {}
 
     def _stiffness(self, path: Place, table: Tables) -> dict[str, Any]:
-        """Take the stiffness of a contact out of its table, if it has one."""
+        """Remove the stiffness from the table of a contact, and return it built."""
         given = table.pop("stiffness", None)
         if not isinstance(given, dict):
             return {} if given is None else {"stiffness": given}
@@ -329,7 +329,7 @@ class Builder:
                 raise (error.renamed("track.face") if error.argument == "track_face" else error) from None
 
     def _body_of_kind(self, path: Place, name: str, kind: str) -> Any:
-        """Return the body of a name, None with a problem where it is of another kind."""
+        """Return the body with this name, or None and record a problem if it is of another kind."""
         body = self.bodies[name]
         if body.kind == kind:
             return body
@@ -400,7 +400,7 @@ class Builder:
             return made(*where, **table)
 
     def _acted_on(self, path: Place, place: str, body: Any, table: Tables) -> tuple[Any, ...]:
-        """Return what a drive acts on, its first argument: nothing if that is the whole system."""
+        """Return the point or body that a drive acts on, its first argument; nothing if it acts on the whole system."""
         if place == "point":
             return (self._point((*path, "point"), body, table.pop("point", None), "root"),)
         if place == "root":
@@ -446,12 +446,12 @@ class Builder:
         return self.bodies.get(name)
 
     def _point(self, path: Place, body: Any, place: Any, end: str = "") -> Any:
-        """Return a point of a body; without a place the `end` of a slider, the centre or the only point."""
+        """Return a point of a body; by default the `end` of a slider, the centre or the only point."""
         if body is None:
             return None
         names = body.point_names
         if place is None and not names:
-            self.problems.append(f"{self.words(path)} must be given: a position, as it has no points with names")
+            self.problems.append(f"{self.words(path)} must be given: a position, as the body has no named points")
             return None
         if place is None and len(names) > 1 and body.has_positions:
             place = end if end in names else names[0]
@@ -484,7 +484,7 @@ class Builder:
 
     @contextmanager
     def _within(self, *path: str | int) -> Iterator[None]:
-        """Keep a ValueError as a problem, its argument named by the full key; what follows from others is no news."""
+        """Record a ValueError as a problem under its full key, unless it results from an earlier problem."""
         known = len(self.problems)
         try:
             yield
@@ -511,12 +511,12 @@ class Builder:
 
 
 def out_of_range(key: str) -> str:
-    """Return the problem of a table whose modes cannot be held in floating-point numbers."""
+    """Return the problem of a table whose modes overflow floating-point numbers."""
     return f"{key or 'scenario'} must hold numbers of ordinary size: its modes overflow"
 
 
 def _damping(table: Tables) -> Tables:
-    """Return the damping of a body's table, its law of frequency built; nothing if that is not given by a law."""
+    """Return the damping law of a body's table, built; nothing if the damping is not a law."""
     given = table.get("damping")
     if not isinstance(given, dict):
         return {}

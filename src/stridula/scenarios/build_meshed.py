@@ -1,4 +1,4 @@
-"""Checked tables of bodies of revolution and of bodies meshed in space become their dataclasses."""
+"""Build bodies of revolution and bodies meshed in space from checked tables."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from ..disk import named
 from .fields import holds_tables
 
 Tables = dict[str, Any]
-# Keeps what is wrong as a problem of the key with this ending.
+# Records errors as problems of the key with this ending.
 Within = Callable[..., AbstractContextManager[None]]
-# The least number above 0: a rectangle has an area.
+# Smallest positive number: a rectangle must have an area.
 TINY = math.ulp(0.0)
-# What profiles call what they are made of.
+# Names of the outline in errors of profiles.
 OUTLINES = ("rectangles", "points and thickness")
-# What the description of a made-up mesh is called in Python, by its shape.
+# Constructors of generated meshes, by shape.
 MADE: dict[str, Callable[..., SolidMesh]] = {
     "block": SolidMesh.block,
     "sector": SolidMesh.sector,
@@ -39,14 +39,14 @@ MADE: dict[str, Callable[..., SolidMesh]] = {
 
 
 def axisymmetric_body(table: Tables, within: Within) -> AxisymmetricBody | None:
-    """Return a body of revolution, None where there is a problem.
+    """Return a body of revolution, or None if there is a problem.
 
     Parameters
     ----------
     table : dict
-        Its table, without the kind, its damping built.
+        Its table, without the kind and with its damping built.
     within : callable
-        Takes the end of a key; in what it returns errors become problems of that key.
+        Function of the end of a key that returns a context manager, which records errors as problems of that key.
     """
     profile: Profile | None = None
     with within("profile"):
@@ -65,7 +65,7 @@ def axisymmetric_body(table: Tables, within: Within) -> AxisymmetricBody | None:
 
 
 def solid_body(table: Tables, within: Within) -> SolidBody | None:
-    """Return a body meshed in space, None where there is a problem; the parameters are those of `axisymmetric_body`."""
+    """Return a body meshed in space, or None if there is a problem; parameters as for `axisymmetric_body`."""
     mesh: SolidMesh | None = None
     with within("mesh"):
         mesh = _mesh(table.pop("mesh"))
@@ -101,7 +101,7 @@ def _revolved(profile: Profile, material: Any, **table: Any) -> AxisymmetricBody
     try:
         return AxisymmetricBody(profile, material, **table)
     except ArgumentError as error:
-        # What is divided into cells is the profile.
+        # The profile is divided into cells.
         if error.argument == "size":
             raise error.renamed("profile.size") from None
         raise error.renamed("profile") if error.argument in OUTLINES else error from None
@@ -117,7 +117,7 @@ def _held(given: Tables, within: Within, number: int) -> Held | None:
 
 
 def _box(sides: Tables, least: float = 0.0) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the ranges of r and z, each at least so long."""
+    """Return the ranges of r and z, each at least `least` long."""
     for high, low in (("outer", "inner"), ("top", "bottom")):
         if sides[high] - sides[low] < least:
             words = f"{'be above' if least else 'not be below'} {low}, {sides[low]:.6g} m"
@@ -137,7 +137,7 @@ def _mesh(given: Tables) -> SolidMesh:
 
 
 def _read(read: Callable[..., Any], table: Tables) -> Any:
-    """Return what a file holds; what is wrong in it names the file."""
+    """Return the contents of a file; errors in it name the file."""
     file = table.pop("file")
     try:
         return read(file, **table)
@@ -148,7 +148,7 @@ def _read(read: Callable[..., Any], table: Tables) -> Any:
 
 
 def _materials(key: str, table: Tables, within: Within) -> Any:
-    """Take the material of a body, or that of each of its parts by name, out of its table."""
+    """Remove the material of a body, or the materials of its parts by name, from its table and return it built."""
     given = table.pop(key)
     with within(key):
         if holds_tables(given):

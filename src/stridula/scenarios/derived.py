@@ -1,4 +1,4 @@
-"""Tables of a scenario file that follow from the dataclasses they make."""
+"""Tables of a scenario file derived from the dataclasses that they describe."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from pydantic import Field, create_model
 from ..declared import Choice, Declared, Each, Text, declared, texts
 from .fields import Table, read_as
 
-# Type, default (... if it must be given) and text by key.
+# Type, default (... if required) and description by key.
 Keys = Mapping[str, tuple[Any, Any, str]]
 
 
 class Derived(Table):
-    """A table whose keys are the declared fields of a dataclass, beside one that says which dataclass it is."""
+    """A table whose keys are the declared fields of a dataclass, plus a tag that selects the dataclass."""
 
     made: ClassVar[type]
     own_texts: ClassVar[Mapping[str, str]]
@@ -48,14 +48,14 @@ def table_of(
     description : type
         The dataclass.
     tag, word, text : str, optional
-        The key that tells tables of several kinds apart, its value for this one, and what it is; empty where there is
-        one kind only.
+        Key that distinguishes several kinds of tables, its value for this kind, and its description; empty if there
+        is only one kind.
     title : str, optional
-        What the schema calls it, as the dataclass if left out.
+        Title in the schema, by default the name of the dataclass.
     is_usual : bool, optional
-        Whether this is the kind of a table that does not say.
+        Whether this is the kind of a table without the tag.
     before, after : mapping, optional
-        Type, default and text of other keys, before and after the declared fields.
+        Type, default and description of other keys, before and after the declared fields.
     """
     before, after = before or {}, after or {}
     keys: dict[str, Any] = {tag: (Literal[word], word if is_usual else ...)} if tag else {}
@@ -72,12 +72,12 @@ def table_of(
 
 
 def one_of(tag: str, tables: Iterable[type[Table]]) -> Any:
-    """Return the type of a table that is of one of several kinds, as its `tag` says."""
+    """Return the type of a table of one of several kinds, selected by its `tag`."""
     return Annotated[reduce(or_, tables), Field(discriminator=tag)]
 
 
 def _read(field: Declared) -> Any:
-    """Return the kind of a declared field, as tables read it."""
+    """Return the type of a declared field in a table."""
     kind = _typed(field.kind)
     return kind | None if field.is_optional else kind
 

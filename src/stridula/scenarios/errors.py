@@ -1,4 +1,4 @@
-"""What is wrong with a scenario, in words that name the key, the value and what is allowed."""
+"""Problems of a scenario, as messages that name the key, the value and the allowed values."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from . import outline
 from .outline import Path
 from .schema import GENERAL, PAIR, TOUCHING
 
-# Problems that are told one by one; the rest is counted.
+# Problems listed one by one; the rest is counted.
 MOST_PROBLEMS = 20
-# Longest text of all of them together, and of one.
+# Greatest length of the whole text, and of one problem.
 LONGEST_TEXT, LONGEST_LINE = 1800, 500
 # Bodies, contacts, connections or drives of one scenario.
 MOST_TABLES = 1000
 
 
 class ScenarioError(ValueError):
-    """A scenario that cannot be used; the first 20 problems are in `problems`, one line each, and how many are left.
+    """An invalid scenario; `problems` holds the first 20 problems, one line each, and the number of others.
 
     Parameters
     ----------
     problems : sequence of str
-        What is wrong.
+        Messages.
     others : int, optional
-        How many more problems there are that have no words.
+        Number of further problems without messages.
     """
 
     def __init__(self, problems: Sequence[str], others: int = 0) -> None:
@@ -52,19 +52,19 @@ def _counted(others: int) -> tuple[str, ...]:
 
 
 def _fitting(lines: Sequence[str]) -> Sequence[str]:
-    """Return as many lines as make a text that can be read, one at least."""
+    """Return as many lines as fit into a readable text, at least one."""
     ends = accumulate(len(line) + 2 for line in lines)
     return lines[: max(1, sum(end <= LONGEST_TEXT for end in ends))]
 
 
 def explain(error: ValidationError, tables: dict[str, Any], written: dict[str, Any]) -> list[str]:
-    """Return the first errors of validated `tables` in words, with the keys as they were `written` before sharing."""
+    """Return messages for the first errors of validated `tables`, with the keys as `written` before sharing."""
     details = error.errors(include_url=False)[: MOST_PROBLEMS + 1]
     return [_line(dict(one), tables, written) for one in details]
 
 
 def wrong_form(tables: dict[str, Any]) -> list[str]:
-    """Return what lacks for a pair of beams or for bodies in contacts, and what does not go together.
+    """Return the problems of form: keys missing for a pair of beams or for bodies in contacts, and excluded keys.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def wrong_form(tables: dict[str, Any]) -> list[str]:
     if is_general and isinstance(tables.get("bodies"), dict) and not outline.beams(tables):
         shared = [key for key in outline.SHARED if key in tables]
         problems += [
-            f"{key} must stand in a body, got one at the top, where only beams and plates take it from"
+            f"{key} must be set in a body, got one at the top level, which applies to beams and plates only"
             for key in shared
         ]
     for key in (*GENERAL, "connections", "drives"):
@@ -96,12 +96,12 @@ def wrong_form(tables: dict[str, Any]) -> list[str]:
 
 
 def as_written(path: Path, written: dict[str, Any]) -> str:
-    """Return a key as text; one that a body or a contact takes from what stands at the top loses its name."""
+    """Return a key as text, without the name of a body or contact that takes the value from the top level."""
     sharers = (*outline.beams(written), *outline.contacts(written))
     body = next((one for one in sharers if path[: len(one)] == one), path)
     shared = path[len(body) :]
     is_shared = bool(shared) and shared[0] in (*outline.SHARED, *outline.SHARED_BY_CONTACTS)
-    # A key that is not there belongs to the table in which it is missed.
+    # A missing key belongs to the table in which it is missing.
     for length in range(len(shared), 0, -1) if is_shared else ():
         if outline.look_up(written, (*body, *shared[:length])) is not None:
             break
@@ -115,11 +115,11 @@ def _dotted(path: Path) -> str:
 
 
 def shown(value: Any) -> str:
-    """Return a value as it goes into a message, cut if it is long."""
+    """Return a value as text for a message, truncated if long."""
     try:
         text = repr(value)
     except ValueError:
-        # A whole number of 5000 digits has no text.
+        # An integer of 5000 digits cannot be converted to text.
         return f"a {type(value).__name__}"
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
 
@@ -151,7 +151,7 @@ def _line(error: dict[str, Any], tables: dict[str, Any], written: dict[str, Any]
 
 
 def _elsewhere(name: str | int, tables: dict[str, Any]) -> str:
-    """Return the nearest key of any table."""
+    """Return a suggestion of the nearest key of any table."""
     places = {str(place[-1]): ".".join(map(str, place)) for place, _ in outline.paths(tables)}
     near = get_close_matches(str(name), places, n=1, cutoff=0.6) if len(str(name)) <= LONGEST else []
     return f"; did you mean {places[near[0]]!r}?" if near else ""

@@ -1,4 +1,4 @@
-"""Kinds of values in scenario tables: checked when read, described in the JSON schema."""
+"""Types of values in scenario tables: checked when read, described in the JSON schema."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ from .quantities import UNITS, is_quantity, quantity
 
 
 class Table(BaseModel):
-    """A table that knows its keys; the text under each is its description."""
+    """A table with a fixed set of keys; the string below each key is its description."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     @classmethod
     def descriptions(cls) -> dict[str, str]:
-        """Return the text under each key.
+        """Return the description of each key.
 
-        Read when asked for: to take them into the fields costs more than to load a scenario.
+        Read on request: storing them in the fields costs more than loading a scenario.
         """
         own = [table for table in cls.__mro__[::-1] if issubclass(table, Table)]
         return {key: text for table in own for key, text in table._own_descriptions().items()}
@@ -57,7 +57,7 @@ class Table(BaseModel):
 
 @cache
 def _texts(module: str) -> dict[str, dict[str, str]]:
-    """Return the texts under the keys of each class in a module."""
+    """Return the descriptions below the keys of each class in a module."""
     tree = ast.parse(inspect.getsource(sys.modules[module]))
     return {node.name: _texts_in(node) for node in tree.body if isinstance(node, ast.ClassDef)}
 
@@ -72,7 +72,7 @@ def _texts_in(table: ast.ClassDef) -> dict[str, str]:
 
 
 class _Kind:
-    """A value read by `read`, which raises ArgumentError: the key and the value are told by who asks."""
+    """A value read by `read`, which raises ArgumentError; the caller adds the key and the value to the message."""
 
     def read(self, value: Any) -> Any:
         raise NotImplementedError
@@ -81,7 +81,7 @@ class _Kind:
         raise NotImplementedError
 
     def or_each(self) -> _Kind:
-        """Return what reads one of these, or a list of them."""
+        """Return the type of one such value or a list of them."""
         raise NotImplementedError
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -96,14 +96,14 @@ def _in_words(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
         try:
             return read(value)
         except ArgumentError as error:
-            # The words go in as a value: braces in them are no placeholders.
+            # Passed as a value, so that braces in it are not taken for placeholders.
             raise PydanticCustomError("words", "{words}", {"words": f"must {error.allowed}"}) from None
 
     return validate
 
 
 class Quantity(Number, _Kind):
-    """A number in a range, or a text with one and a unit.
+    """A number in a range, or a text with such a number and a unit.
 
     Attributes
     ----------
@@ -124,7 +124,7 @@ class Quantity(Number, _Kind):
 
 
 def pattern_of(unit: str) -> str:
-    """Return the pattern of the texts that stand for a number with an SI unit."""
+    """Return the pattern of texts that hold a number in a spelling of this SI unit."""
     return rf"^\s*[-+0-9.eE]+\s*({'|'.join(UNITS[unit])})?\s*$"
 
 
@@ -135,7 +135,7 @@ class OneOrEach(_Kind):
     Attributes
     ----------
     one : Quantity
-        What each is.
+        Type of each.
     """
 
     one: Quantity
@@ -155,7 +155,7 @@ class OneOrByName(_Kind):
     Attributes
     ----------
     one : Quantity
-        What each is.
+        Type of each.
     """
 
     one: Quantity
@@ -179,7 +179,7 @@ class DampingTable(_Kind):
     def read(self, value: Any) -> Any:
         form = value.get("form", Rayleigh.form)
         if form not in self.forms:
-            raise _refused(f"be of a form that is one of {', '.join(self.forms)}")
+            raise _refused(f"have a form that is one of {', '.join(self.forms)}")
         parameters = declared(self.forms[form])
         if value.keys() - {"form"} != {parameter.name for parameter in parameters}:
             names = " and ".join(parameter.name for parameter in parameters)
@@ -211,7 +211,7 @@ class DampingTable(_Kind):
 
 @singledispatch
 def read_as(kind: Any) -> _Kind:
-    """Return how a scenario gives what a field may be."""
+    """Return the type in scenario tables of a declared kind of field."""
     raise TypeError(f"no scenario can give {kind}")
 
 
@@ -260,12 +260,12 @@ LAW_OF_DAMPING = DampingTable()
 
 @dataclass(frozen=True)
 class RatioOrLaw(_Kind):
-    """One damping ratio, a list of one for each mode where that is allowed, or a law of damping.
+    """A damping ratio, a list with one for each mode where allowed, or a law of damping.
 
     Attributes
     ----------
     each : bool
-        Whether a list will do.
+        Whether a list is allowed.
     """
 
     each: bool
@@ -284,14 +284,14 @@ class RatioOrLaw(_Kind):
 
 @dataclass(frozen=True)
 class Words(_Kind):
-    """A word of a choice, or where allowed a list of them.
+    """A word of a choice, or a list of such words where allowed.
 
     Attributes
     ----------
     allowed : tuple of str
         The words.
     each : bool
-        Whether a list will do.
+        Whether a list is allowed.
     """
 
     allowed: tuple[str, ...]
@@ -318,7 +318,7 @@ class Whole(_Kind):
     Attributes
     ----------
     least : int
-        Smallest one allowed.
+        Smallest allowed number.
     """
 
     least: int
@@ -390,7 +390,7 @@ class Way(_Kind):
     Attributes
     ----------
     way : Way
-        As it is declared, with the words.
+        Declaration, with the allowed words.
     """
 
     way: declarations.Way
@@ -408,14 +408,14 @@ class Way(_Kind):
 
 @dataclass(frozen=True)
 class Row(_Kind):
-    """Some values in their order, such as the coordinates of a point.
+    """A fixed number of values in order, such as the coordinates of a point.
 
     Attributes
     ----------
     each : tuple of Quantity or Whole
-        What each is.
+        Types of the values.
     words : str
-        What they are, in words.
+        Description of the values, for messages.
     """
 
     each: tuple[Quantity | Whole, ...]
@@ -483,7 +483,7 @@ class Node(_Kind):
 
 @dataclass(frozen=True)
 class Fixed(_Kind):
-    """Groups of faces or nodes that are held: their names, or by name the directions in which they are."""
+    """Groups of faces or nodes that are held: their names, or the held directions by name."""
 
     def read(self, value: Any) -> Any:
         given = value.values() if isinstance(value, dict) else value
@@ -498,16 +498,16 @@ class Fixed(_Kind):
 
 @dataclass(frozen=True)
 class Numbers(_Kind):
-    """A list of numbers or a matrix, written out or packed; where allowed also one number, a law of damping, or a file.
+    """A list of numbers or a matrix, written out or packed; where allowed also a number, a law of damping or a file.
 
     Attributes
     ----------
     dimensions : tuple of int
-        Dimensions it may have: 0 for one number, 1 for a list, 2 for a matrix.
+        Allowed dimensions: 0 for one number, 1 for a list, 2 for a matrix.
     file : bool
         Whether a text may be the name of a file.
     damping : bool
-        Whether a law of damping will do.
+        Whether a law of damping is allowed.
     """
 
     dimensions: tuple[int, ...]
@@ -578,7 +578,7 @@ class Points(_Kind):
             return Numbers((2,)).read(point)
         except ArgumentError:
             raise _refused(
-                f"give the point {name} as rows on the degrees of freedom, shape (2, n) or (3, n), or by the degrees "
+                f"give the point {name} as rows over the degrees of freedom, shape (2, n) or (3, n), or by the degrees "
                 "of freedom that it moves with: {x = 0, y = 1}, or as a node or a place where files have them"
             ) from None
 
@@ -598,7 +598,7 @@ class Places(_Kind):
 
 @dataclass(frozen=True)
 class Motion(_Kind):
-    """How a translation moves the degrees of freedom: rows, or with labels the numbers of those along x, y and z."""
+    """Effect of a translation on the degrees of freedom: rows, or with labels the numbers of those along x, y and z."""
 
     def read(self, value: Any) -> Any:
         if isinstance(value, list) and len(value) in (2, 3) and all(map(_is_whole, value)):
@@ -609,7 +609,7 @@ class Motion(_Kind):
         return {"anyOf": [{"type": "array", "items": {"type": "integer"}}, *Numbers((2,)).json_schema()["anyOf"]]}
 
 
-# What unions without a key that tells them apart are told apart by; pydantic puts it into the paths of errors.
+# Tags of unions without a key that distinguishes them; pydantic puts them into the paths of errors.
 TEXT, ONE, BY_NAME = "a text", "one table", "tables by name"
 
 
@@ -619,7 +619,7 @@ def text_or(table: Any) -> Any:
 
 
 def one_or_by_name(table: Any) -> Any:
-    """Return the type of one table, or of one for each name."""
+    """Return the type of one table, or of tables by name."""
     several = Annotated[dict[str, table], Tag(BY_NAME)]
     return Annotated[Annotated[table, Tag(ONE)] | several, Discriminator(_one_or_by_name)]
 
@@ -642,7 +642,7 @@ def _refused(allowed: str) -> ArgumentError:
 
 
 def _array(value: Any) -> Array | None:
-    """Return lists of real numbers as an array of floats, None if they are no such thing."""
+    """Return lists of real numbers as an array of floats, None for anything else."""
     if not isinstance(value, (list, tuple, np.ndarray)):
         return None
     try:
@@ -709,5 +709,5 @@ MeshNode = Annotated[Any, Node()]
 FixedGroups = Annotated[Any, Fixed()]
 Directions = Annotated[Any, Words(DIRECTIONS, each=True)]
 
-# The unit of a number is told in the JSON schema by the spellings that its text may have.
+# In the JSON schema the unit of a number is identified by the allowed spellings of its text.
 UNIT_OF_PATTERN = {Quantity(unit).json_schema()["anyOf"][1]["pattern"]: unit for unit in UNITS}

@@ -1,4 +1,4 @@
-"""How scenario tables build on others: a base, and what all beams share."""
+"""Inheritance of scenario tables: from a base, and from values shared by all beams."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .outline import PLATES, SHARED, SHARED_BY_CONTACTS, TAGS, Path, beams, cont
 
 
 def merged(below: Any, above: Any) -> Any:
-    """Return `below` with what `above` says instead: tables key by key, all else replaced.
+    """Return `below` overridden by `above`: tables key by key, all other values replaced.
 
     A table of another kind (shape, law, kind) replaces the one below as a whole.
     """
@@ -21,7 +21,7 @@ def merged(below: Any, above: Any) -> Any:
 
 
 def shared_out(tables: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables with what beams, or contacts, share put into each, and each friction with its law."""
+    """Return the tables with values shared by beams or contacts copied into each, and each friction with its law."""
     shared = {key: tables[key] for key in SHARED if key in tables}
     full = {key: value for key, value in tables.items() if key not in (*SHARED, *SHARED_BY_CONTACTS)}
     for path in beams(full):
@@ -52,7 +52,7 @@ def spelled_out(tables: dict[str, Any]) -> dict[str, Any]:
 
 
 def _replace(tables: Any, path: Path, value: Any) -> None:
-    """Put a value at a path of `tables`, which keeps its identity while all on the way is copied."""
+    """Set a value at a path of `tables` in place, copying the nested tables on the way."""
     for part in path[:-1]:
         tables[part] = tables[part].copy()
         tables = tables[part]

@@ -16,15 +16,15 @@ from .schema import json_schema
 
 
 def overridden(tables: dict[str, Any], overrides: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
-    """Return the tables with values set by key, and what is wrong with keys that are not known or fit several places.
+    """Return the tables with values set by key, and the problems of keys that are unknown or ambiguous.
 
     Parameters
     ----------
     tables : dict
         The tables of a scenario, as in its file.
     overrides : mapping
-        From keys such as ``contact.friction.coefficient`` or ``coefficient`` to values; a text is read as TOML if it
-        can be.
+        Values by keys such as ``contact.friction.coefficient`` or ``coefficient``; a text is read as TOML if
+        possible.
 
     """
     changed, _, problems = located(tables, overrides)
@@ -32,14 +32,14 @@ def overridden(tables: dict[str, Any], overrides: Mapping[str, Any]) -> tuple[di
 
 
 def located(tables: dict[str, Any], overrides: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Path], list[str]]:
-    """Return the tables with values set by key, the path that each key means, and what is wrong with the others."""
+    """Return the tables with values set by key, the path of each valid key, and the problems of the others."""
     changed = copy.deepcopy(tables)
     places: dict[str, Path] = {}
     problems: list[str] = []
     for number, (key, value) in enumerate(overrides.items()):
         if len(problems) >= MOST_PROBLEMS - 1:
-            # Each takes a look at the whole outline.
-            problems.append(f"keys must be right before others are looked at, {len(overrides) - number} were not")
+            # Each problem requires a search of the whole outline.
+            problems.append(f"keys must be valid before others are checked, {len(overrides) - number} were not checked")
             break
         if key == "base":
             problems.append(f"base must be written in the file, it cannot be set by key, got {brief(value)}")
@@ -55,7 +55,7 @@ def located(tables: dict[str, Any], overrides: Mapping[str, Any]) -> tuple[dict[
 
 
 def with_values(tables: dict[str, Any], values: Iterable[tuple[Path, Any]]) -> dict[str, Any]:
-    """Return the tables with values set at paths that `located` found."""
+    """Return the tables with values set at paths returned by `located`."""
     changed = copy.deepcopy(tables)
     for path, value in values:
         _set(changed, path, copy.deepcopy(value))
@@ -63,20 +63,20 @@ def with_values(tables: dict[str, Any], values: Iterable[tuple[Path, Any]]) -> d
 
 
 def find(key: str, tables: dict[str, Any], is_table: bool = False) -> Path:
-    """Return the path that a key means; a table's key means its only number unless `is_table`."""
+    """Return the path of a key; the key of a table refers to its only number unless `is_table`."""
     asked = tuple(part.strip() for part in str(key).split("."))
     known = dict(outline.paths(tables))
     if "bodies" in tables and not outline.beams(tables):
-        # What beams share means nothing where there is none.
+        # Values shared by beams have no meaning without beams.
         known = {path: node for path, node in known.items() if path[0] not in outline.SHARED}
-    # A friction of all contacts is set where the scenario has one; else a key means that of a contact.
+    # The key of a friction refers to that of all contacts if the scenario has one, else to that of a contact.
     known = {
         path: node for path, node in known.items() if path[0] not in outline.SHARED_BY_CONTACTS or path[0] in tables
     }
     full = [path for path in known if _text(path) == asked]
     ending = [path for path in known if _text(path)[-len(asked) :] == asked]
     present = [path for path in ending if outline.look_up(tables, path) is not None]
-    # Of keys left out, those of tables that are there come first.
+    # Among keys left out, those in existing tables take precedence.
     beside = [path for path in ending if isinstance(outline.look_up(tables, path[:-1]), (dict, list))]
     candidates = full or present or beside or ending
     if not candidates:
@@ -110,13 +110,13 @@ def _set(tables: dict[str, Any], path: Path, value: Any) -> None:
             table[part] = {}
         table = table[part]
     if path[-1] in outline.TAGS and table.get(path[-1]) != value:
-        # A table of another kind starts afresh: the keys of the old kind mean nothing in it.
+        # A table of another kind starts empty: the keys of the old kind do not apply.
         table.clear()
     table[path[-1]] = value
 
 
 def _make_shared(tables: dict[str, Any], path: Path) -> None:
-    """Take a value that is set for all beams, or all contacts, out of each of them."""
+    """Remove a value that is set for all beams, or all contacts, from each of them."""
     of_contacts = path[0] in outline.SHARED_BY_CONTACTS
     if not of_contacts and path[0] not in outline.SHARED:
         return
@@ -128,7 +128,7 @@ def _make_shared(tables: dict[str, Any], path: Path) -> None:
 
 
 def plain_value(value: Any) -> Any:
-    """Return a text as the TOML value it stands for; what stands for none, or is no text, as itself."""
+    """Return the TOML value of a text; return anything else unchanged."""
     if not isinstance(value, str):
         return value
     text = value
@@ -139,7 +139,7 @@ def plain_value(value: Any) -> Any:
 
 
 def _of_named(asked: tuple[str, ...], known: list[Path], tables: dict[str, Any]) -> str:
-    """Return the nearest key of the contact or connection with the name that a key begins with, if there is one."""
+    """Return the nearest key of the contact or connection whose name a key begins with, or an empty text."""
     for path in known:
         if len(asked) > 1 and path[-1] == "name" and outline.look_up(tables, path) == asked[0]:
             below = [other for other in known if other[: len(path) - 1] == path[:-1] and len(other) >= len(path)]

@@ -27,14 +27,14 @@ from .schema import ScenarioTable
 
 @dataclass(frozen=True)
 class Scenario:
-    """A system, and how to simulate it.
+    """A system and the settings of its simulation.
 
     Attributes
     ----------
     title, description : str
-        What it is.
+        Title in one line, and description.
     system : System
-        What to simulate.
+        System to simulate.
     duration : float
         Time to simulate [s].
     scheme : ExactModal or CentralDifference
@@ -44,11 +44,11 @@ class Scenario:
     sample_rate : float
         Samples recorded per second [Hz].
     probes : tuple of probes or None
-        What else to record; the acceleration of the track's centre if None.
+        Additional quantities to record; the acceleration of the track's centre if None.
     contact_solve : GaussSeidel or None
-        How several contacts are solved together; the default if None.
+        Solver of several contacts; the default if None.
     surface_rate : float, str or None
-        What is recorded of surfaces, as for `simulate`: maps per second [Hz], or ``"all"`` points at every sample.
+        Recording of surfaces, as for `simulate`: maps per second [Hz], or ``"all"`` points at every sample.
     """
 
     title: str
@@ -63,12 +63,12 @@ class Scenario:
     surface_rate: float | str | None = None
 
     def simulate(self, **kwargs: Any) -> xr.Dataset:
-        """March the system in time and return its record.
+        """Simulate the system in time and return its record.
 
         Parameters
         ----------
         **kwargs
-            Arguments of `simulate` to use instead of, or beside, the scenario's.
+            Arguments of `simulate` that replace, or add to, those of the scenario.
 
         Raises
         ------
@@ -88,12 +88,12 @@ class Scenario:
 
 
 def load_scenario(name_or_path: str | Path | xr.Dataset, overrides: Mapping[str, Any] | None = None) -> Scenario:
-    """Read a scenario and check it.
+    """Read and check a scenario.
 
     Parameters
     ----------
     name_or_path : str, Path or xarray.Dataset
-        Name of a shipped case, a TOML file, or a record to be run again, itself or the file that `save` wrote;
+        Name of a shipped case, a TOML file, or a record to run again, as a dataset or as the file written by `save`;
         ``-`` for TOML from standard input.
     overrides : mapping, optional
         Values to set by key: a full path such as ``contact.friction.coefficient``, or any unique ending of one.
@@ -105,7 +105,7 @@ def load_scenario(name_or_path: str | Path | xr.Dataset, overrides: Mapping[str,
     Raises
     ------
     ScenarioError
-        With every problem found: each names the key, the value and what is allowed.
+        With every problem found: each names the key, the value and the allowed values.
     OSError
         If the file cannot be read.
     """
@@ -114,14 +114,14 @@ def load_scenario(name_or_path: str | Path | xr.Dataset, overrides: Mapping[str,
 
 
 def scenario_of_tables(written: dict[str, Any], problems: Sequence[str] = ()) -> Scenario:
-    """Check the tables of a scenario and return what they make.
+    """Check the tables of a scenario and return the scenario.
 
     Parameters
     ----------
     written : dict
         The tables as in a file, those of its base merged in.
     problems : sequence of str, optional
-        What is known to be wrong with them.
+        Problems of the tables known beforehand.
 
     Raises
     ------
@@ -146,7 +146,7 @@ def scenario_of_tables(written: dict[str, Any], problems: Sequence[str] = ()) ->
 
 
 def tables_in_si(written: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables of a scenario with numbers in SI, and what several share with each of them.
+    """Return the tables of a scenario with numbers in SI, and with shared values copied into each body or contact.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def tables_in_si(written: dict[str, Any]) -> dict[str, Any]:
     Raises
     ------
     ScenarioError
-        With every problem of their form.
+        With every problem of form.
     """
     checked, _ = _checked(written)
     found: dict[str, Any] = checked.model_dump(exclude_unset=True)
@@ -164,14 +164,14 @@ def tables_in_si(written: dict[str, Any]) -> dict[str, Any]:
 
 
 def with_matrices(written: dict[str, Any], usable: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables of a scenario with matrices and meshes of bodies in place of the files that hold them.
+    """Return the tables of a scenario with matrices and meshes of bodies in place of the names of their files.
 
     Parameters
     ----------
     written : dict
-        The tables, which may lack something yet.
+        Tables, which may be incomplete.
     usable : dict
-        The same with what they lack.
+        The same tables, completed.
 
     Raises
     ------
@@ -189,7 +189,7 @@ def with_matrices(written: dict[str, Any], usable: dict[str, Any]) -> dict[str, 
 
 
 def _filled(table: dict[str, Any], body: Any) -> dict[str, Any]:
-    """Return the table of a body with what its files hold."""
+    """Return the table of a body with the contents of its files."""
     return table | mesh_tables(body) if hasattr(body, "mesh") else body_table(body)
 
 

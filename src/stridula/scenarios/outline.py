@@ -1,4 +1,4 @@
-"""The outline of a scenario file: which keys there can be, read from its JSON schema."""
+"""The outline of a scenario file: its possible keys, read from its JSON schema."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ SHARED_BY_CONTACTS = ("friction",)
 TAGS = ("shape", "law", "kind", "form", "quantity")
 BEAMS = ("finite-element beam", "modal beam")
 PLATES = ("modal plate",)
-# Entries of longer lists of numbers, such as samples, are no keys of their own; tables in lists always are.
+# Entries of longer lists of numbers, such as samples, are not keys; tables in lists always are.
 LONGEST_LIST = 64
 
 
 def properties(node: Node | None, table: Any = None) -> dict[str, Node]:
-    """Return the keys known in a table: those of its own kind if it says which, else of all kinds.
+    """Return the keys known in a table: those of its own kind if it has a tag, else of all kinds.
 
-    Of a table whose keys are names, such as the bodies, those that are there.
+    For a table whose keys are names, such as the bodies, return those present.
     """
     variants = _variants(node)
     kinds = [variant["properties"] for variant in variants if "properties" in variant]
@@ -44,35 +44,35 @@ def is_number(node: Node) -> bool:
 
 
 def patterns(node: Node | None) -> set[str]:
-    """Return the patterns of the texts that a key takes."""
+    """Return the patterns of the texts that a key accepts."""
     return {variant["pattern"] for variant in _variants(node) if "pattern" in variant}
 
 
 def unit(node: Node | None) -> str:
-    """Return the SI unit of the numbers that a key takes, ``"1"`` where they have none."""
+    """Return the SI unit of the numbers that a key accepts, ``"1"`` if they have none."""
     known = patterns(node)
     return next((unit for unit in UNITS if pattern_of(unit) in known), "1")
 
 
 def is_choice(node: Node | None) -> bool:
-    """Return whether a key takes words of a list and nothing else."""
+    """Return whether a key accepts only words of a list."""
     variants = _variants(node)
     return bool(variants) and all("enum" in variant or "const" in variant for variant in variants)
 
 
 def is_whole(node: Node | None) -> bool:
-    """Return whether a key takes whole numbers and nothing else."""
+    """Return whether a key accepts only whole numbers."""
     return {variant.get("type") for variant in _variants(node)} == {"integer"}
 
 
 def words(node: Node | None) -> list[str]:
-    """Return the words that a key allows, none if it is not a choice."""
+    """Return the words that a key accepts, none if it is not a choice."""
     chosen = [variant.get("enum", [variant["const"]] if "const" in variant else []) for variant in _variants(node)]
     return list(dict.fromkeys(word for group in chosen for word in group))
 
 
 def beams(tables: Any) -> list[Path]:
-    """Return the paths of beams and plates, which take what stands at the top; plates have no section."""
+    """Return the paths of beams and plates, which inherit values of the top level; plates have no section."""
     bodies = look_up(tables, ("bodies",))
     named = bodies if isinstance(bodies, dict) else {}
     kinds = [("bodies", name) for name, body in named.items() if look_up(body, ("kind",)) in (*BEAMS, *PLATES)]
@@ -80,7 +80,7 @@ def beams(tables: Any) -> list[Path]:
 
 
 def contacts(tables: Any) -> list[Path]:
-    """Return the paths of contacts, which take the friction that stands at the top."""
+    """Return the paths of contacts, which inherit the friction of the top level."""
     places: list[Path] = [("contact",)]
     for key in TOUCHING:
         listed = look_up(tables, (key,))
@@ -98,7 +98,7 @@ def node_at(path: Path, tables: Any) -> Node | None:
 
 
 def paths(tables: Any, node: Node | None = None, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Go through every key that can be set: those there and those left out."""
+    """Yield every key that can be set, whether present or not."""
     for name, child in properties(json_schema() if node is None else node, tables).items():
         yield (*path, name), child
         yield from _below(look_up(tables, (name,)), child, (*path, name))
@@ -117,7 +117,7 @@ def look_up(tables: Any, path: Sequence[str | int]) -> Any:
 
 
 def plain(location: Sequence[str | int], tables: Any) -> Path:
-    """Return the path of an error's location, less the kinds that pydantic puts after tables of several kinds."""
+    """Return the path of an error's location, without the kinds that pydantic inserts after tables of several kinds."""
     path: list[str | int] = []
     tag: Any = None
     for part in location:
@@ -133,7 +133,7 @@ def plain(location: Sequence[str | int], tables: Any) -> Path:
 
 
 def _below(value: Any, node: Node, path: Path) -> Iterator[tuple[Path, Node]]:
-    """Go through the keys of a value that is a table, and through the entries of one that is a list."""
+    """Yield the keys of a value that is a table, and the entries of one that is a list."""
     yield from paths(value, node, path)
     for number, element in enumerate(value if isinstance(value, list) else ()):
         is_key = isinstance(element, dict) or len(value) <= LONGEST_LIST
@@ -145,7 +145,7 @@ def _below(value: Any, node: Node, path: Path) -> Iterator[tuple[Path, Node]]:
 
 
 def _entry(node: Node | None, table: Any, number: int) -> Node | None:
-    """Return the node of an entry of a list, None if it can have none."""
+    """Return the node of an entry of a list, None if it cannot have one."""
     length = len(table) if isinstance(table, list) else number + 1
     for variant in _variants(node):
         if variant.get("minItems", 0) <= length <= variant.get("maxItems", length):
@@ -166,7 +166,7 @@ def _variants(node: Node | None) -> list[Node]:
 
 
 def _differs(known: dict[str, Node], table: Any) -> bool:
-    """Return whether a table says that it is of another kind than the one with these keys."""
+    """Return whether the tag of a table names another kind than the one with these keys."""
     if not isinstance(table, dict):
         return False
     return any(tag in known and tag in table and table[tag] not in words(known[tag]) for tag in TAGS)

@@ -1,4 +1,4 @@
-"""Numbers with units in scenario files: "45 deg", "1 cm/s", "15 kHz" become SI."""
+"""Numbers with units in scenario files: "45 deg", "1 cm/s" and "15 kHz" are converted to SI."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def quantity(value: Any, unit: str, name: str = "value") -> float:
     unit : str
         SI unit, a key of `UNITS`; ``"1"`` for a ratio.
     name : str, optional
-        What it is called in messages.
+        Name in messages.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def parts(value: Any) -> tuple[float, str] | None:
 
 
 def unit_of(spelling: str) -> str | None:
-    """Return the SI unit that a spelling such as ``"mm"`` is one of, None if it is of none."""
+    """Return the SI unit of a spelling such as ``"mm"``, None if unknown."""
     plain = spelling.replace("²", "2").replace("³", "3")
     return next((unit for unit, spellings in UNITS.items() if plain in spellings), None)
 

@@ -1,4 +1,4 @@
-"""Scenario files: where they are, what they hold, what they build on."""
+"""Scenario files: their paths, contents and bases."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from .quantities import is_quantity
 from .shipped import shipped
 
 FILES = ("file", "mass", "stiffness", "damping", "labels", "mesh")
-# Tables of a body that may name a file, too.
+# Tables of a body that may also name a file.
 MESHES = ("profile", "mesh")
 
 # Name of the scenario that another program writes into a pipe.
 PIPED = "-"
-# Scenarios take 5; what recurses over tables takes far more.
+# Scenarios need 5; functions that recurse over tables allow far more.
 DEEPEST = 50
 
 
@@ -36,7 +36,7 @@ def read_tables(name_or_path: str | Path | xr.Dataset) -> dict[str, Any]:
     Raises
     ------
     ScenarioError
-        If it is not there, is not TOML, or is none of these.
+        If it does not exist, is not TOML, or is none of these.
     OSError
         If the file cannot be read.
     """
@@ -61,14 +61,14 @@ def read_tables(name_or_path: str | Path | xr.Dataset) -> dict[str, Any]:
 
 
 def tables_of_text(text: str, name: str) -> dict[str, Any]:
-    """Return the tables of a scenario that comes as text from elsewhere, with those of a shipped base.
+    """Return the tables of a scenario given as text, with those of a shipped base.
 
     Parameters
     ----------
     text : str
         The scenario, TOML.
     name : str
-        What to call it in messages.
+        Name in messages.
 
     Raises
     ------
@@ -120,10 +120,12 @@ def _standard_input() -> bytes:
 def _tables_of(content: bytes, name: str, folder: Path) -> dict[str, Any]:
     """Return the tables of a text, with the files of bodies found from a folder."""
     try:
-        # PowerShell writes UTF-16 and says so in the first two bytes.
+        # PowerShell writes UTF-16, marked by the first two bytes.
         text = content.decode("utf-16" if content.startswith((BOM_UTF16_LE, BOM_UTF16_BE)) else "utf-8-sig")
     except UnicodeDecodeError:
-        raise ScenarioError([f"scenario must be a text in UTF-8 or, with a mark, UTF-16, got {name!r}"]) from None
+        raise ScenarioError(
+            [f"scenario must be text in UTF-8 or, with a byte order mark, UTF-16, got {name!r}"]
+        ) from None
     tables = _parsed(text, name)
     if not tables:
         raise ScenarioError([f"scenario must not be empty, got {name!r}: `stridula show squeal` prints one to edit"])
@@ -131,7 +133,7 @@ def _tables_of(content: bytes, name: str, folder: Path) -> dict[str, Any]:
 
 
 def _with_files(tables: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the tables with the files of bodies found from the folder of the file that names them."""
+    """Return the tables with the files of bodies resolved relative to the folder of the scenario file."""
     bodies = tables.get("bodies")
     if not isinstance(bodies, dict):
         return tables
@@ -146,7 +148,7 @@ def _with_own_files(body: Any, folder: Path) -> Any:
 
 
 def names_files(body: Any) -> bool:
-    """Return whether the table of a body names files, with its matrices or its mesh."""
+    """Return whether the table of a body names files with its matrices or its mesh."""
     return bool(_files_of(body))
 
 
@@ -158,11 +160,11 @@ def _files_of(body: Any) -> dict[str, str]:
 
 
 def _own_files(table: dict[str, Any]) -> dict[str, str]:
-    """Return the files that a body, or its mesh, names itself."""
+    """Return the files named directly in the table of a body or of its mesh."""
     if table.get("kind", "reduced") != "reduced":
         return {}
     texts = {key: table[key] for key in FILES if isinstance(table.get(key), str)}
-    # A damping of "1 %" is no file.
+    # A damping of "1 %" is not a file.
     return {key: text for key, text in texts.items() if not is_packed(text) and not is_quantity(text, "1")}
 
 
@@ -178,7 +180,7 @@ def _parsed(text: str, name: str) -> dict[str, Any]:
 
 
 def _is_deeper(tables: dict[str, Any], depth: int) -> bool:
-    """Return whether tables and lists lie in each other deeper than that."""
+    """Return whether tables and lists are nested deeper than `depth`."""
     level: list[Any] = [tables]
     for _ in range(depth):
         inside = [value.values() if isinstance(value, dict) else value for value in level]
@@ -187,7 +189,7 @@ def _is_deeper(tables: dict[str, Any], depth: int) -> bool:
 
 
 def _with_base(tables: dict[str, Any], folder: Path, above: tuple[Path, ...]) -> dict[str, Any]:
-    """Return the tables merged onto those of their base, found among the shipped ones or from `folder`."""
+    """Return the tables merged onto those of their base, a shipped one or a file relative to `folder`."""
     if "base" not in tables:
         return tables
     base, own = tables["base"], {key: value for key, value in tables.items() if key != "base"}
@@ -199,5 +201,5 @@ def _with_base(tables: dict[str, Any], folder: Path, above: tuple[Path, ...]) ->
         allowed = f"base must be a scenario file or one of {', '.join(bases)}"
         raise ScenarioError([f"{allowed}, got {brief(base)}{suggestion(base, list(bases))}"])
     if path.resolve() in above:
-        raise ScenarioError([f"base must not lead back to itself, got {brief(base)}"])
+        raise ScenarioError([f"base must not refer back to the scenario itself, got {brief(base)}"])
     return merged(_with_base(_file_tables(path), path.parent, (*above, path.resolve())), own)

@@ -1,4 +1,4 @@
-"""The tables of a scenario file: the same words as the Python API."""
+"""The tables of a scenario file, with the names of the Python API."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Motion(Table):
     body: str | None = None
     """body: slider, track or its name; the track if left out, the slider on a rigid track"""
     point: is_.Point | None = None
-    """where: tip, root, centre, the name of a point or a position [m]; centre or tip if left out"""
+    """point: tip, root, centre, the name of a point or a position [m]; centre or tip if left out"""
     direction: Annotated[Any, is_.Way(DIRECTION)] = "y"
     """x, y, z in space, axial, transverse, or world components [x, y, z]"""
 
@@ -59,7 +59,7 @@ class ContactSolve(Table):
     tolerance: is_.PositiveRatio = GaussSeidel.tolerance
     """largest change of a force in the last sweep, relative to the largest force"""
     sweeps: is_.Count = GaussSeidel.sweeps
-    """largest number of sweeps a step"""
+    """largest number of sweeps per step"""
 
 
 class Simulation(Table):
@@ -68,31 +68,31 @@ class Simulation(Table):
     scheme: Literal["exact modal", "central difference"] = "exact modal"
     """exact modal or central difference"""
     step: is_.Time | None = None
-    """time step, a stated fraction of the scheme's limit if left out [s]"""
+    """time step, a fixed fraction of the scheme's limit if left out [s]"""
     sample_rate: is_.Frequency = 100e3
     """samples recorded per second [Hz]"""
     surface_rate: is_.FrequencyOrAll | None = None
-    """maps of surfaces recorded per second and nothing else of their points [Hz], or all: each point is a contact"""
+    """maps of surfaces recorded per second, without single points [Hz], or all: each point as a contact"""
     probes: list[Probe] | None = None
-    """what else to record, the acceleration of the track's centre if left out"""
+    """additional quantities to record, the acceleration of the track's centre if left out"""
     contact_solve: ContactSolve | None = None
-    """how several contacts are solved together"""
+    """solver of several contacts"""
 
 
 class ScenarioTable(Table):
-    """A scenario of stridula: bodies in friction contact, what drives them, and how long to simulate.
+    """A scenario of stridula: bodies in friction contact, their drives, and the settings of the simulation.
 
-    Two beams are a slider, a track and a contact; anything else is bodies, contacts and connections.
+    Two beams are given as slider, track and contact; any other system as bodies, contacts and connections.
     """
 
     title: str = ""
-    """one line that says what it is"""
+    """title in one line"""
     description: str = ""
-    """what happens in it, and why it is of interest"""
+    """description of the motion"""
     source: str = ""
-    """where it comes from"""
+    """source of the scenario"""
     base: str | None = None
-    """scenario file, or shipped base, that this one changes"""
+    """scenario file, or shipped base, that this one modifies"""
     material: Material | None = None
     """material of all beams and plates, unless a body has its own"""
     section: Section | None = None
@@ -104,23 +104,23 @@ class ScenarioTable(Table):
     friction: Friction | None = None
     """law of friction of all contacts, unless a contact has its own"""
     slider: Slider | None = None
-    """the beam whose tip touches"""
+    """beam whose tip touches the track"""
     track: Track | None = None
-    """the beam it slides on"""
+    """beam on which the slider slides"""
     contact: PairContact | None = None
-    """where they touch"""
+    """contact of slider and track"""
     bodies: dict[str, Body] | None = None
-    """what vibrates, by name, in place of slider and track"""
+    """bodies by name, in place of slider and track"""
     contacts: list[Contact] | None = None
-    """where bodies touch, in place of contact"""
+    """contacts of bodies at points, in place of contact"""
     surfaces: list[Surface] | None = None
-    """where faces of meshed bodies touch, beside contacts or in their place"""
+    """contacts of faces of meshed bodies, in addition to contacts or in their place"""
     connections: list[Connection] | None = None
     """springs and dashpots between bodies"""
     drives: list[Drive] = Field(default_factory=list)
-    """what pushes"""
+    """forces, velocities and initial states"""
     simulation: Simulation
-    """how long, and how"""
+    """duration and settings of the simulation"""
 
 
 PAIR = ("slider", "track", "contact")

@@ -15,7 +15,7 @@ from .schema_drives import History
 from .schema_meshed import meshed_tables
 
 KINDS = "finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"
-OWN_NAME = "what it is called in records, the table's own name if left out"
+OWN_NAME = "name in records, the name of the table if left out"
 
 if TYPE_CHECKING:
     Material = Any
@@ -30,7 +30,7 @@ else:
 
     def _made(what: str) -> Keys:
         return {
-            "material": (Material, ..., f"what {what} is made of"),
+            "material": (Material, ..., f"material of {what}"),
             "section": (Section, ..., f"cross-section of {what}"),
         }
 
@@ -49,7 +49,7 @@ class Plate(Table):
     kind: Literal["modal plate"]
     """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"""
     material: Material
-    """what the plate is made of"""
+    """material of the plate"""
     thickness: is_.Length
     """thickness [m]"""
     length: is_.Length
@@ -57,21 +57,21 @@ class Plate(Table):
     width: is_.Length
     """other side [m]"""
     bending_modes: is_.Counts = ModalPlate.bending_modes
-    """numbers of half-waves along length and width of modes that bend, unless there is a cutoff"""
+    """numbers of half-waves along length and width of bending modes, unless there is a cutoff"""
     in_plane: bool = ModalPlate.in_plane
-    """whether it moves in its plane, too; else it is rigid there"""
+    """whether it also deforms in its plane; otherwise it is rigid there"""
     in_plane_modes: is_.CountsOrNone = ModalPlate.in_plane_modes
-    """most half-waves along length and width of modes in its plane, counted from 0, unless there is a cutoff"""
+    """largest numbers of half-waves along length and width of in-plane modes, from 0, unless there is a cutoff"""
     damping: is_.ModalDamping = ModalPlate.damping
     """damping ratio of every mode, one for each, or a law of frequency"""
     cutoff: is_.Frequency | None = None
-    """keep the modes up to this frequency [Hz]"""
+    """highest frequency of the modes [Hz]"""
     line: Line | None = None
-    """where bodies slide on it, along its length in the middle of its width if left out"""
+    """line on which bodies slide, along its length in the middle of its width if left out"""
     plane: is_.Rows | None = None
     """unit vectors along its line and along its normal, [[x, y, z], [x, y, z]], of a plate in space"""
     name: str = ""
-    """what it is called in records, the table's own name if left out"""
+    """name in records, the name of the table if left out"""
 
 
 class Reduced(Table):
@@ -88,17 +88,17 @@ class Reduced(Table):
     damping: is_.ReducedDamping | None = None
     """damping: a ratio, one for each mode, a law of frequency, a matrix, or its file"""
     translation: is_.Translation | None = None
-    """rows that say how a translation along x, y and z moves it; gravity and initial velocities need it"""
+    """degrees of freedom in a translation along x, y and z, a row each; gravity and initial velocities need it"""
     cutoff: is_.Frequency | None = None
-    """keep the modes up to this frequency, all if left out [Hz]"""
+    """highest frequency of the modes, all if left out [Hz]"""
     residual_flexibility: bool | None = None
-    """whether modes beyond the cutoff yield statically at the points, true if left out"""
+    """whether modes beyond the cutoff add static flexibility at the points, true if left out"""
     labels: str | None = None
-    """file that says which node and degree of freedom each row is, searched beside the matrices if left out"""
+    """file with the node and degree of freedom of each row, searched beside the matrices if left out"""
     mesh: str | None = None
-    """deck that says where nodes are, for points by place"""
+    """input deck with the places of nodes, for points given by place"""
     name: str = ""
-    """what it is called in records, the table's own name if left out"""
+    """name in records, the name of the table if left out"""
 
 
 class Rigid(Table):
@@ -107,11 +107,11 @@ class Rigid(Table):
     mass: is_.Mass
     """mass [kg]"""
     inertia: is_.Inertia | None = None
-    """moments of inertia about x, y and z: one, three or a matrix; without any it does not turn [kg m2]"""
+    """moments of inertia about x, y and z: one, three or a matrix; without them it does not rotate [kg m2]"""
     points: is_.PlaceTable | None = None
-    """places of points from the centre along x, y and z by name [m]"""
+    """positions of points relative to the centre along x, y and z, by name [m]"""
     name: str = ""
-    """what it is called in records, the table's own name if left out"""
+    """name in records, the name of the table if left out"""
 
 
 class Turning(Table):
@@ -120,86 +120,86 @@ class Turning(Table):
     pairs: is_.Rows
     """numbers of the two modes of each pair"""
     order: is_.Vector
-    """number of waves round the axis of each pair"""
+    """number of waves around the axis of each pair"""
     drag: is_.Vector
-    """phase by which the waves of each pair turn for one radian of the body"""
+    """phase by which the waves of each pair turn per radian of the body"""
     history: History | None = None
     """factor on the velocity over time, constant if left out"""
 
 
 class OuterSurface(Table):
     normals: is_.Rows
-    """outward unit normals, along x, y and z, of rings along r and z"""
+    """outward unit normals, along x, y and z; of rings along r and z"""
     shapes: is_.Rows
-    """by how much each mode moves each point or ring outwards"""
+    """outward displacement of each point or ring in each mode"""
     points: is_.Rows | None = None
     """places of points [m]"""
     areas: is_.Vector | None = None
-    """areas that points stand for [m²]"""
+    """areas represented by the points [m²]"""
     corners: is_.Rows | None = None
-    """x, y and z of the four corners of each piece of the patches round points [m], squares if left out"""
+    """x, y and z of the four corners of each piece of the patches around points [m], squares if left out"""
     owners: is_.Vector | None = None
-    """number of the point in whose patch a piece lies, from 0, that of the piece if left out"""
+    """number, from 0, of the point whose patch contains each piece, that of the piece if left out"""
     places: is_.Rows | None = None
     """r and z of rings, two over each part of the profile [m]"""
     widths: is_.Vector | None = None
-    """widths that rings stand for [m]"""
+    """widths represented by the rings [m]"""
     orders: is_.Vector | None = None
-    """number of waves round the axis of each mode, of rings"""
+    """number of waves around the axis of each mode, for rings"""
     sides: is_.Vector | None = None
-    """0 for modes that go round as the cosine, 1 for those as the sine, of rings"""
+    """0 for modes that vary as the cosine around the axis, 1 as the sine, for rings"""
     frame: is_.Rows | None = None
-    """directions theta = 0 and theta = 90 degrees and of the axis, of rings"""
+    """directions of theta = 0, theta = 90 degrees and the axis, for rings"""
     origin: is_.Vector | None = None
-    """point on the axis where z is 0, of rings [m]"""
+    """point on the axis where z is 0, for rings [m]"""
 
 
 class Drawn(Table):
     place: is_.Rows
     """places of the corners of polygons [m], or r and z of the corners of an outline"""
     shapes: is_.Rows
-    """by how much each mode moves the corners: three rows for each, along x, y, z or r, theta, z"""
+    """displacements of the corners in each mode: three rows for each, along x, y, z or r, theta, z"""
     polygons: is_.Rows | None = None
-    """corners of each polygon, round its outward normal"""
+    """corners of each polygon, counterclockwise around its outward normal"""
     sides: is_.Rows | None = None
     """corners of the sides of an outline"""
     orders: is_.Vector | None = None
-    """number of waves round the axis of each mode, of an outline"""
+    """number of waves around the axis of each mode, for an outline"""
     phases: is_.Vector | None = None
-    """0 for modes that go round as the cosine, 1 for those as the sine, of an outline"""
+    """0 for modes that vary as the cosine around the axis, 1 as the sine, for an outline"""
     frame: is_.Rows | None = None
-    """directions theta = 0 and theta = 90 degrees and of the axis, of an outline"""
+    """directions of theta = 0, theta = 90 degrees and the axis, for an outline"""
     origin: is_.Vector | None = None
-    """point on the axis where z is 0, of an outline [m]"""
+    """point on the axis where z is 0, for an outline [m]"""
 
 
 class Modal(Table):
     kind: Literal["modal body"]
     """finite-element beam, modal beam, modal plate, point mass, reduced, rigid body, modal body, axisymmetric, solid"""
     angular_frequency: is_.Vector
-    """angular frequencies of the modes [rad/s], none where there are residual shapes alone"""
+    """angular frequencies of the modes [rad/s], none if there are only residual shapes"""
     points: is_.PointTable
-    """points by name: rows, what each mode moves them by along x, y and z"""
+    """points by name: rows of their displacements along x, y and z in each mode"""
     damping_rate: is_.Inertia = 0.0
     """twice the damping ratio times the angular frequency, one for each mode [1/s]"""
     translation: is_.Translation | None = None
-    """rows that say how an acceleration along x, y and z drives each mode; gravity and initial velocities need it"""
+    """force on each mode from an acceleration along x, y and z, a row each; gravity and initial velocities need it"""
     residual: int = 0
     """number of residual shapes, the last columns of the rows"""
     turning: Turning | None = None
-    """how the modes are carried round by a body that turns"""
+    """transport of the modes by a turning body"""
     velocities: is_.PlaceTable | None = None
-    """velocities of the material of a body that turns along x, y and z, by the name of the point [m/s]"""
+    """velocities of the material of a turning body along x, y and z, by name of the point [m/s]"""
     outer_surface: OuterSurface | None = None
-    """outer surface and how the modes move it, which a body needs to be heard"""
+    """outer surface and its motion in the modes, needed for sound"""
     circles: is_.PlaceTable | None = None
-    """circles that others may move round, by the name of a point: radius and its abscissa [m], direction there"""
+    """circles along which others may slide, by name of a point: radius and its abscissa [m], direction there"""
     drawn: Drawn | None = None
-    """surface as it is drawn in films, and how modes move it"""
+    """surface drawn in films, and its motion in the modes"""
     places: is_.PlaceTable | None = None
-    """where points are at rest along x, y and z, by name, for films [m]"""
+    """positions of points at rest along x, y and z, by name, for films [m]"""
     name: str = ""
-    """what it is called in records, the table's own name if left out"""
+    """name in records, the name of the table if left out"""
 
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ else:
     Stiffness = one_of(
         "kind", (table_of(kind, "kind", kind.kind, "linear, power law or hertz") for kind in STIFFNESSES)
     )
-OF_AREA = "stiffness of the contact for a unit of area: a number [N/m3] or a table, rigid if left out"
+OF_AREA = "stiffness of the contact per unit of area: a number [N/m3] or a table, rigid if left out"
 YIELDS = "stiffness of the contact itself: a number [N/m] or a table, rigid if left out"
 
 
@@ -37,14 +37,14 @@ class PairContact(Table):
     point: is_.Point = "tip"
     """point of the slider that touches: tip, root or a position from the tip [m]"""
     name: str = ""
-    """what it is called in records"""
+    """name in records"""
 
 
 class Place(Table):
     body: str
     """body: its name among the bodies"""
     point: is_.Point | None = None
-    """where: tip, root, centre, the name of a point or a position [m]; its tip, centre or only point if left out"""
+    """point: tip, root, centre, the name of a point or a position [m]; its tip, centre or only point if left out"""
 
 
 class BeamTrack(Table):
@@ -67,18 +67,18 @@ class PointTrack(Table):
     body: str
     """body that is touched: its name among the bodies"""
     point: is_.Point | None = None
-    """which point of it; its tip, centre or only point if left out"""
+    """point of the body; its tip, centre or only point if left out"""
 
 
 class CircleTrack(Table):
     kind: Literal["circle"]
     """beam, plate, rigid, point or circle"""
     body: str
-    """body of revolution round whose axis it slides: its name among the bodies"""
+    """body of revolution around whose axis it slides: its name among the bodies"""
     point: is_.Point
     """point (r, theta, z) where the abscissa is zero [m, rad, m]"""
     velocity: is_.Velocity = 0.0
-    """velocity at which what slides is carried along the circle as a whole [m/s]"""
+    """velocity at which the sliding body is carried along the circle as a whole [m/s]"""
     history: History | None = None
     """factor on that velocity over time, constant if left out"""
 
@@ -106,32 +106,40 @@ if TYPE_CHECKING:
     Surface = Any
     Connection = Any
 else:
-    _history = "factor over time on the acceleration where one is given, else on the velocity; constant if left out"
+    _history = "factor over time on the acceleration if one is given, else on the velocity; constant if left out"
     _moved = {
         "history": (History | None, None, _history),
         "normal_history": (History | None, None, "the same along its normal"),
-        "name": (str, "", "what it is called in records"),
+        "name": (str, "", "name in records"),
     }
     _rigid = table_of(RigidTrack, "kind", "rigid", "beam, plate, rigid, point or circle", title="Rigid", after=_moved)
     _sides = {
-        "name": (str, "", "what it is called in records"),
-        "tip": (Place, ..., "what touches"),
-        "track": (one_of("kind", [BeamTrack, PlateTrack, _rigid, PointTrack, CircleTrack]), ..., "what it slides on"),
+        "name": (str, "", "name in records"),
+        "tip": (Place, ..., "body and point that touch"),
+        "track": (
+            one_of("kind", [BeamTrack, PlateTrack, _rigid, PointTrack, CircleTrack]),
+            ...,
+            "surface on which it slides",
+        ),
     }
     _friction = {"friction": (Friction | None, None, "friction between tip and track, none if left out")}
-    _friction["surface"] = (str, "", "name of the surface that it is a point of, which may lift off in part")
+    _friction["surface"] = (str, "", "name of the surface to which the point belongs, which may lift off in part")
     _friction["stiffness"] = (is_.Stiffness | Stiffness | None, None, YIELDS)
     _plane = table_of(RigidTrack, "kind", "rigid", "axisymmetric, solid or rigid", title="Plane", after=_moved)
     _faces = {
-        "name": (str, ..., "what it is called in records, where its points have numbers, too"),
+        "name": (str, ..., "name in records, to which points add their numbers"),
         "body": (str, ..., "meshed body whose face touches: its name among the bodies"),
         "face": (str, ..., "name of the face"),
-        "track": (one_of("kind", [RevolvedTrack, SolidTrack, _plane]), ..., "what it slides on"),
+        "track": (one_of("kind", [RevolvedTrack, SolidTrack, _plane]), ..., "track on which it slides"),
     }
     _layer = {
         "friction": _friction["friction"],
         "stiffness": (is_.StiffnessOfArea | Stiffness | None, None, OF_AREA),
-        "overlay": (bool, False, "whether points are those of the pieces into which flat faces of both cut each other"),
+        "overlay": (
+            bool,
+            False,
+            "whether points are placed in the pieces into which flat faces of both cut each other",
+        ),
     }
     Surface = table_of(SurfaceContact, title="Surface", before=_faces, after=_layer)
     Contact = table_of(PointContact, title="Contact", before=_sides, after=_friction)

@@ -14,9 +14,9 @@ BODIES = {
     "force": "body it acts on: slider, track or its name",
     "imposed velocity": "beam whose root moves: slider or its name",
     "initial velocity": "body that moves at the start: slider, track or its name",
-    "initial state": "point mass or reduced body that starts so: slider, track or its name",
+    "initial state": "point mass or reduced body in this state: slider, track or its name",
 }
-POINT = "where it acts: tip, root, centre, the name of a point or a position [m]; root or centre if left out"
+POINT = "point of action: tip, root, centre, the name of a point or a position [m]; root or centre if left out"
 FACTORS = {
     "force": "factor over time, constant if left out",
     "imposed velocity": "factor on the velocity over time, constant if left out",
@@ -28,7 +28,7 @@ VECTORS: Keys = {
 
 
 def _drive(kind: type[drives.Drive]) -> Any:
-    """Return the table of a drive: where it acts comes first, its history last."""
+    """Return the table of a drive, with its place first and its history last."""
     where: dict[str, Any] = {"body": (str, "slider", BODIES[kind.kind])} if kind.place else {}
     if kind.place == "point":
         where["point"] = (is_.Point | None, None, POINT)

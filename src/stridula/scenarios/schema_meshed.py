@@ -15,13 +15,13 @@ from .schema_drives import History
 
 class Sides(Table):
     inner: is_.Distance
-    """least distance from the axis [m]"""
+    """smallest distance from the axis [m]"""
     outer: is_.Length
     """largest distance from the axis [m]"""
     bottom: is_.Position
-    """least place along the axis [m]"""
+    """lowest position along the axis [m]"""
     top: is_.Position
-    """largest place along the axis [m]"""
+    """highest position along the axis [m]"""
 
 
 if TYPE_CHECKING:
@@ -36,19 +36,19 @@ class Held(Table):
     place: PlaceOrBox
     """name of a place, such as inner, top or hat.outer, or a box"""
     directions: is_.Directions = bodies.axisymmetric_body.DIRECTIONS
-    """those in which it is held, of r, theta and z; all if left out"""
+    """held directions among r, theta and z; all if left out"""
 
 
 class RectangleProfile(Sides):
     shape: Literal["rectangle"]
     """rectangle, rectangles, line, mesh or cells"""
     size: is_.Length | None = None
-    """largest side of a cell, as the shortest waves need it if left out [m]"""
+    """largest side of a cell, chosen for the shortest waves if left out [m]"""
 
 
 class Part(Sides):
     region: str = BODY
-    """its region; several rectangles may be of one"""
+    """name of its region; several rectangles may share one"""
 
 
 class RectanglesProfile(Table):
@@ -57,7 +57,7 @@ class RectanglesProfile(Table):
     rectangles: list[Part]
     """rectangles that share sides"""
     size: is_.Length | None = None
-    """largest side of a cell, as the shortest waves need it if left out [m]"""
+    """largest side of a cell, chosen for the shortest waves if left out [m]"""
 
 
 class LineProfile(Table):
@@ -66,9 +66,9 @@ class LineProfile(Table):
     points: list[is_.OfProfile]
     """points (r, z) of its middle line [m]"""
     thickness: is_.LengthOrEach
-    """thickness, or that at each point [m]"""
+    """thickness, or the thickness at each point [m]"""
     size: is_.Length | None = None
-    """largest side of a cell along the line, as the shortest waves need it if left out [m]"""
+    """largest side of a cell along the line, chosen for the shortest waves if left out [m]"""
 
 
 class MeshProfile(Table):
@@ -86,20 +86,20 @@ class CellsProfile(Table):
     shape: Literal["cells"]
     """rectangle, rectangles, line, mesh or cells"""
     nodes: is_.Rows
-    """distance from the axis and place along it of each node [m]"""
+    """distance from the axis and position along it of each node [m]"""
     cells: is_.Rows
-    """nodes of each triangle or quadrilateral, from 0 on"""
+    """nodes of each triangle or quadrilateral, numbered from 0"""
     regions: dict[str, is_.Vector] | None = None
     """cells of each region by its name"""
     edges: dict[str, is_.Rows] | None = None
-    """pairs of nodes of edges that can be held by their names"""
+    """edges that can be held, as pairs of nodes by name"""
 
 
 class Placed(Table):
     rotation: is_.Rotation | None = None
-    """axis of a turn about the origin times its angle, along x, y and z [rad]"""
+    """rotation about the origin: its axis times its angle, along x, y and z [rad]"""
     offset: is_.Offset | None = None
-    """shift along x, y and z, after the turn [m]"""
+    """shift along x, y and z, after the rotation [m]"""
 
 
 class BlockMesh(Placed):
@@ -119,9 +119,9 @@ class SectorMesh(Placed):
     angles: is_.Angles
     """angles of start and end, from z where the axis is y [rad]"""
     height: is_.LengthOrLayers
-    """length along the axis, or that of each layer by its name from the bottom up [m]"""
+    """length along the axis, or lengths of layers by name from the bottom up [m]"""
     divisions: is_.Divisions
-    """numbers of elements along radius, angle and axis, there through each layer"""
+    """numbers of elements along radius, angle and axis, the last for each layer"""
     axis: Literal["x", "y", "z"] = "y"
     """x, y or z"""
 
@@ -132,11 +132,11 @@ class ExtrusionMesh(Placed):
     nodes: is_.Rows
     """coordinates of each node in the plane [m]"""
     quadrilaterals: is_.Rows
-    """corners of each quadrilateral, counterclockwise, from 0 on"""
+    """corners of each quadrilateral, counterclockwise, numbered from 0"""
     height: is_.LengthOrLayers
-    """length along the axis, or that of each layer by its name from the bottom up [m]"""
+    """length along the axis, or lengths of layers by name from the bottom up [m]"""
     layers: is_.Count
-    """number of elements along the axis, through each such layer"""
+    """number of elements along the axis in each layer"""
     axis: Literal["x", "y", "z"] = "z"
     """x, y or z"""
 
@@ -158,11 +158,11 @@ class ElementsMesh(Placed):
     nodes: is_.Rows
     """coordinates of each node [m]"""
     elements: is_.Rows
-    """nodes of each element, from 0 on, in the order of VTK"""
+    """nodes of each element, numbered from 0, in the order of VTK"""
     volumes: dict[str, is_.Vector] | None = None
     """elements of each group by its name"""
     faces: dict[str, is_.Rows] | None = None
-    """pairs of an element and one of its faces by the name of their group"""
+    """pairs of an element and one of its faces, by name of the group"""
     node_sets: dict[str, is_.Vector] | None = None
     """nodes of each set by its name"""
 
@@ -182,31 +182,35 @@ def meshed_tables(kinds: str, material: Any, name: Keys) -> list[type[Table]]:
     Parameters
     ----------
     kinds : str
-        All kinds of bodies, in words.
+        All kinds of bodies, as text.
     material : type
         The table of a material.
     name : mapping
-        The key of its name, as `table_of` takes it.
+        The key of its name, in the form of `table_of`.
     """
     revolved: Keys = {
         "profile": (one_of("shape", PROFILES), ..., "section through the axis, the half with r >= 0"),
-        "material": (is_.one_or_by_name(material), ..., "what it is made of, or that of each region by its name"),
+        "material": (is_.one_or_by_name(material), ..., "material, or materials of the regions by name"),
     }
     held: Keys = {
-        "held": (HeldPlaces, (), "places that do not move: their names, or with directions"),
-        "residual_at": (list[is_.OfProfile], (), "places (r, z) where forces act, to which modes left out yield [m]"),
+        "held": (HeldPlaces, (), "places that do not move: their names, or tables with directions"),
+        "residual_at": (
+            list[is_.OfProfile],
+            (),
+            "places (r, z) of forces, at which modes left out add static flexibility [m]",
+        ),
         "turning_history": (History | None, None, "factor on the turning over time, constant if left out"),
     }
     meshed: Keys = {
         "mesh": (one_of("shape", MESHES), ..., "its mesh"),
-        "materials": (is_.one_or_by_name(material), ..., "what it is made of, or that of each group by its name"),
+        "materials": (is_.one_or_by_name(material), ..., "material, or materials of the groups by name"),
         "points": (dict[str, is_.MeshNode], {}, "nodes by name: a set of one, a number or coordinates [m]"),
         "fixed": (is_.FixedGroups, (), "groups of faces or nodes that are held: their names, or directions by name"),
     }
     flags: Keys = {
-        "contact_faces": (list[str], (), "faces that touch others: the body yields at their points"),
-        "residual_flexibility": (bool, True, "whether modes beyond the cutoff yield statically at the points"),
-        "linear": (bool, False, "whether elements without nodes in the middle of their edges stay as they are"),
+        "contact_faces": (list[str], (), "faces that touch others, which are made flexible at their points"),
+        "residual_flexibility": (bool, True, "whether modes beyond the cutoff add static flexibility at the points"),
+        "linear": (bool, False, "whether elements without midside nodes are kept as they are"),
     }
     return [
         table_of(bodies.AxisymmetricBody, "kind", "axisymmetric", kinds, before=revolved, after={**held, **name}),

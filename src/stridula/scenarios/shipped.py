@@ -1,4 +1,4 @@
-"""The scenarios that come with the package: their texts and their list, read without anything heavy."""
+"""The scenarios shipped with the package: their texts and their list, read without heavy imports."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Case:
     Attributes
     ----------
     name, title, source : str
-        What to call it, what it is, and where it comes from.
+        Name, title and source.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Scenarios as text: one in full, and the schema for editors."""
+"""Scenarios as complete TOML text, and their schema for editors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .read import read_tables
 from .schema import json_schema
 
 COMMENT_COLUMN = 32
-# Lists of rows that are longer have each row on a line of its own.
+# Longer lists of rows have each row on its own line.
 LONGEST_ROW = 100
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
@@ -38,7 +38,7 @@ def scenario_schema() -> dict[str, Any]:
 
 
 def _lines(table: dict[str, Any], path: Path, tables: dict[str, Any]) -> list[str]:
-    """Return the lines of a table: its values first, then the tables and lists of tables in it."""
+    """Return the lines of a table: its values first, then its tables and lists of tables."""
     known = list(properties(node_at(path, tables), table))
     order = [tag for tag in TAGS if tag in known] + [key for key in known if key not in TAGS]
     ordered = sorted(table.items(), key=lambda item: order.index(item[0]) if item[0] in order else len(order))
@@ -48,7 +48,7 @@ def _lines(table: dict[str, Any], path: Path, tables: dict[str, Any]) -> list[st
             lines += _value_lines(key, value, (*path, key), tables)
     for key, value in ordered:
         if isinstance(value, dict):
-            # A table that only holds tables needs no header of its own.
+            # A table that holds only tables needs no header.
             only_tables = bool(value) and all(isinstance(entry, dict) for entry in value.values())
             header = [] if only_tables else ["", f"[{_header((*path, key))}]"]
             lines += [*header, *_lines(value, (*path, key), tables)]
@@ -69,7 +69,7 @@ def _value_lines(key: str, value: Any, path: Path, tables: dict[str, Any]) -> li
 
 
 def _with_rows(key: str, value: Any) -> str:
-    """Return a key and its value, short lists and those in lists on one line."""
+    """Return a key and its value, with short lists and rows on one line."""
     name = toml({key: 0}).rpartition(" = ")[0]
     if not isinstance(value, list) or "{" in str(value):
         return toml({key: value})

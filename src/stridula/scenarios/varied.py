@@ -1,4 +1,4 @@
-"""Keys of a scenario that go through several values: where they are, and what they take."""
+"""Keys of a scenario that are varied: their places and accepted values."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ from .outline import Node, Path
 from .quantities import parts, quantity
 from .read import MESHES, names_files
 
-# Files of a body, whose matrices are read once.
+# Keys of files of a body, whose matrices are read once.
 READ_ONCE = ("file", "mass", "stiffness", "labels", "mesh")
 _UNIT = re.compile(r"\s*\[[^]]*\]$")
 
 
 @dataclass(frozen=True)
 class Varied:
-    """A key that goes through several values.
+    """A key that is varied.
 
     Attributes
     ----------
     key : str
-        As it was asked for.
+        Key as given.
     path : tuple
-        Where it is in the tables.
+        Path in the tables.
     full : str
         Its full key.
     unit : str or None
-        SI unit of its numbers, None if it takes anything else.
+        SI unit of its numbers, None if it accepts anything else.
     node : dict
-        What the schema says of it.
+        Its node in the schema.
     """
 
     key: str
@@ -50,21 +50,21 @@ class Varied:
 
     @property
     def long_name(self) -> str:
-        """What it is, in words."""
+        """Description, without the unit."""
         return _UNIT.sub("", str(self.node.get("description", self.full)))
 
     def read(self, value: Any) -> Any:
-        """Return a value as the scenario takes it; whether it is in its range shows when the scenario is built.
+        """Return a value in the form that the scenario accepts; its range is checked when the scenario is built.
 
         Parameters
         ----------
         value : object
-            A number, a text such as ``"10 deg"``, a word, or whatever else the key takes.
+            A number, a text such as ``"10 deg"``, a word, or any other value that the key accepts.
 
         Raises
         ------
         ScenarioError
-            If it is of another kind than the key takes.
+            If the key does not accept values of its type.
         """
         value = plain_value(value)
         words = outline.words(self.node)
@@ -86,12 +86,12 @@ class Varied:
         return value
 
     def coordinate(self, values: Sequence[Any]) -> tuple[list[Any], dict[str, str]]:
-        """Return values as numbers with their unit, or as words, and the attributes that say so.
+        """Return values as numbers with their unit, or as words, and the attributes of the coordinate.
 
         Parameters
         ----------
         values : sequence
-            What `read` returned. Texts of one unit keep it; of several units all become SI.
+            Values returned by `read`. Texts in one unit keep it; mixed units are converted to SI.
 
         Returns
         -------
@@ -122,12 +122,12 @@ def varied_keys(tables: dict[str, Any], keys: Sequence[str], sets: Sequence[Sequ
     keys : sequence of str
         The keys, full or any unique ending.
     sets : sequence of sequence
-        Their values, set by set.
+        Values of the keys, one set for each point.
 
     Raises
     ------
     ScenarioError
-        If a key is not known, means several places or a place that another one means, or names a file.
+        If a key is unknown or ambiguous, refers to the same place as another one, or names a file.
     """
     changed, places = _places(tables, keys, sets)
     found: list[Varied] = []
@@ -149,7 +149,7 @@ def varied_keys(tables: dict[str, Any], keys: Sequence[str], sets: Sequence[Sequ
 
 
 def _node(path: Path, tables: dict[str, Any]) -> Node:
-    """Return what the schema says of a key; of one that tells kinds of tables apart, of all kinds."""
+    """Return the schema node of a key; for a tag, the node with the words of all kinds."""
     if path[-1] in outline.TAGS:
         return outline.properties(outline.node_at(path[:-1], tables))[str(path[-1])]
     return outline.node_at(path, tables) or {}
@@ -158,9 +158,9 @@ def _node(path: Path, tables: dict[str, Any]) -> Node:
 def _places(
     tables: dict[str, Any], keys: Sequence[str], sets: Sequence[Sequence[Any]]
 ) -> tuple[dict[str, Any], Mapping[str, Path]]:
-    """Return tables in which the keys are known, and where they are.
+    """Return tables in which the keys are known, and the paths of the keys.
 
-    A key may be known only under one of several values of another, as the parameters of a law of friction are.
+    A key may exist only for one of several values of another key, such as the parameters of a law of friction.
     """
     kinds = [number for number, key in enumerate(keys) if key.rpartition(".")[2] in outline.TAGS]
     tried = {tuple(str(values[number]) for number in kinds): values for values in reversed(sets)}

@@ -1,4 +1,4 @@
-"""What many runs say: ensembles, sweeps and maps, squeal surveys, root loci, calibration, sensitivity."""
+"""Studies of many runs: ensembles, sweeps and maps, squeal surveys, root loci, calibration, sensitivity."""
 
 from __future__ import annotations
 
@@ -29,5 +29,5 @@ __all__ = [*_HOME]
 
 
 def __getattr__(name: str) -> Any:
-    """Import a name from its home on first use: an ensemble needs no scenarios."""
+    """Import a name from its module on first use, since an ensemble needs no scenarios."""
     return on_first_use(__name__, _HOME, name)

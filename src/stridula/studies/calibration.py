@@ -1,4 +1,4 @@
-"""Calibration: parameters whose run shows given measures, by differential evolution from a seed."""
+"""Calibration: search for parameters whose run meets targets, by differential evolution."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ from ..checks import (
     positive,
     suggestion,
 )
+from ..integration.bars import bar
 from ..linear.equilibrium import HELD, JAMMED, LIFTED_OFF
 from ..linear.structure import SLIDING
 from .measures import MEASURES, Value, value_of
@@ -38,33 +39,33 @@ from .sweeps import sweep
 
 Point = dict[str, Any]
 Evaluate = Callable[[Sequence[Point]], Sequence[Mapping[str, Value]]]
-# Miss of a target that a failed run, or a measure that is not a number, counts for; others come near it.
+# Miss of a failed run, or of a measure that is not a number; other misses stay below it.
 WORST = 10.0
 MOST_GENERATIONS = 100_000
 LARGEST_POPULATION = 10_000
-# What else a calibration says.
+# Names of other results of a calibration.
 OWN = ("miss", "met", "target", "generation", "parameter", "best_miss", "best_parameters")
 COLUMNS = {column.name: column for measure in MEASURES.values() for column in measure.columns}
-# What measures that are words can be.
+# Possible values of measures that are words.
 WORDS = {"regime": tuple(REGIMES), "equilibrium": (SLIDING, HELD, LIFTED_OFF, JAMMED)}
 
 
 @dataclass(frozen=True)
 class Target:
-    """What a measure should be.
+    """Target of a measure.
 
     Parameters
     ----------
     low, high : float, optional
-        Between these it is met; a bound that is left out does not count.
+        Bounds between which the target is met; a bound that is left out is infinite.
     scale : float, optional
-        How far outside counts as a miss of 1, in the unit of the measure: half the width if left out, or a tenth of the
-        only bound. Misses above 5 are compressed, to stay below the 10 of a failed run.
+        Distance outside the bounds that counts as a miss of 1, in the unit of the measure: by default half the width,
+        or a tenth of the only bound. Misses above 5 are compressed to stay below 10, the miss of a failed run.
 
     Raises
     ------
     ValueError
-        If there is no bound, they do not rise, or there is no scale.
+        If there is no bound, `low` is above `high`, or there is no scale.
     """
 
     low: float = -math.inf
@@ -98,26 +99,26 @@ class Target:
         return (self.high - self.low) / 2.0
 
     def miss(self, value: Value) -> float:
-        """Return how far a measure is outside, in units of the scale, below `WORST` where it is a number."""
+        """Return the distance of a measure from the bounds, in units of the scale; below `WORST` for finite numbers."""
         if isinstance(value, str) or not math.isfinite(value):
             return WORST
         miss = max(0.0, self.low - value, value - self.high) / self._scale
-        # Goes on smoothly and rises for ever: a search sees what is nearer, however narrow the bounds.
+        # Smooth and always rising, so that a search can compare misses however narrow the bounds are.
         return miss if miss <= WORST / 2.0 else WORST - (WORST / 2.0) ** 2 / miss
 
 
 @dataclass(frozen=True)
 class CalibrationProgress:
-    """How far a calibration has come.
+    """Progress of a calibration.
 
     Attributes
     ----------
     generation, generations : int
-        Generations that are done, and in all.
+        Number of generations done, and in total.
     miss : float
         Miss of the best parameters so far.
     best : dict
-        These parameters.
+        Best parameters so far.
     """
 
     generation: int
@@ -138,40 +139,44 @@ def calibrate(
     start: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None = None,
     spread: float = 0.02,
     watchers: Sequence[Callable[[CalibrationProgress], None]] = (),
+    progress: bool = False,
     **options: Any,
 ) -> xr.Dataset:
-    """Find parameters whose run has given measures.
+    """Find parameters whose run meets targets.
 
     Differential evolution (Storn & Price 1997; ``scipy.optimize.differential_evolution``) over the ranges; the runs of
-    a generation march side by side. The search minimises the sum of the squared misses of the targets and ends once all
-    are met. Equal seeds give equal searches.
+    a generation are computed side by side. The search minimises the sum of the squared misses of the targets and ends
+    once all are met. Equal seeds give equal searches.
 
     Parameters
     ----------
     source : str, Path, xarray.Dataset or callable
         A scenario, or a function of the parameters by name that makes a system, as for `sweep`. Or, for targets that
-        take several runs, a function of one argument, a list of points, values by key, that returns for each its
-        measures by name, those of the targets at least.
+        need several runs, a function of a list of points (values by key) that returns the measures of each point by
+        name, including those of the targets.
     ranges : mapping
-        Where each parameter is searched: a `Range` or its two ends.
+        Search range of each parameter: a `Range` or its two ends.
     targets : mapping
-        Target of each measure, by the name of its variable in a sweep: a `Target`, its two bounds, or the word that
-        the measure should equal.
+        Target of each measure, by the name of its variable in a sweep: a `Target`, its two bounds, or the required
+        word.
     measures : mapping, optional
-        Functions of a record by name, for targets that no measure of a sweep gives.
+        Functions of a record by name, for targets that are not measures of a sweep.
     population : int, optional
-        Sets of parameters in a generation, from 5 to 10 000.
+        Parameter sets in each generation, from 5 to 10 000.
     generations : int, optional
         Generations after the first.
     seed : int, optional
         Seed of the search.
     start : mapping or sequence of mapping, optional
-        Parameters to start from: the first set, about which the others are spread, or the first sets of all, such as
-        the best of a sweep, about which the rest are spread in turn.
+        Initial parameters: one set, around which the others are spread, or several sets, such as the best of a sweep,
+        around which the rest are spread in turn.
     spread : float, optional
-        Standard deviation of the others about `start`, as a share of the ranges.
+        Standard deviation of the other sets around `start`, as a fraction of the ranges.
     watchers : sequence of callable, optional
         Called with a `CalibrationProgress` after each generation.
+    progress : bool, optional
+        Whether a bar on standard error shows how many generations are done, the miss of the best set so far and the
+        time left.
     **options
         Arguments of `sweep` such as `overrides`, `duration`, `sample_rate`, `workers` and `client`.
 
@@ -180,13 +185,13 @@ def calibrate(
     xarray.Dataset
         The best set: each parameter and each measure, by name; ``miss``, the root of the sum of squared misses, and
         ``met``, whether each ``target`` is met; over ``generation`` the ``best_miss`` so far and, by ``parameter``, the
-        ``best_parameters``. Of a scenario also ``step`` and ``sample_interval``: sets that run side by side share a
-        step, with which the best alone runs as it did.
+        ``best_parameters``. For a scenario also ``step`` and ``sample_interval``: sets that run side by side share a
+        step, which reproduces the run of the best set alone.
 
     Raises
     ------
     ScenarioError
-        If the scenario cannot be used, or a key is not known.
+        If the scenario is invalid, or a key is unknown.
     ValueError
         If an argument is out of its range, or no set of the first generation can be run.
     """
@@ -201,9 +206,9 @@ def calibrate(
     is_evaluation = callable(source) and not takes(source, names)
     evaluate = _evaluation(source, names) if is_evaluation else _sweeping(source, aimed, measures or {}, options)
     random = np.random.default_rng(seed)
-    search = _Search(searched, aimed, evaluate, generations, watchers)
     first = _first_population(searched, population, random, start, spread)
-    with suppress(_Met), _own_errors():
+    with _generations_shown(progress) as more, suppress(_Met), _own_errors():
+        search = _Search(searched, aimed, evaluate, generations, [*watchers, *more])
         scipy.optimize.differential_evolution(
             search.misses,
             [(0.0, 1.0)] * len(searched),
@@ -221,12 +226,28 @@ def calibrate(
     return search.dataset()
 
 
+@contextmanager
+def _generations_shown(progress: bool) -> Iterator[list[Callable[[CalibrationProgress], None]]]:
+    """Give the watchers of a search that show a bar, none unless it is asked for."""
+    instance("progress", progress, bool)
+    if not progress:
+        yield []
+        return
+    with bar("calibration", asked=True) as show:
+
+        def watch(reached: CalibrationProgress) -> None:
+            words = f"generation {reached.generation} of {reached.generations}, miss {reached.miss:.4g}"
+            show(reached.generation + 1, reached.generations + 1, words)
+
+        yield [watch]
+
+
 class _Met(Exception):
     """All targets are met."""
 
 
 class _Failed(Exception):
-    """What an evaluation raised, kept from scipy, which takes some of it for its own."""
+    """An error of an evaluation, hidden from scipy, which handles some errors as its own."""
 
 
 @contextmanager
@@ -251,7 +272,7 @@ def _targets(targets: Any) -> dict[str, Target | str]:
     found: dict[str, Target | str] = {}
     for name, given in targets.items():
         if name in OWN:
-            raise ArgumentError("targets", "not be called as what a calibration says", name)
+            raise ArgumentError("targets", "not have the name of a result of the calibration", name)
         if isinstance(given, (Target, str)):
             found[str(name)] = given
         elif isinstance(given, (tuple, list)) and len(given) == 2:
@@ -265,12 +286,12 @@ def _targets(targets: Any) -> dict[str, Target | str]:
 
 
 def miss_of(target: Target | str, value: Value) -> float:
-    """Return the miss of a target; of a word 0 or 1."""
+    """Return the miss of a target; 0 or 1 for a word."""
     return float(value != target) if isinstance(target, str) else target.miss(value)
 
 
 def _evaluation(function: Any, names: Sequence[str]) -> Evaluate:
-    """Return a function of a list of points, if it may be one.
+    """Return a function after checking that it may take a list of points.
 
     Raises
     ------
@@ -289,11 +310,11 @@ def _sweeping(
     functions: Mapping[str, Callable[[xr.Dataset], Value]],
     options: Mapping[str, Any],
 ) -> Evaluate:
-    """Return what runs a scenario at many points and measures what the targets are of."""
+    """Return a function that runs a scenario at many points and measures the quantities of the targets."""
     instance("measures", functions, Mapping)
     for option in ("out", "watchers"):
         if option in options:
-            raise ArgumentError(option, "not be given: every generation is a sweep of its own")
+            raise ArgumentError(option, "not be given: every generation is a separate sweep")
     for name, target in targets.items():
         if name not in functions:
             _check_target(name, target, list(functions))
@@ -315,7 +336,7 @@ def _sweeping(
 
 
 def _check_target(name: str, target: Target | str, functions: Sequence[str]) -> None:
-    """Raise ValueError if a target is of no measure, or a word where that is a number, or the other way round."""
+    """Raise ValueError if a target is of an unknown measure, or a word for a number or the reverse."""
     known = [*functions, *COLUMNS]
     if name not in COLUMNS:
         raise ArgumentError("targets", f"be of {', '.join(known)}", name, got=f"{brief(name)}{suggestion(name, known)}")
@@ -333,7 +354,7 @@ def _first_population(
     start: Mapping[str, Any] | Sequence[Mapping[str, Any]] | None,
     spread: float,
 ) -> Array:
-    """Return the first generation as shares of the ranges, shape (population, parameters)."""
+    """Return the first generation as fractions of the ranges, shape (population, parameters)."""
     if start is None:
         return np.asarray(scipy.stats.qmc.LatinHypercube(len(ranges), rng=random).random(population))
     given = [start] if isinstance(start, Mapping) else start
@@ -347,7 +368,7 @@ def _first_population(
 
 
 def _shares_of(start: Any, ranges: Mapping[str, Range]) -> list[float]:
-    """Return a set of parameters as shares of the ranges."""
+    """Return a set of parameters as fractions of the ranges."""
     instance("start", start, Mapping)
     if set(start) != set(ranges):
         raise ArgumentError("start", f"have the keys of ranges, {listed(ranges)}", start, got=listed(map(str, start)))
@@ -359,7 +380,7 @@ def _shares_of(start: Any, ranges: Mapping[str, Range]) -> list[float]:
 
 
 class _Search:
-    """A search on its way: what was best, generation by generation."""
+    """State of a search: the best set so far, by generation."""
 
     def __init__(
         self,
@@ -377,11 +398,11 @@ class _Search:
         self.history: list[tuple[float, Array]] = []
 
     def point(self, shares: Array) -> Point:
-        """Return the parameters at shares of the ranges."""
+        """Return the parameters at fractions of the ranges."""
         return {key: one.value(float(share)) for (key, one), share in zip(self.ranges.items(), shares, strict=True)}
 
     def misses(self, columns: Array) -> Array:
-        """Return the sum of squared misses of each set of parameters, shape (parameters, sets) to (sets,)."""
+        """Return the sum of squared misses of each set of parameters, from shape (parameters, sets) to (sets,)."""
         sets = np.atleast_2d(columns.T)
         with _kept_from_scipy():
             found = self.measured_at([self.point(shares) for shares in sets])
@@ -411,11 +432,11 @@ class _Search:
                 raise ArgumentError("source", f"return {lacking!r} for each point", one)
             clash = next((name for name in one if name in self.ranges or name in OWN), None)
             if clash is not None:
-                raise ArgumentError("measures", "not be called as parameters or results", clash)
+                raise ArgumentError("measures", "not have the name of a parameter or a result", clash)
         return [{name: value_of(value) for name, value in one.items()} for one in found]
 
     def dataset(self) -> xr.Dataset:
-        """Return what came of the search."""
+        """Return the results of the search."""
         keys = list(self.ranges)
         numbers = np.array([self._numbers(shares) for _, shares in self.history])
         data: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""Points of a study in parts, computed here or on other machines, kept on disk, and resumed from there."""
+"""Points of a study in parts, computed here or on other machines, saved on disk and resumed from there."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from typing import Any
 
 import xarray as xr
 
-from ..checks import ArgumentError, count
+from ..checks import ArgumentError, count, instance
+from ..integration.bars import Show, bar
 from .machines import on_machines
 from .parts import Parts
 from .processes import Helpers
@@ -24,16 +25,16 @@ from .task import Outcome, Stopped, Work, one_thread_each
 
 @dataclass(frozen=True)
 class SweepProgress:
-    """How far a sweep or a survey has come.
+    """Progress of a sweep or a survey.
 
     Attributes
     ----------
     done : int
-        Points that are done, those of an earlier start among them.
+        Number of points done, including those of an earlier call.
     points : int
-        Points in all.
+        Total number of points.
     wall_time : float
-        Time since this start [s].
+        Time since the start of this call [s].
     """
 
     done: int
@@ -46,22 +47,22 @@ Watcher = Callable[[SweepProgress], None]
 
 @dataclass(frozen=True)
 class Plan:
-    """A study before it starts.
+    """A study to be computed.
 
     Attributes
     ----------
     study : str
-        What kind it is, in a word: also the attribute that says what was asked of it.
+        Kind of study in one word; also the name of the attribute with its arguments.
     work : Work
-        What is done at each point.
+        Work at each point.
     values : list of tuple
         Values of the keys at each point.
     size : int
-        Points of a part, which is computed in one go, whoever computes it.
+        Number of points of a part, the unit of computation on every machine.
     attributes : dict of str
-        What the result says of where it comes from.
+        Attributes of the result, which record its origin.
     labelled : callable
-        Takes what came of all points, returns the result.
+        Function of the outcomes of all points that returns the result.
     """
 
     study: str
@@ -73,7 +74,7 @@ class Plan:
 
     @property
     def identity(self) -> dict[str, str]:
-        """What tells this study from others."""
+        """Attributes that distinguish this study from others."""
         return {name: value for name, value in self.attributes.items() if name != "title"}
 
     @cached_property
@@ -83,27 +84,48 @@ class Plan:
         return {number: self.values[first : first + self.size] for number, first in enumerate(starts)}
 
 
-def check_options(workers: Any, client: Any, watchers: Any) -> None:
-    """Raise ValueError unless a study can be computed so."""
+def told_of_points(show: Show) -> Watcher:
+    """Return a watcher that shows the points done in a bar."""
+    return lambda reached: show(reached.done, reached.points, f"{reached.done} of {reached.points} points")
+
+
+def check_options(workers: Any, client: Any, watchers: Any, progress: Any) -> None:
+    """Raise ValueError unless these options of a study are valid."""
     if workers is not None:
         count("workers", workers)
     if not isinstance(watchers, Sequence):
         raise ArgumentError("watchers", "be a list of callables", watchers)
+    instance("progress", progress, bool)
     if client is not None and not callable(getattr(client, "submit", None)):
         raise ArgumentError("client", "be a client of dask.distributed", client)
 
 
 def computed(
+    plan: Plan,
+    out: str | Path | None,
+    workers: int | None,
+    client: Any,
+    watchers: Sequence[Watcher],
+    progress: bool = False,
+) -> xr.Dataset:
+    """Compute the remaining points of a study and return all of it, with a bar on request."""
+    if not progress:
+        return _computed(plan, out, workers, client, watchers)
+    with bar(plan.attributes.get("title", "") or plan.study, asked=True) as show:
+        return _computed(plan, out, workers, client, [*watchers, told_of_points(show)])
+
+
+def _computed(
     plan: Plan, out: str | Path | None, workers: int | None, client: Any, watchers: Sequence[Watcher]
 ) -> xr.Dataset:
-    """Compute what is not done of a study and return all of it.
+    """Compute the remaining points of a study and return all of it.
 
     Parameters
     ----------
     plan : Plan
         The study.
     out : str, Path or None
-        File to write, beside which finished parts are kept.
+        File to write; finished parts are kept beside it.
     workers : int or None
         Parts at a time; as many as there are processors if None.
     client : distributed.Client or None
@@ -152,9 +174,9 @@ def computed(
 def _here(
     work: Work, parts: Mapping[int, Sequence[Sequence[Any]]], workers: int | None
 ) -> Generator[tuple[int, list[Outcome]]]:
-    """Go through the parts as they are done on this machine, with what came of their points.
+    """Yield the parts with their outcomes as they are finished on this machine.
 
-    Threads compute them, and processes from when on that takes less time.
+    Threads compute them, and also processes once that is faster.
     """
     if not parts:
         return

@@ -1,4 +1,4 @@
-"""Ensembles: one system from starts that differ by next to nothing, and what its measures come to on average."""
+"""Ensembles: runs of one system from slightly different starts, and the means of their measures."""
 
 from __future__ import annotations
 
@@ -37,20 +37,21 @@ def ensemble(
     seed: int = 0,
     confidence: float = 0.95,
     workers: int | None = None,
+    progress: bool = False,
     **options: Any,
 ) -> xr.Dataset:
     """Run a system from slightly different starts and return the mean of each measure with its confidence interval.
 
-    Run 0 starts as the system says. The others are moved by shares s drawn evenly from ``-perturbation`` to
-    ``perturbation``: where the first contact starts open, its gap becomes ``gap (1 + s)``; where it starts closed or in
+    Run 0 starts unchanged. The others are perturbed by shares s drawn uniformly from ``-perturbation`` to
+    ``perturbation``: if the first contact starts open, its gap becomes ``gap (1 + s)``; if it starts closed or in
     equilibrium, its slider gets the velocity ``s v`` along the track, with v the largest velocity prescribed by drives
-    and rigid tracks, or 1 m/s if there is none. A slider that cannot be moved along the track gets it across. One
-    without a known translation gets it in every degree of freedom.
+    and rigid tracks, or 1 m/s if there is none. A slider that cannot move along the track gets the velocity across it,
+    a slider without a known translation gets it in every degree of freedom.
 
     Parameters
     ----------
     system : System, str, Path, xarray.Dataset or callable
-        What to simulate: a system, a scenario as for `load_scenario`, or a function that makes one, as for `sweep`.
+        A system, a scenario as for `load_scenario`, or a function that makes one, as for `sweep`.
     duration : float or None
         Time to simulate [s]; that of the scenario or the function if None.
     measures : mapping
@@ -62,11 +63,13 @@ def ensemble(
     perturbation : float, optional
         Largest relative change of the start [1], from 0 to 0.1.
     seed : int, optional
-        Seed of the shares: equal seeds give equal ensembles, whatever the number of workers.
+        Seed of the shares: equal seeds give equal ensembles for any number of workers.
     confidence : float, optional
         Level of the interval [1], strictly between 0 and 1.
     workers : int, optional
         Runs at a time; as many as there are processors if left out.
+    progress : bool, optional
+        Whether a bar on standard error shows how far the runs are and how long they will still take.
     **options
         Arguments of `simulate_many` such as `scheme`, `step`, `sample_rate`, `probes` and `device`, in place of those
         of the scenario or the function.
@@ -75,14 +78,14 @@ def ensemble(
     -------
     xarray.Dataset
         For each measure its value over ``run``, its mean ``<name>_mean`` and Student's interval ``<name>_interval``
-        over ``bound`` (low, high), both of the values that are finite; the interval takes at least 2. Beside them
+        over ``bound`` (low, high), both of the finite values; the interval needs at least 2. In addition
         ``perturbation``, ``ended`` and ``message`` over ``run``. A run that diverged has NaN and its message.
 
     Raises
     ------
     ValueError
-        If an argument is out of its range, a measure returns what is not a number, or a function takes other
-        parameters, raises anything or makes anything else.
+        If an argument is out of its range, a measure does not return a number, or a function takes other parameters,
+        raises an exception or returns anything else.
     """
     system, duration, options = _made(system, duration, by_key("overrides", overrides), options)
     positive("duration", duration)
@@ -98,12 +101,12 @@ def ensemble(
             raise ArgumentError(word, "be left out of an ensemble, which sets its own", options[word])
     shares = _shares(runs, perturbation, seed)
     systems = [_perturbed(system, float(share)) for share in shares]
-    results = _run_all(systems, duration, named, options, workers or os.cpu_count() or 1)
+    results = _run_all(systems, duration, named, options | {"progress": progress}, workers or os.cpu_count() or 1)
     return _dataset(named, shares, results, confidence)
 
 
 def perturbed_starts(system: System, runs: int, perturbation: float = 1e-6, seed: int = 0) -> list[System]:
-    """Return a system with the starts of an ensemble, the first as it is."""
+    """Return copies of a system with the starts of an ensemble, the first unchanged."""
     return [_perturbed(system, float(share)) for share in _shares(runs, perturbation, seed)]
 
 
@@ -113,9 +116,9 @@ def share_of(status: str, contact: str | None = None) -> Measure:
     Parameters
     ----------
     status : {"separated", "sticking", "sliding"}
-        Which one.
+        Status of the contact.
     contact : str, optional
-        Name of the contact where there are several.
+        Name of the contact if there are several.
     """
 
     def share(run: xr.Dataset) -> float:
@@ -125,7 +128,7 @@ def share_of(status: str, contact: str | None = None) -> Measure:
 
 
 def mean_and_interval(values: Sequence[float] | Array, confidence: float = 0.95) -> tuple[float, float]:
-    """Return the mean of the finite values and the half width of Student's interval, NaN where there are too few.
+    """Return the mean of the finite values and the half width of Student's interval, NaN if there are too few.
 
     Parameters
     ----------
@@ -143,9 +146,9 @@ def mean_and_interval(values: Sequence[float] | Array, confidence: float = 0.95)
 
 
 def median_and_interval(values: Sequence[float] | Array, confidence: float = 0.95) -> tuple[float, float, float]:
-    """Return the median of the finite values and the ends of its interval, NaN where there are too few.
+    """Return the median of the finite values and the ends of its interval, NaN if there are too few.
 
-    Order statistics of the binomial distribution, which assume nothing of the values (Conover 1999, Practical
+    Order statistics of the binomial distribution, which make no assumption about the values (Conover 1999, Practical
     Nonparametric Statistics, section 3.2).
 
     Parameters
@@ -169,13 +172,13 @@ def median_and_interval(values: Sequence[float] | Array, confidence: float = 0.9
 def _made(
     given: Any, duration: float | None, values: Mapping[str, Any], options: dict[str, Any]
 ) -> tuple[System, Any, dict[str, Any]]:
-    """Return the system that is given or made, how long to simulate it, and how."""
+    """Return the system given or made, its duration, and the other arguments of its simulation."""
     if isinstance(given, System) or not (callable(given) or isinstance(given, (str, Path, xr.Dataset))):
         instance("system", given, System)
         if values:
             raise ArgumentError("overrides", "be left out of an ensemble of a system", dict(values))
         return given, duration, options
-    # Only here: an ensemble of a system needs no scenarios.
+    # Imported here because an ensemble of a system needs no scenarios.
     from .sources import ARGUMENTS, made_once
 
     scenario = made_once(given, values, {} if duration is None else {"duration": duration})
@@ -206,7 +209,7 @@ def _shares(runs: int, perturbation: float, seed: int) -> Array:
 
 
 def _perturbed(system: System, share: float) -> System:
-    """Return the system with its start moved by a share."""
+    """Return the system with its start perturbed by a share."""
     if share == 0.0:
         return system
     first, *others = system.contacts
@@ -217,7 +220,7 @@ def _perturbed(system: System, share: float) -> System:
 
 
 def _prescribed(system: System) -> float:
-    """Return the largest velocity that is prescribed [m/s], 1 if there is none."""
+    """Return the largest prescribed velocity [m/s], 1 if there is none."""
     found = [velocity for drive in system.drives for velocity in drive.velocities] or [0.0]
     for contact in system.contacts:
         if contact.rigid_track is not None:
@@ -228,13 +231,13 @@ def _prescribed(system: System) -> float:
 
 
 def _push(system: System, velocity: float) -> Drive:
-    """Return what gives the slider a small velocity."""
+    """Return a drive that gives the slider a small initial velocity."""
     slider = system.slider
     if not slider.has_translation:
         return State(slider, velocity=(velocity,) * slider.mass.shape[0])
     held, translation = system.is_held(slider), slider.modes().translation
     normal, tangent, *_ = (axis[: len(translation)] for axis in system.contacts[0].frame)
-    # Its root's x is prescribed under an imposed velocity: only y is left.
+    # Under an imposed velocity x of its root is prescribed, so that only y is free.
     direction = np.array([0.0, 1.0]) if held else tangent
     if not held and not np.any(direction @ translation):
         direction = normal
@@ -244,7 +247,7 @@ def _push(system: System, velocity: float) -> Drive:
 def _run_all(
     systems: Sequence[System], duration: float, measures: Mapping[str, Measure], options: dict[str, Any], workers: int
 ) -> list[tuple[list[float], str, str]]:
-    """Return the values of the measures of each run, how it ended, and its message."""
+    """Return the measures, the ending and the message of each run."""
 
     def measured(record: xr.Dataset) -> tuple[list[float], str, str]:
         ended, message = str(record.attrs["ended"]), str(record.attrs.get("message", ""))

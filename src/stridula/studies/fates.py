@@ -1,4 +1,4 @@
-"""What becomes of a mode that grows: a run from equilibrium with the mode on top, and what its limit cycle is."""
+"""Fates of growing modes: runs from equilibrium perturbed by a mode, and their limit cycles."""
 
 from __future__ import annotations
 
@@ -25,38 +25,38 @@ from .tones_of_modes import Tone, tones_of
 LIVES, JOINS, CHANGES, DIES = "lives", "joins", "changes", "dies"
 NOT_REACHED, LEFT, FAILED = "not reached", "off the track", "failed"
 FATES = (LIVES, JOINS, CHANGES, DIES, NOT_REACHED, LEFT, FAILED)
-# Those that end in a vibration.
+# Fates that end in a vibration.
 VIBRATES = (LIVES, JOINS, CHANGES)
 # Periods of the mode in the window over which a limit cycle is measured, and its shortest length [s].
 PERIODS, SHORTEST_WINDOW = 100.0, 0.1
 # Times 1 / growth in which a limit cycle settles once contacts open, stick or slip.
 SETTLING = 5.0
-# Samples recorded in a period of the highest mode of linear theory, where nothing is heard.
+# Samples recorded per period of the highest mode of linear theory, if no sound is computed.
 SAMPLES = 20.0
-# Ratio of the swings of two windows, one after the other, up to which a limit cycle is steady.
+# Largest ratio of the swings in two successive windows of a steady limit cycle.
 STEADY = 1.25
-# Share of the growth of linear theory, below which a motion has left it.
+# Fraction of the growth by linear theory below which a motion has left it.
 BENT = 0.25
-# Swing, absolute and over the largest of the run, below which a vibration is dead; pieces of the run that are compared.
+# Swing, absolute and over the largest of the run, below which a vibration has died; number of pieces compared.
 DEAD, FADED, PIECES = 0.01, 0.1, 20
 
 
 @dataclass(frozen=True)
 class Options:
-    """How modes are followed.
+    """Options of the runs.
 
     Attributes
     ----------
     duration : float or None
         Time of each run [s]; from the growth rate if None.
     longest : float
-        Longest time of a run whose time is not given [s].
+        Longest time of a run without a given duration [s].
     amplitude : float
-        Start of the mode over its reach [1].
+        Initial amplitude of the mode over its reach [1].
     resolution : float
         Largest distance of a tone from its mode, relative to it [1].
     highest : float
-        Highest frequency of a mode that is followed [Hz].
+        Highest frequency of the modes that are simulated [Hz].
     velocity : float, tuple of float or None
         Slip velocity where nothing prescribes it [m/s].
     """
@@ -71,20 +71,20 @@ class Options:
 
 @dataclass(frozen=True)
 class Runs:
-    """Runs of a scenario from its equilibrium, each with a mode on top.
+    """Runs of a scenario from its equilibrium, each perturbed by a mode.
 
     Attributes
     ----------
     scenario : Scenario
-        System, without a start of its own, and how to simulate it.
+        System, without its own start, and settings of its simulation.
     start : InitialEquilibrium
         The equilibrium.
     rest : ModesAtRest
         The modes about it.
     options : Options
-        How they are followed.
+        Options of the runs.
     watch : callable
-        Called now and then; what it raises ends a run.
+        Called repeatedly; an exception that it raises ends a run.
     """
 
     scenario: Scenario
@@ -95,17 +95,17 @@ class Runs:
 
     @property
     def followed(self) -> list[int]:
-        """Numbers of the modes that grow and are followed."""
+        """Numbers of the growing modes that are simulated."""
         exponents = self.rest.exponents
         return [number for number in self.rest.reach if exponents[number].imag <= 2.0 * np.pi * self.options.highest]
 
     def of(self, number: int) -> xr.Dataset:
-        """Return a run with a mode on top, until its limit cycle is steady or time is up.
+        """Return a run perturbed by a mode, until its limit cycle is steady or the longest time is reached.
 
         Raises
         ------
         ValueError
-            If nothing prescribes the slip, or the mode moves no contact point.
+            If a contact is about to change its status, or the mode moves no contact point.
         """
         reach = self.rest.reach[number]
         if reach == 0.0:
@@ -128,20 +128,20 @@ class Runs:
 
     @cached_property
     def still(self) -> xr.Dataset:
-        """A run from equilibrium alone, as long as modes are within linear theory."""
+        """A run from equilibrium without a mode, as long as modes stay within linear theory."""
         lasts = [linear_time(self.rest, number, self.options.amplitude) for number in self.followed]
         return self._simulate(self.start, min(max(lasts), self.options.duration or self.options.longest))
 
     @cached_property
     def sample_rate(self) -> float:
-        """Samples per second of the runs [Hz]: those of the scenario where it is heard, else no more than it takes."""
+        """Samples per second of the runs [Hz]: those of the scenario if it radiates sound, else no more than needed."""
         highest = float(np.abs(self.rest.exponents).max()) / (2.0 * np.pi)
         rate = self.scenario.sample_rate
         return rate if self.is_heard else min(rate, SAMPLES * highest)
 
     @cached_property
     def is_heard(self) -> bool:
-        """Whether anything of a system in the plane can be heard."""
+        """Whether the system is in the plane and radiates sound."""
         system = self.scenario.system
         if system.is_spatial:
             return False
@@ -152,15 +152,15 @@ class Runs:
         return True
 
     def window(self, run: xr.Dataset, number: int) -> float:
-        """Return the length of the windows in which a run is looked at [s]."""
+        """Return the length of the windows in which a run is analysed [s]."""
         return min(self._window(number), 0.5 * _length(run))
 
     def is_settled(self, run: xr.Dataset, number: int) -> bool:
-        """Return whether a run has come to a limit cycle that is steady, or to rest."""
+        """Return whether a run has reached a steady limit cycle or rest."""
         return self.is_dead(run, number) or (self.has_left(run, number) and self.is_steady(run, number))
 
     def has_left(self, run: xr.Dataset, number: int) -> bool:
-        """Return whether a run has left linear theory: contacts change their status, or it grows far less."""
+        """Return whether a run has left linear theory: contacts change their status, or it grows much more slowly."""
         window = self.window(run, number)
         shares = last(run, 2.0 * window)["status_share"].values
         if bool(((shares > 0.0) & (shares < 1.0)).any() or np.ptp(shares, axis=0).any()):
@@ -169,7 +169,7 @@ class Runs:
         return after > 0.0 and np.log(after / before) < BENT * float(self.rest.exponents[number].real) * window
 
     def is_steady(self, run: xr.Dataset, number: int) -> bool:
-        """Return whether a run swings alike in its last two windows."""
+        """Return whether the swings of a run in its last two windows are similar."""
         before, after = self._swings(run, number)
         return after > 0.0 and before > 0.0 and bool(abs(np.log(after / before)) < np.log(STEADY))
 
@@ -187,7 +187,7 @@ class Runs:
         return swing(motion[-2 * samples : -samples]), swing(motion[-samples:])
 
     def _time(self, number: int) -> float:
-        """Return how long a mode takes to grow, settle and be measured [s]."""
+        """Return the time in which a mode grows, settles and is measured [s]."""
         growth = float(self.rest.exponents[number].real)
         return (float(np.log(1.0 / self.options.amplitude)) + SETTLING) / growth + 2.0 * self._window(number)
 
@@ -203,19 +203,19 @@ class Runs:
 
 
 def last(run: xr.Dataset, lasts: float) -> xr.Dataset:
-    """Return the end of a run, of a length [s]."""
+    """Return the last part of a run, `lasts` long [s]."""
     return run.isel(time=slice(-max(2, round(lasts / float(run.attrs["sample_interval"]))), None))
 
 
 def fate_of(runs: Runs, number: int) -> dict[str, Any]:
-    """Return what becomes of a mode, by the names of the variables of a survey, in plain numbers and texts.
+    """Return the fate of a mode by names of variables of a survey, as plain numbers and texts.
 
     Parameters
     ----------
     runs : Runs
         The runs.
     number : int
-        Which mode.
+        Number of the mode.
     """
     run, rest = runs.of(number), runs.rest
     seen = growth_in_time(run, runs.still, rest, number, runs.options.amplitude)
@@ -265,13 +265,13 @@ def _fate(runs: Runs, run: xr.Dataset, number: int, found: list[Tone]) -> tuple[
 
 
 def _liveliest(end: xr.Dataset, rest: ModesAtRest) -> int:
-    """Return the number of the contact whose normal force swings most, of those that press at rest."""
+    """Return the number of the contact whose normal force swings most, among those closed at rest."""
     forces = end["normal_force"].values.reshape(end.sizes["time"], -1)
     return int(np.where(rest.normal_force > 0.0, forces.std(axis=0), -1.0).argmax())
 
 
 def _liveliest_slip(contact: xr.Dataset) -> xr.DataArray:
-    """Return the slip velocity of a contact, in space along the tangent along which it swings most."""
+    """Return the slip velocity of a contact, in space along the tangent of largest swing."""
     slip = contact["slip_velocity"]
     return slip.isel(tangent=int(slip.std("time").values.argmax())) if "tangent" in slip.dims else slip
 
@@ -281,17 +281,17 @@ def _of_contact(run: xr.Dataset, number: int) -> xr.Dataset:
 
 
 def _sound_level(runs: Runs, run: xr.Dataset, lasts: float) -> float:
-    """Return LAeq at the end of a run at the louder ear [dB], NaN where nothing can be heard."""
+    """Return LAeq at the end of a run at the louder ear [dB], NaN if there is no sound."""
     if not runs.is_heard or lasts < SHORTEST or runs.sample_rate < LOWEST_RATE:
         return float("nan")
-    # The forces at rest bent the bodies long before; they make no sound when the run begins.
+    # The forces at rest act long before the start of the run, which makes no sound.
     system = runs.scenario.system
     pressure = radiate(run, replace(system, drives=(*system.drives, runs.start)))
     return float(equivalent_level(last_of(pressure, lasts, run), "A").max())
 
 
 def last_of(signal: xr.DataArray, lasts: float, run: xr.Dataset) -> xr.DataArray:
-    """Return the end of what is sampled as a run is."""
+    """Return the last part, `lasts` long [s], of a signal sampled like a run."""
     return signal.isel(time=slice(-round(lasts / float(run.attrs["sample_interval"])), None))
 
 

@@ -1,4 +1,4 @@
-"""Root loci: how the modes of sliding move with one parameter, and where the first of them begins to grow."""
+"""Root loci: modes of sliding over one parameter, and the values at which they begin to grow."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from ..system import System
 from ..version import __version__
 from .task import one_thread_each
 
-# What root loci have beside the parameter.
+# Names of the variables of root loci.
 OWN = ("mode", "frequency", "growth_rate", "unstable", "unstable_modes", "equilibrium")
 SystemOf = Callable[[float], System]
 Source = str | Path | xr.Dataset | SystemOf
@@ -40,24 +40,24 @@ def root_loci(
 ) -> xr.Dataset:
     """Return frequencies and growth rates of the modes of sliding over a parameter.
 
-    Modes are followed from value to value: each goes on as the one whose exponent is nearest to where its last two
-    lead. Two that lock in share a frequency from there on.
+    Modes are tracked from value to value: each continues as the mode whose exponent is nearest to the linear
+    extrapolation of its last two. Two modes that lock in share a frequency from there on.
 
     Parameters
     ----------
     source : str, Path, xarray.Dataset or callable
-        A scenario, as for `load_scenario`, or a function that makes a system of a value.
+        A scenario, as for `load_scenario`, or a function that makes a system from a value.
     key : str
-        The parameter: its key in the scenario, such as ``friction``, ``angle``, ``contact.at`` or ``damping``; of a
-        function only its name.
+        The parameter: its key in the scenario, such as ``friction``, ``angle``, ``contact.at`` or ``damping``; for a
+        function only a name.
     values : sequence of float
         Values of the parameter, rising, at least 2, in `units`.
     units : str, optional
-        Unit of the values as scenarios write it, such as ``deg``; SI if left out.
+        Unit of the values as in scenarios, such as ``deg``; SI if left out.
     overrides : mapping, optional
         Other values to set in the scenario by key.
     highest : float, optional
-        Leave modes above this frequency [Hz] out of what is followed; they still count as unstable.
+        Highest frequency of the tracked modes [Hz]; modes above it still count as unstable.
     **options
         Arguments of `sliding_stability` such as `status` and `velocity`.
 
@@ -65,8 +65,8 @@ def root_loci(
     -------
     xarray.Dataset
         Over the parameter and ``mode``: ``frequency`` [Hz], ``growth_rate`` [1/s] and whether ``unstable``, NaN and
-        False where a mode is not there; over the parameter its ``equilibrium`` and ``unstable_modes``, how many of all
-        modes grow.
+        False where a mode does not exist; over the parameter ``equilibrium`` and ``unstable_modes``, the number of all
+        growing modes.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def root_loci(
     modes_of = _modes_of(source, key, units, overrides, options)
     if key in OWN:
         raise ArgumentError(
-            "key", "not be called as a result of the loci", key, got=f"{brief(key)}: write its full key"
+            "key", "not have the name of a result of the loci", key, got=f"{brief(key)}: write its full key"
         )
     grid = _rising(values)
     if highest is not None:
@@ -95,7 +95,7 @@ def root_loci(
             "unstable_modes": (
                 key,
                 [int(one.unstable.sum()) for one in found],
-                described("1", "modes that grow, of all"),
+                described("1", "number of growing modes"),
             ),
             "equilibrium": (key, [one.attrs["equilibrium"] for one in found]),
         },
@@ -120,15 +120,15 @@ def critical_value(
     Parameters
     ----------
     source : str, Path, xarray.Dataset or callable
-        A scenario, as for `load_scenario`, or a function that makes a system of a value.
+        A scenario, as for `load_scenario`, or a function that makes a system from a value.
     key : str
         The parameter, as for `root_loci`.
     low, high : float
         Values between which stability changes, in `units`; stable at one end and not at the other.
     tolerance : float, optional
-        Width to which the value is closed in on, relative to the larger of `low` and `high` in size [1].
+        Final width of the interval, relative to the larger magnitude of `low` and `high` [1].
     units : str, optional
-        Unit of the values as scenarios write it, such as ``deg``; SI if left out.
+        Unit of the values as in scenarios, such as ``deg``; SI if left out.
     overrides : mapping, optional
         Other values to set in the scenario by key.
     **options
@@ -139,7 +139,7 @@ def critical_value(
     xarray.Dataset
         ``value``, the middle of ``stable`` and ``unstable``, the values closest to it on both sides; ``frequency`` [Hz]
         and ``growth_rate`` [1/s] of the mode that grows fastest at ``unstable``. ``attrs["beyond"]`` is ``stable``, or
-        ``held``, ``lifted off`` or ``jammed`` where there is no sliding on that side.
+        ``held``, ``lifted off`` or ``jammed`` if there is no sliding on that side.
 
     Raises
     ------
@@ -158,7 +158,7 @@ def critical_value(
 def _bisected(
     key: str, modes_of: Callable[[float], xr.Dataset], low: float, high: float, tolerance: float, units: str
 ) -> xr.Dataset:
-    """Return the value between two at which stability changes."""
+    """Return the value between two others at which stability changes."""
     at = {value: modes_of(value) for value in (low, high)}
     grows = {value: bool(one.unstable.any()) for value, one in at.items()}
     if grows[low] == grows[high]:
@@ -186,23 +186,23 @@ def _bisected(
                 described(units, f"{key} at which sliding becomes unstable"),
             ),
             "stable": ((), stable, described(units, "nearest value that is stable")),
-            "unstable": ((), unstable, described(units, "nearest value that is not")),
+            "unstable": ((), unstable, described(units, "nearest value that is unstable")),
             "frequency": ((), float(fastest.frequency), described("Hz", "frequency of the mode that grows fastest")),
-            "growth_rate": ((), float(fastest.growth_rate), described("1/s", "its rate of growth")),
+            "growth_rate": ((), float(fastest.growth_rate), described("1/s", "growth rate of that mode")),
         },
         attrs={"parameter": key, "tolerance": tolerance, "beyond": _verdict(at[stable])},
     )
 
 
 def critical_values(loci: xr.Dataset, find: Callable[[float, float], xr.Dataset]) -> list[xr.Dataset]:
-    """Return where stability changes along root loci, each closed in on by `find` between two of their values.
+    """Return the values at which stability changes along root loci, each found by `find` between two of theirs.
 
     Parameters
     ----------
     loci : xarray.Dataset
-        What `root_loci` returned.
+        Result of `root_loci`.
     find : callable
-        Takes two values, returns what `critical_value` does.
+        Function of two values with the result of `critical_value`.
     """
     key = parameter_of(loci)
     grows = loci["unstable_modes"].values > 0
@@ -216,7 +216,7 @@ def parameter_of(loci: xr.Dataset) -> str:
 
 
 def _origin(source: Source, overrides: Mapping[str, Any] | None) -> dict[str, str]:
-    """Return what a file says of where it comes from; of a function nothing is known."""
+    """Return the attributes that record the origin of a result; nothing for a function."""
     if callable(source):
         return {}
     tables, _ = overridden(read_tables(source), by_key("overrides", overrides))
@@ -227,7 +227,7 @@ def _origin(source: Source, overrides: Mapping[str, Any] | None) -> dict[str, st
 def _modes_of(
     source: Source, key: str, units: str, overrides: Mapping[str, Any] | None, options: Mapping[str, Any]
 ) -> Callable[[float], xr.Dataset]:
-    """Return what gives the modes at a value."""
+    """Return a function of a value that returns the modes."""
     instance("key", key, str)
     instance("units", units, str)
     given = dict(by_key("overrides", overrides))
@@ -237,7 +237,7 @@ def _modes_of(
     def system_of(value: float) -> System:
         if callable(source):
             return source(value)
-        # Keys of whole numbers take no others.
+        # Keys of whole numbers accept only integers.
         number = int(value) if value.is_integer() else value
         return load_scenario(source, given | {key: f"{value!r} {units}" if units else number}).system
 
@@ -268,7 +268,7 @@ def _exponents(modes: xr.Dataset, highest: float | None) -> Array:
 
 
 def _followed(steps: Sequence[Array]) -> Array:
-    """Return exponents by value and mode, each mode followed; NaN where it is not there."""
+    """Return exponents by value and mode, with modes tracked; NaN where a mode does not exist."""
     rows = [np.asarray(steps[0], dtype=complex)]
     for step in steps[1:]:
         last = rows[-1]

@@ -13,7 +13,7 @@ from .measures import message_of
 from .task import Outcome, Work, use_one_thread
 
 Points = Sequence[Sequence[Any]]
-# A machine that is gone leaves the client waiting no longer than this [s].
+# Longest time that the client waits for a lost machine [s].
 PATIENCE = 30.0
 
 
@@ -30,28 +30,28 @@ def client_of(address: str) -> Any:
     with named_extras():
         from distributed import Client
     try:
-        # Not for all that dask does in this process: one that cannot connect would stay in the way.
+        # Not the default client of this process: one that cannot connect would remain the default.
         return Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise ArgumentError("scheduler", "answer", address, got=f"{address!r}: {message_of(error)}") from None
 
 
 def on_machines(client: Any, task: Work, parts: Mapping[int, Points]) -> Generator[tuple[int, list[Outcome]]]:
-    """Go through the parts as they are done, with what came of their points.
+    """Yield the parts with their outcomes as they are finished.
 
     Parameters
     ----------
     client : distributed.Client
-        Where they are computed.
+        Client of the machines.
     task : Work
-        What is done at each point.
+        Work at each point.
     parts : mapping
         Points of each part.
 
     Raises
     ------
     RuntimeError
-        If a part cannot be computed: a machine is lost again and again, or lacks something.
+        If a part cannot be computed because machines are lost repeatedly or lack something.
     """
     from distributed import as_completed
 
@@ -72,8 +72,8 @@ def on_machines(client: Any, task: Work, parts: Mapping[int, Points]) -> Generat
 
 
 def _outcomes(task: Work, points: Points, version: str) -> list[Outcome]:
-    """Return what came of a part, on another machine."""
+    """Return the outcomes of a part, on another machine."""
     if version != __version__:
-        raise RuntimeError(f"stridula must be {version} there, too, got {__version__}")
+        raise RuntimeError(f"stridula must also be {version} there, got {__version__}")
     use_one_thread()
     return task.outcomes(points)

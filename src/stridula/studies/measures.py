@@ -1,4 +1,4 @@
-"""What a sweep can measure, by name: of the record of a point, of its system, or of both."""
+"""Measures of a sweep by name, of the record of a point, of its system, or of both."""
 
 from __future__ import annotations
 
@@ -25,24 +25,24 @@ from ..system import System
 Value = float | str
 Values = Mapping[str, Value]
 Run = xr.Dataset | PlainRecord
-# Variables that every sweep has.
+# Names of the variables of every sweep.
 OWN = ("ended", "message", "point")
 
 
 @dataclass(frozen=True)
 class Column:
-    """A number or a word that a measure gives at each point.
+    """A variable of a measure: a number or a word at each point.
 
     Attributes
     ----------
     name : str
-        What the variable is called.
+        Name of the variable.
     units : str
-        Its unit, empty for words.
+        Unit, empty for words.
     long_name : str
-        What it is, in words.
+        Description.
     is_text : bool
-        Whether it is a word.
+        Whether the values are words.
     """
 
     name: str
@@ -53,22 +53,22 @@ class Column:
 
 @dataclass(frozen=True)
 class Measure:
-    """What is measured at each point.
+    """A measure at each point.
 
     Attributes
     ----------
     name : str
-        What it is asked for by.
+        Name by which it is requested.
     columns : tuple of Column
-        What it gives.
+        Its variables.
     of_record : callable or None
         Function of a record, labelled or plain, that returns the values of the columns by name.
     of_system : callable or None
         Function of a system that returns the values of the columns by name; it needs no run.
     also : tuple of str
-        Other measures that belong to it.
+        Other measures that it includes.
     needs : tuple of str
-        Variables of a record that it looks at.
+        Variables of a record that it uses.
     """
 
     name: str
@@ -80,14 +80,14 @@ class Measure:
 
 
 def _labelled(run: Run, *names: str) -> xr.Dataset:
-    """Return a record with labels on some of its variables at least."""
+    """Return a record with labels on at least these variables."""
     given: Any = run
     found: xr.Dataset = given.labelled(*names) if hasattr(given, "labelled") else given
     return found
 
 
 def _shares(run: Run) -> Values:
-    """Return the shares of the time, of several contacts those of each weighing as it carries."""
+    """Return the shares of the time; for several contacts their mean weighted by load."""
     known = by_point(_labelled(run, "status_share", "normal_force"))
     if "contact" in known.dims:
         carried = loads(known["normal_force"].values, LIMITS.rare)
@@ -97,7 +97,7 @@ def _shares(run: Run) -> Values:
 
 
 def _normal_force(run: Run) -> xr.DataArray:
-    """Return the normal force, of several contacts their sum."""
+    """Return the normal force; for several contacts their sum."""
     force = _labelled(run, "normal_force")["normal_force"]
     return force.sum("contact") if "contact" in force.dims else force
 
@@ -127,7 +127,7 @@ def _regime_column(name: str) -> Column:
     return Column(name, "" if name == "regime" else units, meaning, is_text=name == "regime")
 
 
-# To add one: a line here, and its words in the table of docs/command-line.rst.
+# To add a measure: an entry here, and a row in the table of docs/command-line.rst.
 MEASURES = {
     measure.name: measure
     for measure in (
@@ -149,14 +149,14 @@ MEASURES = {
         ),
         Measure(
             "peak_force",
-            (Column("peak_force", "N", "largest normal force, of means over the sample interval"),),
+            (Column("peak_force", "N", "largest normal force, averaged over the sample interval"),),
             _peak_force,
             needs=("normal_force",),
         ),
         Measure("mean_force", (Column("mean_force", "N", "mean normal force"),), _mean_force, needs=("normal_force",)),
         Measure(
             "travel",
-            (Column("travel", "m", "net way of the contact point along the track"),),
+            (Column("travel", "m", "net displacement of the contact point along the track"),),
             _travel,
             needs=("contact_position",),
         ),
@@ -172,7 +172,7 @@ MEASURES = {
                 Column("growth_rate", "1/s", "largest growth rate of linear theory"),
                 Column("flutter_frequency", "Hz", "frequency of the mode that grows fastest"),
                 Column("unstable_modes", "1", "number of modes that grow"),
-                Column("equilibrium", "", "what linear theory says comes of the contact", is_text=True),
+                Column("equilibrium", "", "kind of equilibrium by linear theory", is_text=True),
             ),
             of_system=stability_of,
         ),
@@ -182,12 +182,12 @@ MEASURES = {
 
 @dataclass(frozen=True)
 class Asked:
-    """Measures that were asked for.
+    """Requested measures.
 
     Attributes
     ----------
     names : tuple of str
-        Measures of the table.
+        Names of measures of the table.
     functions : dict
         Functions of a record by name.
     """
@@ -197,7 +197,7 @@ class Asked:
 
     @property
     def measures(self) -> tuple[Measure, ...]:
-        """The measures of the table, those that belong to others among them, each once."""
+        """The measures of the table, including those included by others, each once."""
         found: dict[str, Measure] = {}
         waiting = list(self.names)
         while waiting:
@@ -209,23 +209,23 @@ class Asked:
 
     @property
     def needs_record(self) -> bool:
-        """Whether anything is measured of a record."""
+        """Whether any measure needs a record."""
         return bool(self.functions) or any(measure.of_record for measure in self.measures)
 
     @property
     def variables(self) -> tuple[str, ...] | None:
-        """The variables of a record that are looked at, None where functions may look at all."""
+        """The variables of a record that are used, None if functions may use all."""
         needed = [name for measure in self.measures for name in measure.needs]
         return None if self.functions else tuple(dict.fromkeys(needed))
 
     @property
     def columns(self) -> tuple[Column, ...]:
-        """What they give; of functions only the names are known."""
+        """The variables of the measures; for functions only their names are known."""
         known = [column for measure in self.measures for column in measure.columns]
         return (*known, *(Column(name, "", name) for name in self.functions))
 
     def of_record(self, run: Run) -> dict[str, Value]:
-        """Return all that is measured of a record; functions take a labelled one.
+        """Return the measures of a record; functions receive a labelled one.
 
         Raises
         ------
@@ -243,7 +243,7 @@ class Asked:
         return found
 
     def of_system(self, system: System) -> dict[str, Value]:
-        """Return all that is measured of a system."""
+        """Return the measures of a system."""
         found: dict[str, Value] = {}
         for measure in self.measures:
             if measure.of_system is not None:
@@ -253,17 +253,17 @@ class Asked:
 
 
 def asked_for(measures: Any) -> Asked:
-    """Return the measures that were asked for.
+    """Return the requested measures.
 
     Parameters
     ----------
     measures : str, mapping or sequence of them
-        Names of the table `MEASURES`, functions of a record by names of one's own.
+        Names from the table `MEASURES`, or functions of a record by names of your own.
 
     Raises
     ------
     ValueError
-        If one is not known, or two have the same name.
+        If a name is unknown, or two are the same.
     """
     entries = [measures] if isinstance(measures, (str, Mapping)) else measures
     if not isinstance(entries, Sequence) or not entries:
@@ -298,7 +298,7 @@ def _own_name(name: Any, function: Any) -> str:
 
 @contextmanager
 def _naming(name: str) -> Iterator[None]:
-    """Turn what a measure raises into a ValueError that names it. Memory that runs out is not its own."""
+    """Turn an exception of a measure, other than MemoryError, into a ValueError that names the measure."""
     try:
         yield
     except MemoryError:
@@ -308,13 +308,13 @@ def _naming(name: str) -> Iterator[None]:
 
 
 def message_of(error: BaseException) -> str:
-    """Return an exception in one line, with its kind where the words may not say what they are about."""
+    """Return an exception in one line, with its type if its message may not explain itself."""
     words = " ".join(str(error).split())
     return words if words and isinstance(error, (ValueError, RuntimeError)) else f"{type(error).__name__}: {words}"
 
 
 def value_of(value: Any) -> Value:
-    """Return a value of a measure as Python's own.
+    """Return a value of a measure as a Python number or text.
 
     Parameters
     ----------

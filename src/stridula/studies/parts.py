@@ -1,4 +1,4 @@
-"""Parts of a study on disk: each whole or not there, so that a study goes on where it was."""
+"""Parts of a study on disk: each is complete or absent, so that a study can be resumed."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from .task import Outcome
 
 
 class Parts:
-    """The file of a study, and the folder beside it with the parts that are done.
+    """The file of a study, and the folder beside it with the finished parts.
 
     Two processes on one study write the same parts: the later one replaces a file by an equal one.
 
     Parameters
     ----------
     out : str or Path
-        The file; the folder has its name and ``.parts``.
+        Path of the file; the folder has the same name followed by ``.parts``.
     identity : dict of str
-        What makes the study: its scenario, what was asked of it, the version.
+        Attributes that identify the study: its scenario, arguments and version.
     study : str, optional
-        What kind it is, in a word: the attribute that says what was asked of it.
+        Kind of study in one word: the name of the attribute with its arguments.
 
     Raises
     ------
     OSError
         If the file cannot be written.
     ValueError
-        If the file or the folder is there and is not of this study; nothing is touched.
+        If the file or the folder exists and belongs to another study; nothing is changed.
     """
 
     def __init__(self, out: str | Path, identity: dict[str, str], study: str = "sweep") -> None:
@@ -66,14 +66,14 @@ class Parts:
         return found
 
     def _check_folder(self) -> None:
-        """Raise ValueError if the folder is there and is not of this study."""
+        """Raise ValueError if the folder exists and belongs to another study."""
         if not self.folder.exists():
             return
         if not self.folder.is_dir():
             raise ArgumentError(f"{str(self.folder)!r}", f"be left for the parts of the {self.study}", got="a file")
         known = self._identity_on_disk()
         if known is None and all(path.name.startswith(".stridula-") for path in self.folder.iterdir()):
-            # Stopped before it knew of which study.
+            # Stopped before the description was written.
             return
         if known != self.identity:
             raise ArgumentError(
@@ -88,7 +88,7 @@ class Parts:
         return found if isinstance(found, dict) else None
 
     def _why(self, other: dict[str, Any]) -> str:
-        """Return in words in what another study differs."""
+        """Return the differences of another study as text."""
         words = {
             "scenario": "another scenario",
             "function": "another function",
@@ -101,7 +101,7 @@ class Parts:
         return f", of {' and '.join(differing)}" if differing else ""
 
     def done(self, sizes: dict[int, int]) -> dict[int, list[Outcome]]:
-        """Return the parts that are done.
+        """Return the finished parts.
 
         Parameters
         ----------
@@ -134,14 +134,14 @@ class Parts:
         self.clear()
 
     def clear(self) -> None:
-        """Remove the parts and their folder, unless there is something else in it."""
+        """Remove the parts and their folder, unless it holds other files."""
         if not self.folder.is_dir():
             return
         for path in self.folder.glob("[0-9]*.json"):
             path.unlink(missing_ok=True)
         for path in self.folder.glob(".stridula-*"):
             path.unlink(missing_ok=True)
-        # Last, so that a folder with parts always says of which study they are.
+        # Last, so that a folder with parts always has a description.
         self._description.unlink(missing_ok=True)
         with suppress(OSError):
             self.folder.rmdir()
@@ -154,14 +154,14 @@ class Parts:
 
     @property
     def _description(self) -> Path:
-        """What is kept beside the parts: what they are parts of."""
+        """Path of the description of the study, kept beside the parts."""
         return self.folder / f"{self.study}.json"
 
     def _path(self, number: int) -> Path:
         return self.folder / f"{number:06d}.json"
 
     def _read(self, number: int) -> list[Outcome] | None:
-        """Return a part, None if it is not there or damaged."""
+        """Return a part, None if it is missing or damaged."""
         try:
             part = json.loads(self._path(number).read_bytes())
         except (OSError, ValueError):

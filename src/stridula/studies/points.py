@@ -1,4 +1,4 @@
-"""Points of a sweep: a grid, a Latin hypercube or a list, laid out one after another."""
+"""Points of a sweep: a grid, a Latin hypercube or a list, in one sequence."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ MOST_POINTS = 1_000_000
 
 @dataclass(frozen=True)
 class Range:
-    """Numbers from one to another, both of one unit.
+    """A range of numbers between two ends in the same unit.
 
     Parameters
     ----------
     low, high : float or str
-        Ends, both numbers in SI or both texts of one unit such as ``"10 deg"``.
+        Ends, both numbers in SI or both texts in one unit such as ``"10 deg"``.
     logarithmic : bool, optional
-        Whether ratios count instead of differences; both ends are above 0 then.
+        Whether the scale is logarithmic; both ends must then be above 0.
 
     Raises
     ------
     ValueError
-        If the ends do not rise, or are not of one unit.
+        If `high` is not above `low`, or the ends are not in one unit.
     """
 
     low: float | str
@@ -55,21 +55,21 @@ class Range:
 
     @property
     def unit(self) -> str:
-        """Unit of the ends as they are written, empty for SI."""
+        """Unit of the ends as written, empty for SI."""
         return self._end("low")[1]
 
     def number(self, share: float) -> float:
-        """Return the number at a share of the range, from 0 to 1, in its unit."""
+        """Return the number at a fraction of the range, from 0 to 1, in its unit."""
         low, high = self._end("low")[0], self._end("high")[0]
         return float(low * (high / low) ** share if self.logarithmic else low + (high - low) * share)
 
     def value(self, share: float) -> float | str:
-        """Return the value at a share of the range as scenarios take it."""
+        """Return the value at a fraction of the range, in the form that scenarios accept."""
         number = self.number(share)
         return f"{number!r} {self.unit}" if self.unit else number
 
     def share(self, value: float | str) -> float:
-        """Return where a value lies in the range, 0 at its low end and 1 at its high one."""
+        """Return the position of a value in the range, 0 at its low end and 1 at its high end."""
         known = parts(value)
         if known is None or known[1] != self.unit:
             raise ArgumentError("start", f"be in the unit of its range ({self.unit or 'SI'})", value)
@@ -95,7 +95,7 @@ class Grid:
     ----------
     values : mapping
         Values by key: a full key such as ``contact.friction.coefficient``, or any unique ending of one. Numbers are in
-        SI, texts such as ``"10 deg"`` in the unit that they name. The first key varies slowest.
+        SI, texts such as ``"10 deg"`` in their unit. The first key varies slowest.
 
     Raises
     ------
@@ -123,14 +123,14 @@ class Grid:
         return math.prod(len(given) for given in self.values.values())
 
     def layout(self) -> Layout:
-        """Return its points one after another."""
+        """Return the points in sequence."""
         sizes = {key: len(given) for key, given in self.values.items()}
         return Layout(tuple(sizes), tuple(product(*self.values.values())), sizes, True, {"grid": dict(self.values)})
 
 
 @dataclass(frozen=True)
 class LatinHypercube:
-    """Points that fill ranges of some keys evenly: cut into as many strips as there are points, each has one point.
+    """Points that fill ranges of some keys evenly: each of `count` equal strips of a range holds one point.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class LatinHypercube:
     Raises
     ------
     ValueError
-        If a range does not rise, or an argument is out of its range.
+        If the ends of a range do not rise, or an argument is out of its range.
     """
 
     ranges: Mapping[str, Any]
@@ -157,7 +157,7 @@ class LatinHypercube:
         object.__setattr__(self, "ranges", ranges_of("ranges", self.ranges))
 
     def values(self) -> dict[str, list[Any]]:
-        """Return the values of each key, point by point."""
+        """Return the values of each key at all points."""
         random = np.random.default_rng(self.seed)
         found: dict[str, list[Any]] = {}
         for key, one in self.ranges.items():
@@ -166,7 +166,7 @@ class LatinHypercube:
         return found
 
     def layout(self) -> Layout:
-        """Return its points one after another."""
+        """Return the points in sequence."""
         columns = self.values()
         ranges = {key: asdict(one) for key, one in self.ranges.items()}
         asked = {"latin hypercube": {"ranges": ranges, "count": self.count, "seed": self.seed}}
@@ -179,14 +179,14 @@ def ranges_of(name: str, given: Any) -> dict[str, Range]:
     Parameters
     ----------
     name : str
-        What the argument is called.
+        Name of the argument, for messages.
     given : mapping
         A `Range` or its two ends by key.
 
     Raises
     ------
     ValueError
-        If it is anything else, or a range does not rise.
+        If `given` is anything else, or the ends of a range do not rise.
     """
     if not isinstance(given, Mapping) or not given:
         raise ArgumentError(name, "be ranges by key", given)
@@ -199,14 +199,14 @@ def range_of(name: str, given: Any) -> Range:
     Parameters
     ----------
     name : str
-        What the argument is called.
+        Name of the argument, for messages.
     given : Range or pair
         The range, or its ends.
 
     Raises
     ------
     ValueError
-        If it is neither, or does not rise.
+        If `given` is neither, or the ends do not rise.
     """
     if isinstance(given, Range):
         return given
@@ -220,20 +220,20 @@ def range_of(name: str, given: Any) -> Range:
 
 @dataclass(frozen=True)
 class Layout:
-    """Points one after another.
+    """Points in sequence.
 
     Attributes
     ----------
     keys : tuple of str
-        What is varied.
+        Varied keys.
     values : tuple of tuple
         Values of the keys at each point.
     dimensions : dict
-        Sizes of the dimensions that the points fill, the last one fastest.
+        Sizes of the dimensions of the points, the last one varying fastest.
     is_grid : bool
-        Whether each key has a dimension of its own.
+        Whether each key has its own dimension.
     asked : dict
-        The points as they were asked for, in plain numbers and texts.
+        The points as requested, as plain numbers and texts.
     """
 
     keys: tuple[str, ...]
@@ -244,12 +244,12 @@ class Layout:
 
 
 def laid_out(points: Grid | LatinHypercube | Mapping[str, Values] | Sequence[Mapping[str, Any]]) -> Layout:
-    """Return points one after another.
+    """Return points in sequence.
 
     Parameters
     ----------
     points : Grid, LatinHypercube, mapping or sequence of mapping
-        The points; a mapping is that of a grid, of a list each entry has a value for each of the same keys.
+        The points; a mapping is that of a grid, and every entry of a list has a value for each of the same keys.
 
     Raises
     ------
@@ -282,7 +282,7 @@ def _listed(points: Sequence[Mapping[str, Any]]) -> Layout:
 
 
 def _plain(key: str, given: Values) -> list[Any]:
-    """Return values as Python's own, finite where they are numbers."""
+    """Return values as Python objects, checking that numbers are finite."""
     if not isinstance(key, str) or not key.strip():
         raise ArgumentError("key", "be a text", key)
     plain = [plain_python(value) for value in given]
@@ -293,5 +293,5 @@ def _plain(key: str, given: Values) -> list[Any]:
 
 
 def plain_python(value: Any) -> Any:
-    """Return NumPy's numbers and arrays as Python's, anything else as it is."""
+    """Return NumPy numbers and arrays as Python objects, anything else unchanged."""
     return value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value

@@ -1,4 +1,4 @@
-"""The process of a study: a task, then points of part after part; what came of each."""
+"""A process of a study, which reads a task, then the points of parts, and writes their outcomes."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from .task import use_one_thread
 
 
 def main() -> None:
-    """Answer until nobody asks any more."""
+    """Answer requests until the input ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # What functions print is no answer.
+    # Keeps output printed by functions out of the answers.
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     asked = sys.stdin.buffer
-    # A module that runs a sweep when it is imported begins no processes in its turn.
+    # A module that runs a sweep on import must not start processes itself.
     processes.COST = math.inf
     use_one_thread()
     try:
         task = pickle.load(asked)
     except Exception:
-        # What cannot be imported here is computed where it was asked for.
+        # A task that cannot be imported here is computed in the calling process.
         os._exit(1)
     try:
         answers.write(processes.READY)
@@ -39,7 +39,7 @@ def main() -> None:
             answers.write(pickle.dumps(found))
             answers.flush()
     except (EOFError, BrokenPipeError):
-        # The study is over, or its process is gone: what is left unwritten would only be complained of.
+        # The study has ended or its process is gone; flushing the remaining output would only fail.
         os._exit(0)
 
 

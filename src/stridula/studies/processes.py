@@ -1,4 +1,4 @@
-"""Parts of a study in processes of this machine, where threads would wait for the interpreter and not for the march."""
+"""Parts of a study in processes of this machine, for work in which threads would wait for the interpreter."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from typing import Any
 
 from .task import Outcome, Work
 
-# Time that must be lost in waiting, ahead, before processes are begun [s]: what it takes to begin one.
+# Expected waiting time above which processes are started [s]: the time to start one.
 COST = 2.0
-# What a process sends once it can compute.
+# Sent by a process once it can compute.
 READY = b"ready\n"
 
 
 class Helpers:
-    """Processes that are begun once it pays, and compute parts in place of the threads that ask for one.
+    """Processes that are started once they save time, and compute parts in place of the calling threads.
 
     Parameters
     ----------
     task : Work
-        What is done at each point.
+        Work at each point.
     parts : int
-        How many parts there are.
+        Number of parts.
     threads : int
-        How many of them are computed at a time; one thread goes on in this process.
+        Number of parts computed at a time; one thread continues in this process.
     """
 
     def __init__(self, task: Work, parts: int, threads: int) -> None:
@@ -41,12 +41,12 @@ class Helpers:
         self.closed = False
 
     def outcomes(self, points: Sequence[Sequence[Any]], workers: int, watch: Callable[[], None]) -> list[Outcome]:
-        """Return what comes of some points, from a process if one is free, else computed here."""
+        """Return the outcomes of some points, from a process if one is free, else computed here."""
         with self.lock:
             helper = self.idle.pop() if self.idle else None
         found = None if helper is None else helper.outcomes(points)
         if found is None:
-            # A process that is gone may have run out of memory, or been ended: what it lost is done here.
+            # A lost process may have run out of memory or been killed; its points are computed here.
             watch()
             found = self.task.outcomes(points, workers, watch)
         elif helper is not None:
@@ -60,14 +60,14 @@ class Helpers:
         return found
 
     def close(self) -> None:
-        """End the processes, whatever they do."""
+        """Kill the processes."""
         with self.lock:
             self.closed = True
         for helper in self.all:
             helper.end()
 
     def _pays(self) -> bool:
-        """Return whether threads, as they went so far, would lose more time in waiting than processes cost."""
+        """Return whether threads, at their present rate, would lose more time waiting than processes cost."""
         passed = time.perf_counter() - self.began
         waiting = 1.0 - (time.process_time() - self.spent) / (passed * self.threads)
         return waiting * passed * (self.parts - self.done) / self.done > COST
@@ -75,7 +75,7 @@ class Helpers:
     def _begin(self) -> None:
         asked, begun = portable(self.task), list[Helper]()
         if asked is not None:
-            # Where none can begin, threads go on.
+            # If no process can be started, threads continue.
             with suppress(OSError):
                 begun += [Helper(asked, self._take) for _ in range(self.threads - 1)]
         with self.lock:
@@ -85,7 +85,7 @@ class Helpers:
             helper.end()
 
     def _take(self, helper: Helper) -> None:
-        """Take a process that is free."""
+        """Add a process that is free."""
         with self.lock:
             self.idle.append(helper)
 
@@ -98,7 +98,7 @@ class Helper:
     asked : bytes
         The task, as `portable` returns it.
     ready : callable
-        Called with this once it can compute, from a thread.
+        Called with this object, from a thread, once the process can compute.
     """
 
     def __init__(self, asked: bytes, ready: Callable[[Helper], None]) -> None:
@@ -124,7 +124,7 @@ class Helper:
         self._process.stdin.flush()
 
     def outcomes(self, points: Sequence[Sequence[Any]]) -> list[Outcome] | None:
-        """Return what comes of some points, None if the process is gone.
+        """Return the outcomes of some points, None if the process is gone.
 
         Raises
         ------
@@ -143,7 +143,7 @@ class Helper:
         return found
 
     def end(self) -> None:
-        """End the process."""
+        """Kill the process."""
         with suppress(OSError):
             self._process.kill()
         self._process.wait()
@@ -154,7 +154,7 @@ class Helper:
 
 
 def portable(task: Work) -> bytes | None:
-    """Return a task as another process reads it, None if it holds functions that no other process can import."""
+    """Return a task pickled for another process, None if it holds functions that no other process can import."""
     try:
         asked = pickle.dumps(task)
     except Exception:

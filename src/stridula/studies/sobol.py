@@ -1,4 +1,4 @@
-"""Sensitivity: which uncertain parameter moves regime, frequency or level most, and how likely squeal is."""
+"""Sensitivity of regime, frequency or level to uncertain parameters, and the probability of squeal."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from .swept import failures, usual_failure
 
 MOST_SAMPLES, MOST_RESAMPLES = 2**16, 100_000
 BOUNDS = ("low", "high")
-# What a sweep says of where it comes from.
+# Attributes of a sweep that record its origin.
 ORIGIN = ("title", "scenario", "function", "stridula_version")
-# Of fewer samples no interval can be told.
+# Fewer samples give no interval.
 FEWEST = 8
 
 
@@ -37,13 +37,14 @@ def sensitivity(
     seed: int = 0,
     confidence: float = 0.95,
     resamples: int = 999,
+    progress: bool = False,
     **options: Any,
 ) -> xr.Dataset:
-    """Return Sobol indices of what is measured, and the probability of each regime, under uncertain parameters.
+    """Return Sobol indices of measures, and the probability of each regime, for uncertain parameters.
 
     The first-order index of a parameter is the share of the variance of an output that it causes alone, the total-order
-    index the share that it contributes to (Saltelli et al. 2010, Comput. Phys. Commun. 181;
-    ``scipy.stats.sobol_indices``). They take ``samples (parameters + 2)`` runs, at points of Sobol's sequence.
+    index the share to which it contributes (Saltelli et al. 2010, Comput. Phys. Commun. 181;
+    ``scipy.stats.sobol_indices``). They need ``samples (parameters + 2)`` runs, at points of a Sobol sequence.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ def sensitivity(
         Distribution of each parameter by key: the two ends of a uniform one, a `Range`, or a frozen distribution of
         ``scipy.stats`` in SI. They are independent of each other.
     measures : str, mapping or sequence of them, optional
-        What is measured, as for `sweep`.
+        Measures, as for `sweep`.
     samples : int, optional
         Samples of each of the two sets, a power of 2.
     seed : int, optional
@@ -62,6 +63,8 @@ def sensitivity(
         Level of the intervals [1], strictly between 0 and 1.
     resamples : int, optional
         Bootstrap resamples for the intervals of the indices.
+    progress : bool, optional
+        Whether a bar on standard error shows how many runs are done and how long the others will take.
     **options
         Arguments of `sweep` such as `overrides`, `duration`, `out`, `workers` and `client`.
 
@@ -70,9 +73,10 @@ def sensitivity(
     xarray.Dataset
         ``first_order`` and ``total_order`` over ``output`` and ``parameter`` with their bootstrap percentile intervals
         over ``bound``; the outputs are the numbers measured and, with the measure ``regime``, for each regime whether
-        it was seen. ``used``: how many samples an output was found in throughout; the others are left out of it. NaN
-        below 8 of them, or where an output never varies. ``probability`` of each ``regime`` with Wilson's interval, and
-        how many ``runs`` there were and how many ``failed``; the attribute ``failure`` has what most of these say.
+        it was seen. ``used``: the number of samples in which all runs gave an output; other samples are not used. NaN
+        below 8 such samples, or for an output that never varies. ``probability`` of each ``regime`` with Wilson's
+        interval, and the numbers of ``runs`` and of those that ``failed``; the attribute ``failure`` has their most
+        frequent message.
 
     Raises
     ------
@@ -89,7 +93,7 @@ def sensitivity(
     points = [
         {key: _value(one, float(share)) for (key, one), share in zip(named.items(), row, strict=True)} for row in shares
     ]
-    found = sweep(scenario, points, measures, **options)
+    found = sweep(scenario, points, measures, progress=progress, **options)
     outputs = _outputs(found)
     keys = list(named)
     data: dict[str, Any] = _indices(outputs, len(keys), samples, seed, confidence, resamples)
@@ -130,18 +134,18 @@ def _value(distribution: Any, share: float) -> Any:
 
 
 def _shares(parameters: int, samples: int, seed: int) -> Array:
-    """Return the points as shares of the distributions: set A, set B, then A with each column taken from B in turn."""
+    """Return the points as quantile levels: set A, set B, then A with each column taken from B in turn."""
     drawn = scipy.stats.qmc.Sobol(2 * parameters, rng=np.random.default_rng(seed)).random(samples)
     first, second = drawn[:, :parameters], drawn[:, parameters:]
     mixed = [first.copy() for _ in range(parameters)]
     for number, one in enumerate(mixed):
         one[:, number] = second[:, number]
-    # A share of exactly 0 has no finite quantile under many distributions.
+    # For many distributions the quantile at exactly 0 is infinite.
     return np.clip(np.concatenate([first, second, *mixed]), 1e-12, 1.0 - 1e-12)
 
 
 def _outputs(found: xr.Dataset) -> dict[str, Array]:
-    """Return what was measured as numbers over the points: words only of the regime, one for each."""
+    """Return the outputs over the points: numeric measures, and for each regime whether it was seen."""
     outputs: dict[str, Array] = {}
     for name, values in found.data_vars.items():
         if values.dims == ("point",) and values.dtype.kind in "fiu":
@@ -156,7 +160,7 @@ def _outputs(found: xr.Dataset) -> dict[str, Array]:
 def _indices(
     outputs: Mapping[str, Array], parameters: int, samples: int, seed: int, confidence: float, resamples: int
 ) -> dict[str, Any]:
-    """Return the indices of each output with their intervals, and how many samples it was found in."""
+    """Return the indices of each output with their intervals, and the number of samples used."""
     size = (len(outputs), parameters)
     first, total = np.full((2, *size), np.nan)
     intervals = np.full((2, *size, 2), np.nan)
@@ -170,24 +174,24 @@ def _indices(
         first[row], total[row] = _sobol(sets)
         random = np.random.default_rng(seed)
         drawn = np.array([_sobol(sets[:, random.integers(0, used[row], used[row])]) for _ in range(resamples)])
-        # What varies in few samples does not in some resamples.
+        # An output that varies in few samples is constant in some resamples.
         drawn = drawn[np.isfinite(drawn).all(axis=(1, 2))]
         tails = [50.0 * (1.0 - confidence), 50.0 * (1.0 + confidence)]
         if len(drawn):
             intervals[:, row] = np.moveaxis(np.percentile(drawn, tails, axis=0), 0, -1)
     along = ("output", "parameter")
     return {
-        "first_order": (along, first, described("1", "share of the variance that the parameter makes alone")),
+        "first_order": (along, first, described("1", "share of the variance caused by the parameter alone")),
         "first_order_interval": ((*along, "bound"), intervals[0]),
-        "total_order": (along, total, described("1", "share of the variance that the parameter has a part in")),
+        "total_order": (along, total, described("1", "share of the variance to which the parameter contributes")),
         "total_order_interval": ((*along, "bound"), intervals[1]),
-        "used": ("output", used, described("1", "samples in which the output was found throughout")),
+        "used": ("output", used, described("1", "samples in which all runs gave the output")),
     }
 
 
 def _sobol(sets: Array) -> tuple[Array, Array]:
     """Return first-order and total-order indices of values at the sets A, B and the mixed ones, shape (parameters,)."""
-    # As scipy's sobol_indices has them, which takes powers of 2 only.
+    # The estimators of scipy's sobol_indices, which accepts only powers of 2.
     whole = sets[:2].ravel()
     mean, variance = whole.mean(), whole.var()
     if variance == 0.0:

@@ -1,4 +1,4 @@
-"""What a study runs at each point: a scenario over some of its keys, or what a function makes of values."""
+"""Sources of the scenario at each point of a study: a scenario with varied keys, or a function of values."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from ..system import System
 from .measures import message_of
 from .points import Layout
 
-# Samples per second recorded where neither the scenario nor the study says less: enough for what is measured by name.
+# Samples per second recorded unless the scenario or the study sets fewer: enough for the named measures.
 SAMPLE_RATE = 20e3
-# Samples per second recorded by `simulate` if nobody says otherwise.
+# Default of `simulate`.
 DEFAULT_RATE = 100e3
-# What a function may say of a simulation, beside its system.
+# Arguments of a simulation that a function may return with its system.
 ARGUMENTS = ("duration", "scheme", "step", "sample_rate", "probes", "contact_solve", "surface_rate")
 SystemOf = Callable[..., Any]
 
 
 class Source(Protocol):
-    """What makes a scenario of the values of a point."""
+    """Maker of a scenario from the values of a point."""
 
     def scenario(self, values: Sequence[Any]) -> Scenario:
         """Return the scenario of a point; ValueError if it cannot be built."""
@@ -41,18 +41,18 @@ class Source(Protocol):
 
 @dataclass(frozen=True)
 class Varying:
-    """A source, and the points it is asked for.
+    """A source and its points.
 
     Attributes
     ----------
     source : Source
-        What makes the scenarios.
+        Source of the scenarios.
     keys : list of Varied
-        What is varied.
+        Varied keys.
     values : list of tuple
         Values of the keys at each point.
     attributes : dict of str
-        What says where results come from: ``title``, and ``scenario`` or ``function``.
+        Attributes that record the origin of results: ``title``, and ``scenario`` or ``function``.
     """
 
     source: Source
@@ -68,11 +68,11 @@ class OfTables:
     Attributes
     ----------
     tables : dict
-        The scenario, whole.
+        Complete tables of the scenario.
     paths : tuple of tuple
-        Where the values of a point go.
+        Paths of the varied keys.
     highest_rate : float
-        Samples per second recorded at most [Hz].
+        Largest number of samples recorded per second [Hz].
     """
 
     tables: dict[str, Any]
@@ -93,20 +93,20 @@ class OfTables:
 
 @dataclass(frozen=True)
 class OfFunction:
-    """What a function makes of values by name.
+    """A function that makes scenarios from values by name.
 
     Attributes
     ----------
     function : callable
-        It returns a System, a Scenario, or a System and a dictionary of arguments of `simulate`.
+        Function that returns a System, a Scenario, or a System and a dictionary of arguments of `simulate`.
     units : dict of str or None
-        SI unit of each parameter whose values may be texts, by its name, in the order of the values of a point.
+        SI unit of each parameter whose values may be texts, by name, in the order of the values of a point.
     fixed : dict
         Values of other parameters, the same at every point.
     given : dict
-        Duration [s] and sample rate [Hz] that go before those of the function.
+        Duration [s] and sample rate [Hz] that override those of the function.
     highest_rate : float
-        Samples per second recorded at most [Hz], where nobody says more.
+        Largest number of samples recorded per second [Hz], unless a larger one is given.
     """
 
     function: SystemOf
@@ -121,7 +121,7 @@ class OfFunction:
         Raises
         ------
         ValueError
-            If the function raises anything, or returns anything else.
+            If the function raises an exception, or returns anything else.
         """
         units = zip(self.units.items(), values, strict=True)
         named = {name: quantity(value, unit) if unit else value for (name, unit), value in units}
@@ -129,23 +129,23 @@ class OfFunction:
 
 
 def _made(function: SystemOf, values: Mapping[str, Any], given: Mapping[str, Any], highest_rate: float) -> Scenario:
-    """Return what a function makes of values.
+    """Return the scenario that a function makes from values.
 
     Parameters
     ----------
     function : callable
-        It returns a System, a Scenario, or a System and a dictionary of arguments of `simulate`.
+        Function that returns a System, a Scenario, or a System and a dictionary of arguments of `simulate`.
     values : mapping
         Its arguments.
     given : mapping
-        Arguments of `simulate` that go before those of the function.
+        Arguments of `simulate` that override those of the function.
     highest_rate : float
-        Samples per second recorded at most [Hz], where nobody says more.
+        Largest number of samples recorded per second [Hz], unless a larger one is given.
 
     Raises
     ------
     ValueError
-        If the function raises anything, returns anything else, or nobody says how long to simulate.
+        If the function raises an exception, returns anything else, or no duration is given.
     """
     name = name_of(function)
     try:
@@ -177,7 +177,7 @@ def _made(function: SystemOf, values: Mapping[str, Any], given: Mapping[str, Any
 
 
 def made_once(given: Any, values: Mapping[str, Any], timing: Mapping[str, Any]) -> Scenario:
-    """Return a scenario, or what a function makes, at one set of values.
+    """Return a scenario, or the scenario made by a function, at one set of values.
 
     Parameters
     ----------
@@ -186,14 +186,14 @@ def made_once(given: Any, values: Mapping[str, Any], timing: Mapping[str, Any]) 
     values : mapping
         Values of keys of the scenario, or of parameters of the function.
     timing : mapping
-        ``duration``, where it is given.
+        ``duration``, if given.
 
     Raises
     ------
     ScenarioError
         If the scenario cannot be used.
     ValueError
-        If a function takes other parameters, raises anything or makes anything else.
+        If a function takes other parameters, raises an exception or returns anything else.
     """
     if callable(given):
         check_takes(given, [*values])
@@ -217,7 +217,7 @@ def _arguments(name: str, made: Any) -> dict[str, Any]:
 
 
 def name_of(function: SystemOf) -> str:
-    """Return what a function is called."""
+    """Return the name of a function."""
     while isinstance(function, partial):
         function = function.func
     return str(getattr(function, "__name__", type(function).__name__))
@@ -250,7 +250,7 @@ def check_takes(function: SystemOf, names: Sequence[str]) -> None:
 
 
 def _mismatch(function: SystemOf, names: Sequence[str]) -> str | None:
-    """Return why a function does not take arguments of these names, None if it does or does not say what it takes."""
+    """Return why a function does not take arguments of these names, None if it does or has no signature."""
     try:
         signature = inspect.signature(function)
     except (TypeError, ValueError):
@@ -269,7 +269,7 @@ def varying(
     layout: Layout,
     highest_rate: float = SAMPLE_RATE,
 ) -> Varying:
-    """Return what a study runs, checked.
+    """Return the checked source and points of a study.
 
     Parameters
     ----------
@@ -278,18 +278,18 @@ def varying(
     fixed : mapping
         Values of other keys, the same at every point.
     timing : mapping
-        ``duration`` and ``sample_rate``, where they are given.
+        ``duration`` and ``sample_rate``, if given.
     layout : Layout
         The points.
     highest_rate : float, optional
-        Samples per second recorded at most [Hz], where neither the scenario nor the study says more.
+        Largest number of samples recorded per second [Hz], unless the scenario or the study sets a larger one.
 
     Raises
     ------
     ScenarioError
-        If the scenario cannot be used, or a key is not known, means several places or takes values of another kind.
+        If the scenario is invalid, or a key is unknown, ambiguous or takes values of another kind.
     ValueError
-        If a function takes other parameters, or makes nothing of the first and of the last point.
+        If a function takes other parameters, or fails at both the first and the last point.
     """
     return (_of_function if callable(scenario) else _of_scenario)(scenario, fixed, timing, layout, highest_rate)
 
@@ -319,9 +319,9 @@ def _of_scenario(
 
 
 def _usable(tables: dict[str, Any], keys: Sequence[Varied], values: Sequence[Sequence[Any]]) -> dict[str, Any]:
-    """Return the tables with matrices in place of files, once they make a scenario.
+    """Return the tables with matrices in place of files, after checking that they make a scenario.
 
-    They must alone or at the first or last point: what the points lack is no fault of theirs.
+    They must do so alone, or at the first or last point, since keys may be given by the points only.
     """
     errors = []
     for given in (None, values[0], values[-1]):
@@ -338,7 +338,7 @@ def _usable(tables: dict[str, Any], keys: Sequence[Varied], values: Sequence[Seq
 def _of_function(
     function: SystemOf, fixed: Mapping[str, Any], timing: Mapping[str, Any], layout: Layout, highest_rate: float
 ) -> Varying:
-    """Return a function that makes something of the first or of the last point, and the points."""
+    """Return a function, checked at the first and the last point, and the points."""
     twin = next((name for name in layout.keys if name in fixed), None)
     if twin is not None:
         raise ArgumentError("key", "be set or varied", twin, got=f"{twin!r} as both")
@@ -371,7 +371,7 @@ def _key(name: str, values: Sequence[Any]) -> Varied:
 
 
 def _unit(value: Any) -> str | None:
-    """Return the SI unit of a text such as ``"20 mm"``, None of anything else."""
+    """Return the SI unit of a text such as ``"20 mm"``, None for anything else."""
     known = parts(value) if isinstance(value, str) else None
     return unit_of(known[1]) if known and known[1] else None
 
@@ -382,12 +382,12 @@ def in_si(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def timing_in_si(timing: Mapping[str, Any]) -> dict[str, float]:
-    """Return a duration [s] and a sample rate [Hz], where they are given.
+    """Return a duration [s] and a sample rate [Hz], if given.
 
     Raises
     ------
     ValueError
-        If one is of another unit.
+        If one has another unit.
     """
     found = {}
     for name, unit in (("duration", "s"), ("sample_rate", "Hz")):

@@ -1,4 +1,4 @@
-"""What is done at the points of a survey: equilibrium, modes, and a run from each mode that grows."""
+"""Work at the points of a survey: equilibrium, modes, and a run from each growing mode."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ STABLE, UNSTABLE = "stable", "unstable"
 
 @dataclass(frozen=True)
 class SurveyTask:
-    """What is done at each point of a survey.
+    """Work at each point of a survey.
 
     Attributes
     ----------
     source : Source
-        What makes the scenario of a point.
+        Source of the scenario of a point.
     options : Options
-        How modes are followed.
+        Options of the runs.
     """
 
     source: Source
@@ -39,16 +39,16 @@ class SurveyTask:
     def outcomes(
         self, points: Sequence[Sequence[Any]], workers: int = 1, watch: Callable[[], None] = lambda: None
     ) -> list[Outcome]:
-        """Return what came of some points; the same points give the same to the last bit.
+        """Return the outcomes of some points, identical to the last bit for the same points.
 
         Parameters
         ----------
         points : sequence of sequence
             Values of the keys at each point.
         workers : int, optional
-            Not used: the runs of a point follow each other.
+            Not used: the runs of a point are computed in sequence.
         watch : callable, optional
-            Called now and then; what it raises ends everything.
+            Called repeatedly; an exception that it raises ends the computation.
         """
         return [self._outcome(values, watch) for values in points]
 
@@ -63,12 +63,12 @@ class SurveyTask:
         return outcome
 
     def _survey(self, scenario: Scenario, outcome: Outcome, watch: Callable[[], None]) -> None:
-        """Put into an outcome what linear theory has, and what comes of its modes."""
+        """Add the results of linear theory and the fates of the modes to an outcome."""
         system, start = without_start(scenario.system, self.options.velocity)
         kind, status = equilibrium_at_start(system, start)
         outcome["values"] = {"equilibrium": kind, "modes": []}
         if kind == JAMMED or SLIDING not in status:
-            # Nothing else feeds a vibration.
+            # Only sliding contacts feed a vibration.
             outcome["ended"] = kind
             outcome["values"] |= {} if kind == JAMMED else {"unstable_modes": 0.0}
             return
@@ -95,12 +95,12 @@ class SurveyTask:
 
 
 def without_start(system: System, velocity: float | tuple[float, ...] | None) -> tuple[System, InitialEquilibrium]:
-    """Return a system without a start of its own, and the equilibrium that it is asked for.
+    """Return a system without its own start, and the equilibrium to start from.
 
     Parameters
     ----------
     system : System
-        The system; statuses and slip velocities of an equilibrium in which it starts hold on.
+        The system; statuses and slip velocities of its initial equilibrium, if any, are kept.
     velocity : float, tuple of float or None
         Slip velocity where nothing prescribes it [m/s], in place of those.
     """

@@ -1,4 +1,4 @@
-"""What came of the points of a survey as one labelled Dataset, each mode followed from point to point."""
+"""Outcomes of the points of a survey as one labelled Dataset, with modes matched from point to point."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ from .tones_of_modes import MOST
 
 # Largest ratio of the frequencies of one mode at two neighbouring points.
 SAME = 1.2
-# Frequency [Hz] that stands for one that does not vibrate.
+# Frequency [Hz] assigned to modes that do not vibrate.
 STILL = 1e-3
 OF_POINTS = {
-    "verdict": ("", "what linear theory has of the point: stable, unstable, held, lifted off, jammed, or what failed"),
+    "verdict": ("", "verdict of linear theory: stable, unstable, held, lifted off, jammed, or the step that failed"),
     "equilibrium": ("", "kind of the equilibrium"),
     "unstable_modes": ("1", "number of modes that grow"),
-    "living_modes": ("1", "number of modes that live on in a limit cycle of their own"),
-    "message": ("", "what failed, empty where good"),
+    "living_modes": ("1", "number of modes that persist in their own limit cycle"),
+    "message": ("", "message of a failure, empty if none"),
 }
 NUMBERS = {
     "frequency": ("Hz", "frequency of the mode by linear theory"),
     "growth_rate": ("1/s", "growth rate of the mode by linear theory"),
-    "seen_frequency": ("Hz", "frequency of the mode as it grows in the run"),
+    "seen_frequency": ("Hz", "frequency of the mode during its growth in the run"),
     "seen_growth_rate": ("1/s", "growth rate of the mode in the run"),
-    "amplitude": ("m", "displacement of the contact point that moves most, at the start of the run"),
+    "amplitude": ("m", "largest initial displacement of a contact point"),
     "duration": ("s", "time simulated"),
     "reached": ("1", "whether the run left linear theory"),
-    "steady": ("1", "whether the run swings alike in its last two windows"),
-    "joined": ("1", "mode that the strongest tone belongs to where the mode joins another"),
+    "steady": ("1", "whether the swings in the last two windows of the run are similar"),
+    "joined": ("1", "mode of the strongest tone if the mode joins another"),
     "confidence": ("1", "confidence in the regime, 0.5 at a threshold"),
-    "normal_force_rms": ("N", "root mean square fluctuation of the normal force, of the contact where it is largest"),
+    "normal_force_rms": ("N", "root mean square fluctuation of the normal force, at the contact where it is largest"),
     "slip_velocity_rms": ("m/s", "root mean square fluctuation of the slip velocity of that contact"),
     "separated_share": ("1", "share of the time in which contacts are separated"),
     "sticking_share": ("1", "share of the time in which contacts stick"),
@@ -49,14 +49,14 @@ NUMBERS = {
     "sound_level": ("dB", "sound level LAeq a metre above the track at the louder ear, re 20 µPa"),
 }
 WORDS = {
-    "fate": f"what becomes of the mode: {', '.join(FATES)}",
+    "fate": f"fate of the mode: {', '.join(FATES)}",
     "regime": "regime of the contact whose normal force fluctuates most",
 }
 TONES = {
     "tone_frequency": ("frequency", "Hz", "frequency of a tone of the limit cycle, the strongest first"),
     "tone_level": ("level", "dB", "level of the tone below the strongest"),
-    "tone_mode": ("mode", "Hz", "frequency by linear theory of the mode that the tone belongs to"),
-    "tone_order": ("order", "1", "frequency of the tone over that of the tone it is a multiple of"),
+    "tone_mode": ("mode", "Hz", "frequency by linear theory of the mode of the tone"),
+    "tone_order": ("order", "1", "frequency of the tone over that of its fundamental tone"),
 }
 # Names that keys of the points must not have.
 OWN = {*OF_POINTS, *NUMBERS, *WORDS, *TONES, "mode", "tone", "point"}
@@ -67,7 +67,7 @@ def check_names(layout: Layout) -> None:
     taken = OWN - ({"point"} if layout.is_grid else set())
     clash = next((key for key in layout.keys if key in taken), None)
     if clash is not None:
-        words = "not be called as a result of the survey"
+        words = "not have the name of a result of the survey"
         raise ArgumentError("key", words, clash, got=f"{clash!r}: write its full key")
 
 
@@ -78,20 +78,20 @@ def surveyed(
     outcomes: Sequence[Outcome],
     attributes: dict[str, str],
 ) -> xr.Dataset:
-    """Return what came of the points.
+    """Return the outcomes of the points as a Dataset.
 
     Parameters
     ----------
     layout : Layout
-        How the points fill dimensions.
+        Layout of the points in dimensions.
     keys : sequence of Varied
-        What was varied.
+        Varied keys.
     values : sequence of sequence
         Values of the keys at each point.
     outcomes : sequence of dict
-        What came of each point.
+        Outcome of each point.
     attributes : dict
-        Attributes of the whole.
+        Attributes of the Dataset.
     """
     shape, dimensions = tuple(layout.dimensions.values()), tuple(layout.dimensions)
     modes = [outcome["values"].get("modes", []) for outcome in outcomes]
@@ -161,7 +161,7 @@ def _tones(rows: Sequence[Mapping[int, Mapping[str, Any]]], word: str, count: in
 
 
 def neighbours(layout: Layout, places: Mapping[str, Any]) -> list[list[int]]:
-    """Return the points before each point that it lies next to: of a grid one back on each axis, else the nearest.
+    """Return the earlier neighbours of each point: in a grid one step back on each axis, else the nearest point.
 
     Parameters
     ----------
@@ -192,20 +192,20 @@ def neighbours(layout: Layout, places: Mapping[str, Any]) -> list[list[int]]:
 def followed(modes: Sequence[Sequence[Mapping[str, Any]]], before: Sequence[Sequence[int]]) -> list[list[int]]:
     """Return the name of each mode of each point: the same for modes of about the same frequency at neighbours.
 
-    Names are numbers, by rising frequency where each mode first comes up.
+    Names are numbers, by rising frequency at the first point of each mode.
 
     Parameters
     ----------
     modes : sequence of sequence of mapping
         Modes of each point, with their frequencies [Hz].
     before : sequence of sequence of int
-        Neighbours of each point, of those before it.
+        Earlier neighbours of each point.
     """
     heights = [np.log([max(mode["frequency"], STILL) for mode in point]) for point in modes]
     names: list[list[int]] = []
     last_seen: dict[int, float] = {}
     for heard, near in zip(heights, before, strict=True):
-        # Where a mode is not at a neighbour, it may still be where it was last seen.
+        # A mode missing at a neighbour is compared with the last point that had it.
         known = last_seen | {name: f for at in near for name, f in zip(names[at], heights[at], strict=True)}
         labels, row = list(known), [-1] * len(heard)
         if labels and len(heard):
@@ -223,5 +223,5 @@ def followed(modes: Sequence[Sequence[Mapping[str, Any]]], before: Sequence[Sequ
 
 
 def _first(name: int, names: Sequence[Sequence[int]], heights: Sequence[Any]) -> float:
-    """Return the logarithm of the frequency at which a mode first comes up."""
+    """Return the logarithm of the frequency of a mode at its first point."""
     return next(float(height[row.index(name)]) for row, height in zip(names, heights, strict=True) if name in row)

@@ -1,4 +1,4 @@
-"""Squeal surveys: which modes of sliding grow over parameters, and what becomes of each in time."""
+"""Squeal surveys: growing modes of sliding over parameters, and their fates in time."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .survey_task import SurveyTask
 from .surveyed import check_names, surveyed
 from .task import Outcome
 
-# Points that are computed in one go: each takes several runs.
+# Points computed together; each needs several runs.
 POINTS_OF_A_PART = 1
 
 
@@ -41,45 +41,46 @@ def squeal_survey(
     workers: int | None = None,
     client: Any = None,
     watchers: Sequence[Watcher] = (),
+    progress: bool = False,
 ) -> xr.Dataset:
-    """Find the modes of steady sliding that grow over parameters, and follow each in time to what becomes of it.
+    """Find the growing modes of steady sliding over parameters, and simulate each in time to its fate.
 
     At each point linear theory finds the equilibrium and its complex modes, as `sliding_stability` does at the start,
-    with the contact points where the loaded system has them. For each mode that grows a run starts in this equilibrium
-    with the mode on top and lasts until its limit cycle is steady. A run without the mode, from the same start, is
-    taken off when growth is measured. Starts that a scenario has of its own are left out, but for statuses and slip
-    velocity of its initial equilibrium.
+    with the contact points of the loaded system. For each growing mode a run starts in this equilibrium, perturbed by
+    the mode, and lasts until its limit cycle is steady. A run without the mode, from the same start, is subtracted to
+    measure growth. Starts defined by the scenario are ignored, except for statuses and slip velocity of its initial
+    equilibrium.
 
-    Points are computed and kept as those of a `sweep`; each is a part of its own.
+    Points are computed and kept as those of a `sweep`; each is a separate part.
 
     Parameters
     ----------
     scenario : str, Path, xarray.Dataset or callable
-        A scenario, or a function that makes a system of values by name, as for `sweep`. Its duration does not count.
+        A scenario, or a function that makes a system from values by name, as for `sweep`. Its duration is ignored.
     points : Grid, LatinHypercube, mapping or sequence of mapping
         Values by key, as for `sweep`.
     overrides : mapping, optional
         Values of other keys, the same at every point.
     duration : float or str, optional
-        Time of each run [s]. If left out, it follows from the growth rate: what the mode takes to its reach, five times
-        one over the growth rate, and two windows of 100 periods or 0.1 s; then it is doubled until the limit cycle is
-        steady.
+        Time of each run [s]. If left out, it follows from the growth rate: the time for the mode to grow to its reach,
+        five times the inverse of the growth rate, and two windows of 100 periods or 0.1 s; then it is doubled until the
+        limit cycle is steady.
     longest : float or str, optional
         Longest time of a run whose duration is left out [s].
     amplitude : float, optional
-        Start of the mode over its reach [1], below 0.1. The reach is the displacement at which a contact opens, stops,
-        sticks, slips or lands by linear theory.
+        Initial amplitude of the mode over its reach [1], below 0.1. The reach is the displacement at which
+        a contact opens, stops, sticks, slips or lands by linear theory.
     resolution : float, optional
-        Largest distance of a tone from the mode that it belongs to, relative to the mode's frequency [1].
+        Largest distance of a tone from its mode, relative to the mode's frequency [1].
     highest : float or str, optional
-        Modes above this frequency [Hz] are counted, but not followed.
+        Modes above this frequency [Hz] are counted, but not simulated.
     velocity : float or sequence of float, optional
         Slip velocity where nothing prescribes it [m/s], as for `sliding_stability`.
     sample_rate : float or str, optional
-        Samples per second recorded [Hz]; if left out the scenario's, or what the highest mode takes where that is less
-        and nothing can be heard.
+        Samples per second recorded [Hz]; by default that of the scenario, or fewer if enough for the highest mode and
+        there is no sound.
     out : str or Path, optional
-        NetCDF file to write. Points that are done are kept in a folder beside it, ``<out>.parts``; the same call
+        NetCDF file to write. Finished points are kept in a folder beside it, ``<out>.parts``; the same call
         resumes from there.
     workers : int, optional
         Points at a time; as many as there are processors if left out.
@@ -87,6 +88,8 @@ def squeal_survey(
         Machines that compute the points, in place of this one.
     watchers : sequence of callable, optional
         Called with a `SweepProgress` after each point.
+    progress : bool, optional
+        Whether a bar on standard error shows how many points are done and how long the others will take.
 
     Returns
     -------
@@ -95,21 +98,21 @@ def squeal_survey(
         ``equilibrium``, ``unstable_modes``, ``living_modes`` and ``message``. Over the points and ``mode``, NaN or
         empty where a mode does not grow: ``frequency`` [Hz] and ``growth_rate`` [1/s] by linear theory,
         ``seen_frequency`` and ``seen_growth_rate`` in the run, ``fate``, ``regime``, levels, shares, ``sound_level``
-        [dB] and more; over ``tone``, too, the tones of the limit cycle and the modes that they belong to.
+        [dB] and more; additionally over ``tone`` the tones of the limit cycle and their modes.
 
     Raises
     ------
     ScenarioError
         If the scenario cannot be used, or a key is not known, means several places or takes values of another kind.
     ValueError
-        If another argument is not usable, a function takes other parameters or fails at the first and the last point,
-        or `out` is another file or that of another survey, which is not touched.
+        If another argument is invalid, a function takes other parameters or fails at both the first and the last
+        point, or `out` is another file or that of another survey, which is not changed.
     OSError
         If the file or a part cannot be written; finished parts are kept.
     RuntimeError
         If a part fails on other machines; finished parts are kept.
     """
-    check_options(workers, client, watchers)
+    check_options(workers, client, watchers, progress)
     options = Options(
         duration=None if duration is None else _positive("duration", duration, "s"),
         longest=_positive("longest", longest, "s"),
@@ -120,11 +123,11 @@ def squeal_survey(
     )
     rate = None if sample_rate is None else _positive("sample_rate", sample_rate, "Hz")
     plan = _planned(scenario, points, by_key("overrides", overrides), options, rate)
-    return computed(plan, out, workers, client, watchers)
+    return computed(plan, out, workers, client, watchers, progress)
 
 
 def _positive(name: str, given: Any, unit: str) -> float:
-    """Return a number above 0 in SI, which may be given as a text."""
+    """Return a number above 0 in SI, from a number or a text."""
     try:
         return positive(name, quantity(plain_python(given), unit))
     except ArgumentError as error:
@@ -134,12 +137,12 @@ def _positive(name: str, given: Any, unit: str) -> float:
 def _planned(
     scenario: Any, points: Any, overrides: Mapping[str, Any], options: Options, sample_rate: float | None
 ) -> Plan:
-    """Return a survey, checked."""
+    """Return a checked survey."""
     layout = laid_out(points)
     check_names(layout)
     fixed = {key: plain_python(value) for key, value in overrides.items()}
     rate = {} if sample_rate is None else {"sample_rate": sample_rate}
-    # Of a function nobody else may say it; runs last as long as their modes take.
+    # Required by functions without a duration; the runs last as long as their modes need.
     timing = {"duration": options.duration or options.longest, **rate}
     found = varying(scenario, fixed, timing, layout, highest_rate=math.inf)
     asked = vars(options) | {"points": layout.asked, "overrides": fixed, "sample_rate": sample_rate}

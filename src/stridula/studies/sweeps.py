@@ -1,4 +1,4 @@
-"""Sweeps: a scenario at many points of its parameters, what is measured at each in one Dataset, safe on disk."""
+"""Sweeps: a scenario at many points of its parameters, with measures in one Dataset, saved on disk."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .sources import SystemOf, varying
 from .swept import check_names, swept
 from .task import Outcome, Task
 
-# Points that are computed in one go, whoever computes them: they share a time step, and runs march side by side.
+# Points computed together on any machine: they share a time step, and their runs are computed side by side.
 POINTS_OF_A_PART = 64
 
 
@@ -35,28 +35,29 @@ def sweep(
     workers: int | None = None,
     client: Any = None,
     watchers: Sequence[Watcher] = (),
+    progress: bool = False,
 ) -> xr.Dataset:
-    """Run a scenario, or what a function makes, at many points of its parameters and return the measures of each.
+    """Run a scenario, or the systems made by a function, at many parameter points and return measures of each run.
 
-    Points are computed in parts of 64, in their order. Within a part runs march side by side, with the shortest of the
-    time steps that they would take alone. A part does not depend on who computes it: any number of workers, other
-    machines of the same kind, or a sweep that was stopped and started again give the same to the last bit. To that
-    end, linear algebra runs in one thread meanwhile.
+    Points are computed in parts of 64, in their order. Within a part runs are computed side by side, with the shortest
+    of the time steps that they would have alone. Results are the same to the last bit for any number of workers, on
+    other machines of the same kind, and after a sweep was stopped and resumed. To that end, linear algebra uses one
+    thread during the sweep.
 
-    A point that cannot be built, started, believed or measured is kept with its message, and the others go on.
+    A point that cannot be built, started, simulated or measured is kept with its message, and the others continue.
 
     Parameters
     ----------
     scenario : str, Path, xarray.Dataset or callable
         Name of a shipped case, a TOML file or a record. Or a function that takes values by name and returns a `System`,
-        a `Scenario`, or a `System` and a dictionary of arguments of `simulate`; texts such as ``"10 deg"`` come to it
-        in SI.
+        a `Scenario`, or a `System` and a dictionary of arguments of `simulate`; texts such as ``"10 deg"`` are passed
+        to it in SI.
     points : Grid, LatinHypercube, mapping or sequence of mapping
-        Values by key, as the overrides of `load_scenario`; of a function by its parameters. A mapping is that of a
+        Values by key, as the overrides of `load_scenario`; for a function by its parameters. A mapping is that of a
         `Grid`.
     measures : str, mapping or sequence of them
-        What is measured: names of measures, functions by names of one's own. A function takes a record and returns a
-        number or a text; it runs in threads, in processes, and with a `client` on other machines.
+        Names of measures, or functions by names of your own. A function takes a record and returns a number or a
+        text; it runs in threads, in processes, and with a `client` on other machines.
     overrides : mapping, optional
         Values of other keys, the same at every point.
     duration : float or str, optional
@@ -64,42 +65,44 @@ def sweep(
     sample_rate : float or str, optional
         Samples per second recorded [Hz]; the scenario's if left out, at most 20 kHz.
     probes : bool, optional
-        Whether the scenario's probes are recorded; if left out, where there are functions among the measures.
+        Whether the scenario's probes are recorded; by default if there are functions among the measures.
     out : str or Path, optional
-        NetCDF file to write. Parts that are done are kept in a folder beside it, ``<out>.parts``; the same call resumes
+        NetCDF file to write. Finished parts are kept in a folder beside it, ``<out>.parts``; the same call resumes
         from there. Two processes may compute the same sweep at once.
     workers : int, optional
         Parts at a time; as many as there are processors if left out. They are computed in threads, and in processes
-        once threads wait for each other; functions that no other process can import, such as those of the script
-        itself, keep all of it in threads.
+        once threads wait for each other; with functions that no other process can import, such as those of the script
+        itself, only threads are used.
     client : distributed.Client, optional
         Machines that compute the parts, in place of this one.
     watchers : sequence of callable, optional
         Called with a `SweepProgress` after each part.
+    progress : bool, optional
+        Whether a bar on standard error shows how many points are done and how long the others will take.
 
     Returns
     -------
     xarray.Dataset
-        Of a grid, the measures over one dimension for each key; of other points over ``point``, with the keys as
-        coordinates. Texts such as ``"10 deg"`` become numbers with this unit. ``ended`` is how the run ended, or
-        ``not built``, ``not started``, ``not simulated``, ``not measured``; ``message`` what failed, empty where good.
+        For a grid, the measures over one dimension for each key; for other points over ``point``, with the keys as
+        coordinates. Texts such as ``"10 deg"`` become numbers with this unit. ``ended`` is the ending of the run, or
+        ``not built``, ``not started``, ``not simulated``, ``not measured``; ``message`` the failure, empty if none.
 
     Raises
     ------
     ScenarioError
         If the scenario cannot be used, or a key is not known, means several places or takes values of another kind.
     ValueError
-        If another argument is not usable, a function takes other parameters or fails at the first and the last point,
-        or `out` is another file or that of another sweep, which is not touched. Functions are told apart by their names
-        only.
+        If another argument is invalid, a function takes other parameters or fails at both the first and the last
+        point, or `out` is another file or that of another sweep, which is not changed. Functions are distinguished by
+        their names only.
     OSError
         If the file or a part cannot be written; finished parts are kept.
     RuntimeError
         If a part fails on other machines; finished parts are kept.
     """
-    check_options(workers, client, watchers)
+    check_options(workers, client, watchers, progress)
     plan = _planned(scenario, points, measures, by_key("overrides", overrides), duration, sample_rate, probes)
-    return computed(plan, out, workers, client, watchers)
+    return computed(plan, out, workers, client, watchers, progress)
 
 
 def _planned(
@@ -111,7 +114,7 @@ def _planned(
     sample_rate: Any,
     probes: bool | None,
 ) -> Plan:
-    """Return a sweep from the arguments of `sweep`, checked."""
+    """Return a checked sweep from the arguments of `sweep`."""
     asked = asked_for(measures)
     layout = laid_out(points)
     check_names(layout, asked.columns)

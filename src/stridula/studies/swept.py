@@ -1,4 +1,4 @@
-"""What came of the points of a sweep as one labelled Dataset."""
+"""Outcomes of the points of a sweep as one labelled Dataset."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from .measures import OWN, Column
 from .points import POINT, Layout
 from .task import Outcome
 
-# What stands before the value in a message.
+# Text before the value in a message.
 GOT = ", got "
 
 
 def check_names(layout: Layout, columns: Sequence[Column]) -> None:
-    """Raise ValueError if a key has the name of a variable that the sweep has anyway.
+    """Raise ValueError if a key has the name of another variable of the sweep.
 
     Parameters
     ----------
     layout : Layout
         The points.
     columns : sequence of Column
-        What is measured.
+        Variables of the measures.
     """
     taken = {*OWN, *(column.name for column in columns)} - ({POINT} if layout.is_grid else set())
     clash = next((key for key in layout.keys if key in taken), None)
     if clash is not None:
         raise ArgumentError(
-            "key", "not be called as a result of the sweep", clash, got=f"{clash!r}: write its full key"
+            "key", "not have the name of a result of the sweep", clash, got=f"{clash!r}: write its full key"
         )
 
 
@@ -45,22 +45,22 @@ def swept(
     outcomes: Sequence[Outcome],
     attributes: dict[str, str],
 ) -> xr.Dataset:
-    """Return what came of the points.
+    """Return the outcomes of the points as a Dataset.
 
     Parameters
     ----------
     layout : Layout
-        How the points fill dimensions.
+        Layout of the points in dimensions.
     keys : sequence of Varied
-        What was varied.
+        Varied keys.
     values : sequence of sequence
         Values of the keys at each point.
     columns : sequence of Column
-        What was measured.
+        Variables of the measures.
     outcomes : sequence of dict
-        What came of each point.
+        Outcome of each point.
     attributes : dict
-        Attributes of the whole.
+        Attributes of the Dataset.
     """
     dimensions = tuple(layout.dimensions)
     shape = tuple(layout.dimensions.values())
@@ -83,13 +83,13 @@ def swept(
         else:
             numbers = (float("nan") if value is None else value for value in known)
             data[column.name] = (dimensions, laid(numbers, float), words)
-    for name, meaning in (("ended", "how the run of the point ended"), ("message", "what failed, empty where good")):
+    for name, meaning in (("ended", "ending of the run"), ("message", "message of a failure, empty if none")):
         data[name] = (dimensions, laid((outcome[name] for outcome in outcomes), object), {"long_name": meaning})
     return xr.Dataset(data, coordinates(layout, keys, values), attributes)
 
 
 def coordinates(layout: Layout, keys: Sequence[Varied], values: Sequence[Sequence[Any]]) -> dict[str, Any]:
-    """Return the coordinates of points: what was varied, and the number of the point where they fill no grid."""
+    """Return the coordinates of points: the varied keys, and the number of the point unless they form a grid."""
     columns = list(zip(*values, strict=True))
     if not layout.is_grid:
         points = {POINT: (POINT, np.arange(len(values)), {"long_name": "number of the point"})}
@@ -114,9 +114,9 @@ def failures(found: xr.Dataset) -> list[str]:
 
 
 def usual_failure(messages: Sequence[str]) -> str:
-    """Return in one line what most of the points that failed say, and how many do; nothing if none failed.
+    """Return the most frequent message of the points that failed and its count in one line; empty if none failed.
 
-    Messages that differ in the value they got say the same.
+    Messages that differ only in the value after "got" count as the same.
     """
     if not messages:
         return ""

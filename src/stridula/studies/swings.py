@@ -1,4 +1,4 @@
-"""How far contacts swing about their equilibrium in a run, and how fast that grows."""
+"""Swings of contacts about their equilibrium in a run, and the growth of the swings."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ import xarray as xr
 from ..arrays import Array
 from ..linear.reach import ModesAtRest
 
-# Share of the way to where a contact leaves linear theory, up to which growth is measured: well below one, for laws of
-# friction and bent tracks are linear for small motions only.
+# Fraction of a mode's reach up to which growth is measured: well below one, since laws of friction and bent tracks
+# are linear for small motions only.
 LINEAR = 0.05
-# Share of a mode that others may have when its growth is measured.
+# Largest amplitude of other modes over that of a mode whose growth is measured.
 FOREIGN = 1e-3
-# Swing of other modes that rounding starts.
+# Swing of other modes started by rounding.
 ROUNDING = 1e-12
-# Periods, and times over which a mode grows by e, from which growth can be told; samples of a period that are compared.
+# Fewest periods, and least growth as an exponent of e, for a measurement of growth; samples compared per period.
 FEWEST_PERIODS, LEAST_GROWTH, SAMPLES_OF_A_PERIOD = 1.0, 0.5, 7.0
-# Share of the growth that what one mode leaves unexplained may hide: a share u of the motion lets the roots of the
-# recurrence decay by about u² in each of its intervals.
+# Largest relative error of the growth due to motion that one mode does not explain: a share u of such motion lets the
+# roots of the recurrence decay by about u² in each of its intervals.
 HIDDEN = 0.02
 
 
 def relative(run: xr.Dataset, rest: ModesAtRest) -> Array:
     """Return normal forces and slip velocities over those at rest, shape (time, channels).
 
-    A normal force that swings by one opens its contact, a slip velocity that does so stops it. Contacts that are open
-    or stick at rest have no part in it.
+    A normal force that swings by one opens its contact, a slip velocity that swings by one stops it. Contacts that are
+    open or stick at rest are left out.
 
     Parameters
     ----------
@@ -44,24 +44,24 @@ def relative(run: xr.Dataset, rest: ModesAtRest) -> Array:
 
 
 def swing(motion: Array) -> float:
-    """Return the root mean square of what moves most about its mean [1]."""
+    """Return the largest standard deviation of any channel [1]."""
     return float(motion.std(axis=0).max()) if motion.size else 0.0
 
 
 def linear_time(rest: ModesAtRest, number: int, amplitude: float) -> float:
-    """Return how long a mode that grows stays one mode within linear theory [s].
+    """Return the time for which a growing mode dominates within linear theory [s].
 
-    It ends where the mode has grown to `LINEAR` of its reach, or before, where rounding has let a mode that grows
-    faster come to `FOREIGN` of it.
+    It ends once the mode has grown to `LINEAR` of its reach, or earlier, once a faster mode started by rounding has
+    grown to `FOREIGN` of it.
 
     Parameters
     ----------
     rest : ModesAtRest
         The modes.
     number : int
-        Which one.
+        Number of the mode.
     amplitude : float
-        Its start over its reach [1].
+        Its initial amplitude over its reach [1].
     """
     growth = rest.exponents.real
     lasts = max(np.log(LINEAR / amplitude), 1.0) / growth[number]
@@ -72,7 +72,7 @@ def linear_time(rest: ModesAtRest, number: int, amplitude: float) -> float:
 
 
 def growth_in_time(run: xr.Dataset, still: xr.Dataset, rest: ModesAtRest, number: int, amplitude: float) -> complex:
-    """Return the exponent [1/s] at which a run leaves another one that starts without the mode; NaN if it has none.
+    """Return the exponent [1/s] at which a run departs from one started without the mode; NaN if not measurable.
 
     Samples of a growing oscillation are linear combinations of the two before them, the same in all channels; the roots
     of that recurrence are the exponentials over an interval (Prony).
@@ -80,13 +80,13 @@ def growth_in_time(run: xr.Dataset, still: xr.Dataset, rest: ModesAtRest, number
     Parameters
     ----------
     run, still : xarray.Dataset
-        Records from the same equilibrium, with the mode on top and without it.
+        Records from the same equilibrium, with and without the mode.
     rest : ModesAtRest
         The modes.
     number : int
-        Which one is on top.
+        Number of the mode.
     amplitude : float
-        Its start over its reach [1].
+        Its initial amplitude over its reach [1].
     """
     known, interval = complex(rest.exponents[number]), float(run.attrs["sample_interval"])
     lasts = linear_time(rest, number, amplitude)
@@ -97,7 +97,7 @@ def growth_in_time(run: xr.Dataset, still: xr.Dataset, rest: ModesAtRest, number
     length = samples * interval
     if length < max(FEWEST_PERIODS * period, LEAST_GROWTH / known.real) or period < 3.0 * interval:
         return complex(np.nan, np.nan)
-    # As large at the end as at the start: each stretch of time weighs as much.
+    # Divided by the expected growth, so that all times have equal weight.
     shrunk = np.exp(-known.real * interval * np.arange(len(away) - 2 * every))[:, None]
     past, last, now = (away[k * every : len(away) - (2 - k) * every] * shrunk for k in range(3))
     weights, *_ = np.linalg.lstsq(np.stack([last.ravel(), past.ravel()], axis=1), now.ravel(), rcond=None)

@@ -1,4 +1,4 @@
-"""Surveys as tables for other programs: a row for each mode of each point."""
+"""Surveys as tables for other programs, with one row for each mode of each point."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ COLUMNS = (*(name for name in OF_POINTS if name != "message"), "mode", *NUMBERS,
 
 
 def survey_table(found: xr.Dataset) -> str:
-    """Return a survey as comma-separated values, in SI but for the keys, which keep their units.
+    """Return a survey as comma-separated values, in SI except for the keys, which keep their units.
 
-    A point without a mode that grows has one row. ``tone_frequency`` is that of the strongest tone.
+    A point without a growing mode has one row. ``tone_frequency`` is that of the strongest tone.
 
     Parameters
     ----------
     found : xarray.Dataset
-        What `squeal_survey` returned.
+        Result of `squeal_survey`.
 
     Raises
     ------
@@ -55,6 +55,6 @@ def _cell(point: xr.Dataset, name: str, mode: int | None) -> Any:
 
 
 def _plain(one: xr.DataArray) -> Any:
-    """Return a value as text or number, nothing for NaN."""
+    """Return a value as text or number, an empty text for NaN."""
     value = one.item()
     return "" if isinstance(value, float) and np.isnan(value) else value

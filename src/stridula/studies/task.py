@@ -1,4 +1,4 @@
-"""What is done at the points of a sweep: scenario, run, measures. A task goes to other machines as it is."""
+"""Work at the points of a sweep: scenario, run, measures. A task can be sent to other machines."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .measures import Asked, Value, message_of
 from .sources import Source
 
 NOT_BUILT, NOT_STARTED, NOT_SIMULATED, NOT_MEASURED = "not built", "not started", "not simulated", "not measured"
-# What came of a point: its values by name, how it ended, and the message of what failed, in plain numbers and texts.
+# Outcome of a point: its values by name, its ending and the message of a failure, as plain numbers and texts.
 Outcome = dict[str, Any]
 
 
@@ -26,24 +26,24 @@ class Stopped(Exception):
 
 
 class Work(Protocol):
-    """What is done at each point of a study; it goes to other processes and machines as it is."""
+    """Work at each point of a study; it can be sent to other processes and machines."""
 
     def outcomes(
         self, points: Sequence[Sequence[Any]], workers: int = 1, watch: Callable[[], None] = lambda: None
     ) -> list[Outcome]:
-        """Return what came of some points; the same points give the same to the last bit."""
+        """Return the outcomes of some points, identical to the last bit for the same points."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """What is done at each point of a sweep.
+    """Work at each point of a sweep.
 
     Attributes
     ----------
     source : Source
-        What makes the scenario of a point.
+        Source of the scenario of a point.
     asked : Asked
-        What is measured.
+        Requested measures.
     probes : bool
         Whether the scenario's probes are recorded.
     """
@@ -55,16 +55,16 @@ class Task:
     def outcomes(
         self, points: Sequence[Sequence[Any]], workers: int = 1, watch: Callable[[], None] = lambda: None
     ) -> list[Outcome]:
-        """Return what came of some points; the same points give the same to the last bit.
+        """Return the outcomes of some points, identical to the last bit for the same points.
 
         Parameters
         ----------
         points : sequence of sequence
             Values of the keys at each point.
         workers : int, optional
-            Runs or groups of them at a time.
+            Number of runs, or groups of runs, computed at a time.
         watch : callable, optional
-            Called now and then; what it raises ends everything.
+            Called repeatedly; an exception that it raises ends the computation.
         """
         outcomes: list[Outcome] = []
         scenarios: dict[int, Scenario] = {}
@@ -98,7 +98,7 @@ class Task:
     def _simulate(
         self, outcomes: Sequence[Outcome], scenarios: Sequence[Scenario], workers: int, watch: Callable[[], None]
     ) -> None:
-        """Run scenarios of the same options and keep what is measured of their records."""
+        """Run scenarios with the same options and keep the measures of their records."""
 
         def measured(record: xr.Dataset | PlainRecord) -> Outcome:
             found: Outcome = {"ended": record.attrs["ended"], "message": record.attrs.get("message", ""), "values": {}}
@@ -113,7 +113,7 @@ class Task:
             workers=workers,
             watchers=[lambda progress: watch()],
             errors="return",
-            # Labels take longer than what a sweep measures by name, which does without.
+            # Labels take longer than the named measures, which do not need them.
             labelled=bool(self.asked.functions),
             variables=self.asked.variables,
             **self._options(scenarios[0]),
@@ -121,14 +121,14 @@ class Task:
         for outcome, result in zip(outcomes, results, strict=True):
             if isinstance(result, Exception):
                 result = {"ended": NOT_STARTED, "message": message_of(result), "values": {}}
-            # What failed first, of the system, is what is told.
+            # A failure of the system, which came first, is reported.
             message = outcome["message"] or result["message"]
             values: dict[str, Value] = outcome["values"] | result["values"]
             outcome |= {"ended": result["ended"], "message": message, "values": values}
 
 
 def _alike(scenarios: dict[int, Scenario], options: Callable[[Scenario], dict[str, Any]]) -> list[list[int]]:
-    """Return the numbers of the scenarios that go into one call."""
+    """Return groups of numbers of scenarios with equal options."""
     groups: dict[Hashable, list[int]] = {}
     for number, scenario in scenarios.items():
         groups.setdefault(tuple(options(scenario).values()), []).append(number)
@@ -137,7 +137,7 @@ def _alike(scenarios: dict[int, Scenario], options: Callable[[Scenario], dict[st
 
 @contextmanager
 def failing(outcome: Outcome, ended: str) -> Iterator[None]:
-    """Keep what fails as the outcome of a point. Memory that runs out, or a stop, says nothing about it."""
+    """Record an exception, other than MemoryError and `Stopped`, as the outcome of a point."""
     try:
         yield
     except (MemoryError, Stopped):
@@ -148,11 +148,11 @@ def failing(outcome: Outcome, ended: str) -> Iterator[None]:
 
 @contextmanager
 def one_thread_each() -> Iterator[None]:
-    """Let linear algebra run in one thread: with several its last bits depend on their number."""
+    """Run linear algebra in one thread: with several threads the last bits depend on their number."""
     with threadpool_limits(1):
         yield
 
 
 def use_one_thread() -> None:
-    """Let linear algebra run in one thread from now on, as on a machine that is lent."""
+    """Run linear algebra in one thread from now on, on another machine."""
     threadpool_limits(1)

@@ -1,4 +1,4 @@
-"""The tones of a limit cycle, and which modes of linear theory they belong to."""
+"""The tones of a limit cycle, and their modes of linear theory."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import xarray as xr
 from ..analysis import tones
 from ..arrays import Array
 
-# Tones that are kept, and how far below the strongest they still count [dB].
+# Largest number of tones kept, and their lowest level relative to the strongest [dB].
 MOST, FAINTEST = 8, -40.0
 # Width of the bands of the spectrum, and lowest tone, over the resolution of the window.
 BANDS, LOWEST = 4.0, 4.0
-# Highest multiple of half of a tone that is told from a tone of its own.
+# Highest multiple of half of a tone that is recognised.
 HIGHEST_MULTIPLE = 40
 
 
@@ -26,11 +26,11 @@ class Tone(NamedTuple):
     frequency : float
         Frequency [Hz].
     level : float
-        Level below the strongest [dB].
+        Level relative to the strongest [dB].
     mode : int
-        Number of the mode that it belongs to, -1 for none.
+        Number of its mode, -1 for none.
     order : float
-        Its frequency over that of the tone that it is a multiple of, 1 for one that stands for itself.
+        Its frequency over that of its fundamental tone, 1 if it is not a multiple of another.
     """
 
     frequency: float
@@ -40,10 +40,10 @@ class Tone(NamedTuple):
 
 
 def tones_of(signal: xr.DataArray, exponents: Array, grows: Array, resolution: float) -> list[Tone]:
-    """Return the tones of a signal, the strongest first, each with the mode that it belongs to.
+    """Return the tones of a signal, the strongest first, each with its mode.
 
-    A tone belongs to the nearest mode that grows; else it is a multiple of half of a tone that does; else it belongs to
-    the nearest of the other modes; each within the resolution.
+    A tone belongs to the nearest growing mode; else it is a multiple of half of such a tone; else it belongs to the
+    nearest of the other modes; each within the resolution.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def tones_of(signal: xr.DataArray, exponents: Array, grows: Array, resolution: f
 
 
 def _nearest(frequency: float, frequencies: Array, numbers: Array, resolution: float) -> int:
-    """Return which of some modes is nearest to a frequency [Hz], -1 if none is near."""
+    """Return the mode nearest to a frequency [Hz], -1 if none is within the resolution."""
     if not numbers.size:
         return -1
     number = int(numbers[np.abs(frequencies[numbers] - frequency).argmin()])
@@ -87,7 +87,7 @@ def _nearest(frequency: float, frequencies: Array, numbers: Array, resolution: f
 
 
 def _multiple(frequency: float, own: dict[float, int], slack: float) -> tuple[int, float]:
-    """Return the mode of the tone that a frequency [Hz] is a multiple of, and the multiple; -1 and 1 if of none."""
+    """Return the mode of the tone whose multiple a frequency [Hz] is, and the factor; -1 and 1 if there is none."""
     for tone, mode in own.items():
         halves = round(2.0 * frequency / tone)
         if 1 <= halves <= HIGHEST_MULTIPLE and abs(frequency - 0.5 * halves * tone) <= slack * max(1.0, 0.5 * halves):

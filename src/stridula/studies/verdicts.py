@@ -1,4 +1,4 @@
-"""How far linear theory and what really happens agree on a map."""
+"""Agreement of linear theory and runs on a map."""
 
 from __future__ import annotations
 
@@ -10,31 +10,30 @@ from ..checks import ArgumentError, instance, listed
 
 UNSTABLE = "unstable"
 VERDICTS = (UNSTABLE, "sliding", "held", "lifted off", "jammed")
-# What must be seen for linear theory to be right; of the others it says nothing.
+# Regimes that agree with each verdict; the other verdicts predict nothing.
 VIBRATING = ("stick-slip", "squeal", "judder")
 EXPECTED = {UNSTABLE: VIBRATING, "sliding": ("stable sliding",), "held": ("sticking",)}
-# A run that leaves its track was cut short.
+# A run that leaves its track ends early.
 UNDECIDED = "off the track"
 
 
 def agreement(found: xr.Dataset) -> xr.Dataset:
-    """Return how often each regime was seen under each verdict of linear theory.
+    """Return the number of runs in each regime by verdict of linear theory.
 
-    They agree where a mode grows and the run vibrates (stick-slip, squeal or judder), where all modes of steady sliding
-    decay and the run slides, and where friction holds the contact and the run sticks. Runs off the track, failed ones,
-    and points that linear theory has jammed or lifted off are left out of the count.
+    They agree if a mode grows and the run vibrates (stick-slip, squeal or judder), if all modes of steady sliding
+    decay and the run slides, and if friction holds the contact and the run sticks. Runs off the track, failed runs,
+    and points that are jammed or lifted off by linear theory are not counted.
 
     Parameters
     ----------
     found : xarray.Dataset
-        What `sweep` returned with the measure ``regime``.
+        Result of `sweep` with the measure ``regime``.
 
     Returns
     -------
     xarray.Dataset
         ``runs`` over ``verdict`` and ``regime``; ``agree`` and ``compared``, numbers of runs, and the numbers of runs
-        ``missed`` (linear theory saw nothing and it vibrates) and of ``false_alarms`` (it saw growth and nothing
-        vibrates).
+        ``missed`` (vibration without growth by linear theory) and of ``false_alarms`` (growth without vibration).
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Cases whose answer is known, run with every scheme and held against it: `verify` runs them all."""
+"""Verification cases with known answers, run with every scheme; `verify` runs them all."""
 
 from .report import closing_line, verify
 

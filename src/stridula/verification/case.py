@@ -1,4 +1,4 @@
-"""What a verification case is: a run whose answer is known, and the rows that hold it against the answer."""
+"""Verification cases: runs with known answers, and the rows that compare both."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 from ..arrays import Array
 from ..integration import SCHEMES
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 
 
 @dataclass(frozen=True)
@@ -19,17 +19,17 @@ class Row:
     Attributes
     ----------
     quantity : str
-        What is compared.
+        Name of the quantity.
     expected, obtained : float
         The known answer and ours.
     tolerance : float
-        Largest distance between the two at which the row is good; in the unit of the quantity.
+        Largest allowed distance between the two, in the unit of the quantity.
     reason : str
-        Where the tolerance comes from: theory or the literature, never from what was obtained.
+        Origin of the tolerance: theory or the literature, never the obtained value.
     units : str, optional
         Unit of the quantity.
     scheme : str, optional
-        Name of the scheme, where one was used.
+        Name of the scheme, if one was used.
     """
 
     quantity: str
@@ -42,7 +42,7 @@ class Row:
 
     @property
     def error(self) -> float:
-        """Distance of what was obtained from what was expected."""
+        """Distance of the obtained from the expected value."""
         return self.obtained - self.expected
 
     @property
@@ -53,14 +53,14 @@ class Row:
 
 @dataclass(frozen=True)
 class Curve:
-    """A line of a figure, or marks where `marks` is true.
+    """A line of a figure, or marks if `marks` is true.
 
     Attributes
     ----------
     x, y : ndarray
         Abscissas and ordinates.
     label : str
-        What it is.
+        Label.
     marks : bool, optional
         Whether to draw marks.
     """
@@ -73,7 +73,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Sketch:
-    """What the small figure of a case shows.
+    """Contents of the small figure of a case.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class Sketch:
 
 @dataclass
 class Outcome:
-    """What a case yields.
+    """Result of a case.
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ class Outcome:
     sketch : Sketch
         Its figure.
     notes : list of str, optional
-        What else was seen, without a verdict.
+        Other observations, without a verdict.
     """
 
     rows: list[Row]
@@ -112,18 +112,18 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Case:
-    """A case whose answer is known.
+    """A case with a known answer.
 
     Attributes
     ----------
     name : str
-        Its short name, which also names its figure.
+        Short name, also of its figure.
     title : str
-        What it is, in a phrase.
+        Description in a phrase.
     source : str
-        Where the answer comes from.
+        Source of the answer.
     run : callable
-        Runs it and returns an `Outcome`.
+        Function that runs the case and returns an `Outcome`.
     """
 
     name: str
@@ -138,7 +138,7 @@ def schemes() -> list[Scheme]:
 
 
 def table_row(case: Case, row: Row) -> dict[str, Any]:
-    """Return a row as it stands in `verification.json`."""
+    """Return a row in the form of `verification.json`."""
     return {
         "case": case.name,
         "quantity": row.quantity,

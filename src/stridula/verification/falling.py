@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import exp, sqrt
 
 from ..contact import ExponentialWeakening, FrictionLaw, LinearWeakening, Stribeck
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
 from .instabilities import exponents, only_sliding
 from .sliders import Slider
@@ -14,7 +14,7 @@ MASS, STIFFNESS, NORMAL, BELT = 1.0, 4.0, 10.0, 0.5
 
 
 def laws() -> dict[str, tuple[FrictionLaw, float, float]]:
-    """Return laws, their coefficient of friction at the belt's velocity, and how fast it falls there [s/m]."""
+    """Return laws, their coefficient of friction at the belt's velocity, and its fall with velocity there [s/m]."""
     drop = 0.4 - 0.25
     gauss, fall = drop * exp(-((BELT / 0.4) ** 2)), drop * exp(-BELT / 0.4)
     return {
@@ -35,7 +35,7 @@ def exponent(slope: float) -> complex:
 
 
 def falling() -> Outcome:
-    """Growth and frequency after a kick small enough that a curved law acts by its slope."""
+    """Growth and frequency after a kick so small that only the slope of a curved law matters."""
     step, duration, kick = 5e-4, 6.0, 1e-7
     curves: list[Curve] = []
 
@@ -50,7 +50,7 @@ def falling() -> Outcome:
             curves.append(Curve(run["time"].values, place[:, 0] - place[0, 0] + kick, f"{scheme.name}, {name}"))
             every = round(0.5 / step)
             seen = exponents(place[::every], every * step, 1.0, count=1)[0]
-            # The next term of the law's series, at the velocity that the kick has grown to.
+            # The next term of the law's series, at the velocity to which the kick has grown.
             swing = kick * abs(known) * exp(known.real * duration)
             tolerance = abs(known) * (abs(known) * step) ** 2 / 12.0 + abs(known) * swing / BELT
             reason = "second order: |s| (|s| h)² / 12, and the swing's velocity over the belt's"

@@ -6,12 +6,12 @@ from matplotlib.figure import Figure
 
 from .case import Case, Sketch
 
-# Okabe & Ito's colours, told apart by colour-blind eyes; what is known is black.
+# Okabe & Ito's colours, distinguishable by colour-blind readers; known answers are black.
 COLOURS = ("#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00")
 
 
 def draw(case: Case, sketch: Sketch) -> Figure:
-    """Draw the lines and marks of a case over each other."""
+    """Draw the lines and marks of a case in one figure."""
     figure = Figure(figsize=(6.0, 3.4), layout="constrained", dpi=100)
     axes = figure.subplots()
     for number, curve in enumerate(sketch.curves):

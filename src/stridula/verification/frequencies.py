@@ -40,12 +40,12 @@ N = np.arange(1, COUNT + 1)
 
 @dataclass(frozen=True)
 class Beam:
-    """A steel beam of 10 x 10 mm whose frequencies are known.
+    """A steel beam of 10 x 10 mm with known frequencies.
 
     Attributes
     ----------
     name : str
-        Its supports in words.
+        Its supports as text.
     root, tip : str
         Supports.
     length : float
@@ -67,7 +67,7 @@ class Beam:
     rigid: int
 
     def elements(self, count: int = ELEMENTS) -> FiniteElementBeam:
-        """Return it in finite elements."""
+        """Return the beam in finite elements."""
         return FiniteElementBeam(
             STEEL, SQUARE, self.length, elements=count, root_support=self.root, tip_support=self.tip
         )
@@ -81,7 +81,7 @@ BEAMS = (
 
 
 def families(body: FiniteElementBeam) -> tuple[Array, Array]:
-    """Return the frequencies above zero of bending and of stretching [Hz], told apart by the way they move."""
+    """Return the frequencies above zero of bending and of stretching [Hz], distinguished by their motion."""
     along, across = body.axes
     moved = np.array([body.trace(place) for place in np.linspace(0.0, body.length, 23)])
     share = [np.sum(np.tensordot(moved, way, axes=(1, 0)) ** 2, axis=0) for way in (across, along)]
@@ -113,7 +113,7 @@ def beams() -> Outcome:
 
 
 def modal_beam() -> Outcome:
-    """The modal beam holds the closed forms themselves."""
+    """The modal beam uses the closed forms themselves."""
     body = ModalBeam(STEEL, SQUARE, 0.3, bending_modes=COUNT, axial_modes=2)
     known = np.concatenate([bending(N * pi, 0.3), stretching(N[:2], 0.3)])
     found = body.modes().frequency

@@ -1,4 +1,4 @@
-"""An elastic bar against a rigid wall, once and over and over under gravity."""
+"""An elastic bar against a rigid wall: a single impact, and bouncing under gravity."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from ..bodies import FiniteElementBeam, Material, Section
 from ..contact import PointContact, RigidTrack
 from ..drives import Gravity, InitialVelocity
 from ..integration import simulate
-from ..integration.schemes import CentralDifference, Scheme
+from ..lowering.schemes import CentralDifference, Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, schemes
 
-# Radius of gyration over the size of an element: a bar that bends too slowly to set the step.
+# Radius of gyration over the size of an element, so small that bending does not limit the step.
 SLACK = 0.004
 
 
@@ -64,7 +64,7 @@ class Bar:
         return courant * self.length / self.elements / self.speed
 
     def body(self, mass: str) -> FiniteElementBeam:
-        """Return it in finite elements."""
+        """Return the bar in finite elements."""
         return FiniteElementBeam(
             Material(self.young, self.density),
             Section(self.area, self.area * (SLACK * self.length / self.elements) ** 2),
@@ -75,7 +75,7 @@ class Bar:
         )
 
     def frequencies(self, mass: str) -> tuple[Array, Array]:
-        """Return angular frequencies [rad/s] and modal masses [kg] at a tip moved by 1, free-free, rigid one left out.
+        """Return angular frequencies [rad/s] and modal masses [kg] at a tip moved by 1, free-free, rigid mode excluded.
 
         The shapes are ``cos(j pi n / N)`` for both mass matrices.
         """
@@ -94,7 +94,7 @@ def force_of_scheme(
 
     The tip's displacement n steps after the step of a unit impulse is, summed over the modes,
     ``2 tan(phi / 2) sin(n phi) / (w² h)`` with ``sin(phi / 2) = w h / 2`` for central differences and ``phi = w h`` for
-    exact modes. Each step has the impulse that closes the gap at its end, none if that would pull.
+    exact modes. Each step has the impulse that closes the gap at its end, or none if that would be tensile.
     """
     angular, modal = bar.frequencies(mass)
     count = floor(duration / step)
@@ -110,12 +110,12 @@ def force_of_scheme(
 
 
 def front(bar: Bar, courant: float, mass: str, central: bool) -> float:
-    """Return how wide a front has grown after one crossing [s].
+    """Return the width of a front after one crossing [s].
 
     That is Airy's ``(|a| x)^(1/3) / c`` where ``w = c k (1 - a k² / 3)``.
 
     In time and space ``w = c k (1 - (k l)² (1 - C²) / 24)`` for lumped mass and central differences of Courant number
-    C on elements l; consistent mass turns the sign of the 1, exact modes leave C out.
+    C on elements l; for consistent mass the sign of the 1 is reversed, for exact modes C vanishes.
     """
     size = bar.length / bar.elements
     bent = (-1.0 if mass == "lumped" else 1.0) + (courant**2 if central else 0.0)
@@ -124,14 +124,14 @@ def front(bar: Bar, courant: float, mass: str, central: bool) -> float:
 
 WALL = Bar(210e9, 7800.0, 3.14e-4, 1.0, elements=100)
 GAP, VELOCITY, DURATION = 5e-5, 0.1, 1.2e-3
-# Just below 1: the limit itself is refused.
+# Just below 1, since the limit itself is refused.
 ONE = 0.9999
 # Peak over the plateau less 1, lumped mass and central differences with forward-increment multipliers.
 PRINTED_PEAKS = {ONE: 0.0, 0.9: 0.026, 0.5: 0.079}
 
 
 def hit(mass: str, scheme: Scheme, courant: float) -> xr.Dataset:
-    """March a bar that hits the wall, every step recorded."""
+    """Simulate a bar that hits the wall, recording every step."""
     body, step = WALL.body(mass), WALL.step(courant)
     system = System(PointContact(body.tip, RigidTrack(), gap=GAP), drives=[InitialVelocity(body, y=-VELOCITY)])
     return simulate(system, DURATION, scheme=scheme, step=step, sample_rate=1.0 / step, probes=[])
@@ -191,7 +191,7 @@ def _impact_rows(run: xr.Dataset, mass: str, scheme: Scheme, courant: float) -> 
 
 
 def wall() -> Outcome:
-    """Bar of 1 m hits a wall: lumped and consistent mass, Courant numbers 1, 0.9 and 0.5 where admitted."""
+    """Bar of 1 m hits a wall: lumped and consistent mass, Courant numbers 1, 0.9 and 0.5 where allowed."""
     plateau, start = WALL.plateau(VELOCITY), GAP / VELOCITY
     known = np.array([0.0, start, start, start + WALL.crossing, start + WALL.crossing, DURATION])
     curves = [Curve(known, np.array([0.0, 0.0, 1.0, 1.0, 0.0, 0.0]) * plateau, "exact")]
@@ -216,8 +216,8 @@ def bounce(time: float) -> float:
 
     It falls freely and hits the ground at t1 with ``v = g t1``. The pressure ``rho c v + rho g c s`` lasts
     ``T = 2L / c``. Then every point moves up with v, the strain is ``(2 g x / c - g T) / c``, and the bottom swings
-    about the flight of the centre by ``g s (s - T)`` from where it left, repeated every T. The flight of ``2 v / g`` is
-    three T, so that it lands in the state in which it left, mirrored in time.
+    about the flight of the centre by ``g s (s - T)``, s since lift-off, repeated every T. The flight of ``2 v / g`` is
+    three T, so that it lands in its state at lift-off, mirrored in time.
     """
     crossing, fallen = BALL.crossing, sqrt(2.0 * HEIGHT / FALL)
     flight = 2.0 * fallen
@@ -233,7 +233,7 @@ def bounce(time: float) -> float:
 
 
 def contacts() -> tuple[float, float, float, float]:
-    """Return when the bouncing bar touches and leaves the ground, twice in its first period [s]."""
+    """Return the times at which the bouncing bar touches and leaves the ground, twice in its first period [s]."""
     fallen = sqrt(2.0 * HEIGHT / FALL)
     leaves = fallen + BALL.crossing
     lands = leaves + 2.0 * fallen
@@ -241,7 +241,7 @@ def contacts() -> tuple[float, float, float, float]:
 
 
 def drop(bar: Bar, mass: str, scheme: Scheme, courant: float, duration: float, every: int = 1) -> xr.Dataset:
-    """March a bar dropped from the height."""
+    """Simulate a bar dropped from the height."""
     body, step = bar.body(mass), bar.step(courant)
     system = System(PointContact(body.tip, RigidTrack(), gap=HEIGHT), drives=[Gravity(FALL)])
     probes = [Displacement(body.tip, "y")]
@@ -250,18 +250,18 @@ def drop(bar: Bar, mass: str, scheme: Scheme, courant: float, duration: float, e
 
 PERIODS = 20
 PERIOD = 16.0 / 3.0
-# What each scheme admits: lumped mass near its limit, consistent mass below 1 / sqrt 3.
+# Courant numbers allowed by each scheme: lumped mass near its limit, consistent mass below 1 / sqrt 3.
 DROPS = (("lumped", 0.9), ("consistent", 0.5))
 
 
 def _mechanical(run: xr.Dataset) -> Array:
-    """Return the energy with that of height, over ``M g h`` of the start, less what it was at the start."""
+    """Return the change of the energy, including potential energy, over the initial ``M g h``."""
     energy = run["kinetic_and_elastic"].values - run["drive_work"].values - run.attrs["initial_energy"]
     return energy / (BALL.mass * FALL * HEIGHT)
 
 
 def bouncing() -> Outcome:
-    """Bouncing bar: heights and contacts of the first period, and what becomes of the energy over twenty."""
+    """Bouncing bar: heights and contacts of the first period, and the energy over twenty."""
     rows: list[Row] = []
     notes: list[str] = []
     times = np.linspace(0.0, PERIOD, 600)
@@ -275,12 +275,12 @@ def bouncing() -> Outcome:
             rows.append(_loss_order(mass, courant, scheme))
             long = _mechanical(drop(BALL, mass, scheme, courant, PERIODS * PERIOD, every=20))
             words = "largest rise of the energy in 20 periods"
-            reason = "an impact without restitution takes energy, never gives it; round-off"
+            reason = "an impact without restitution only dissipates energy; round-off"
             rows.append(Row(f"{mass} mass: {words}", 0.0, max(0.0, float(long.max())), 1e-9, reason, "1", scheme.name))
             lost = ", ".join(f"{-100 * long[int(n * long.size / PERIODS) - 1]:.3g} % after {n}" for n in (1, 5, 10, 20))
             notes.append(
                 f"Energy lost, {mass} mass, Courant number {courant:g}, {scheme.name}: {lost} periods. Every closing "
-                "takes the kinetic energy of the tip's node; waves that the mesh spreads make it close ever more often."
+                "takes the kinetic energy of the tip's node; dispersed waves make it close more and more often."
             )
     return Outcome(rows, Sketch("time [s]", "height of the bottom [m]", curves), notes)
 
@@ -295,7 +295,7 @@ def _bounce_rows(run: xr.Dataset, mass: str, courant: float, scheme: Scheme) -> 
     late = f"{width}, w; the velocity 2 v w / T off afterwards"
 
     def off(at: float) -> float:
-        """Time by which what happens in flight may be off."""
+        """Largest error of the times of events in flight [s]."""
         return spread * (1.0 + 2.0 * max(0.0, at - leave) / BALL.crossing)
 
     def row(quantity: str, expected: float, obtained: float, tolerance: float, reason: str, units: str) -> Row:

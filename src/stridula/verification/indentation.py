@@ -1,4 +1,4 @@
-"""Contacts that yield: a ball on a wall and on a beam under Hertz's law."""
+"""Compliant contacts: a ball on a wall and on a beam under Hertz's law."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..bodies import Material, ModalBeam, PointMass, Rectangle
 from ..contact import HertzStiffness, PointContact, RigidTrack
 from ..drives import InitialVelocity
 from ..integration import simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..records import Velocity
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
@@ -24,7 +24,7 @@ LASTS = 2.943275
 
 
 def wall() -> Outcome:
-    """A ball of 10 mm meets a wall at 10 mm/s: ``m v² / 2 = 0.4 k d^2.5``, and it goes as fast as it came."""
+    """A ball of 10 mm meets a wall at 10 mm/s: ``m v² / 2 = 0.4 k d^2.5``, and it rebounds at the same speed."""
     ball = PointMass(MASS)
     contact = PointContact(ball.centre, RigidTrack(), stiffness=STIFFNESS)
     system = System(contact, [InitialVelocity(ball, y=-SPEED)])
@@ -38,7 +38,7 @@ def wall() -> Outcome:
         run = simulate(system, 2.2e-4, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes)
         force, time = run["normal_force"].values, run["time"].values
         curves.append(Curve(1e6 * time, force, scheme.name))
-        # Of second order of the step over the time of contact.
+        # Second order in the step over the time of contact.
         share = (pi * step * SPEED / (LASTS * depth)) ** 2
         lasts = float(np.ptp(time[force > 0.0])) + step
         return [
@@ -68,7 +68,7 @@ def wall() -> Outcome:
 
 
 def beam() -> Outcome:
-    """The ball meets the middle of a simply supported steel beam, 10 x 10 x 153.5 mm, which takes most of its energy.
+    """The ball meets the middle of a simply supported steel beam, 10 x 10 x 153.5 mm, which absorbs most of its energy.
 
     Force, times and rebound of Timoshenko's problem (1913) by a fine integration of its integral equation, as used to
     compare contact codes.

@@ -1,4 +1,4 @@
-"""Mode coupling: growth and frequency of a preloaded sliding contact after a small kick, seen in time."""
+"""Mode coupling: growth and frequency of a preloaded sliding contact after a small kick, measured in time."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from ..bodies import ReducedBody
 from ..contact import Coulomb, PointContact, RigidTrack
 from ..drives import Force, InitialState
 from ..integration import simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
 
 SLIDING = 2
-# Mass of a foot behind a contact spring. On its belt it does not move, so that any mass gives the same sliding motion.
+# Mass of a foot behind a contact spring. It rests on its belt, so that any mass gives the same sliding motion.
 FOOT = 0.5
 
 
@@ -29,7 +29,7 @@ FOOT = 0.5
 class Coupled:
     """A mass in the plane on belts, each under a foot at the end of a contact spring.
 
-    Degrees of freedom: x and y of the mass, then one for each foot along its belt's normal. Along the belt a foot goes
+    Degrees of freedom: x and y of the mass, then one for each foot along its belt's normal. Along the belt a foot moves
     with the mass.
 
     Attributes
@@ -40,9 +40,9 @@ class Coupled:
         For each belt: name, degrees of freedom that give the foot's x and y, inclination of the belt [rad], sense in
         which the belt runs along its tangent.
     sliding : callable
-        Takes the coefficient of friction, returns the stiffness matrix, shape (2, 2), of the mass sliding.
+        Function of the coefficient of friction that returns the stiffness matrix of the sliding mass, shape (2, 2).
     time : float
-        Unit of time: what the lowest angular frequency is one over [s].
+        Unit of time, the inverse of the lowest angular frequency [s].
     """
 
     mass: Array
@@ -71,12 +71,12 @@ class Coupled:
         return sum((np.array([np.sin(turn), -np.cos(turn)]) for _, _, turn, _ in self.feet), np.zeros(2))
 
     def start(self, friction: float, kick: float = 0.01) -> tuple[Array, Array]:
-        """Return place of sliding equilibrium, and one a kick away from it."""
+        """Return the position of sliding equilibrium, and one displaced by a kick."""
         rest = np.linalg.solve(self.sliding(friction), self.push())
         return rest, rest + kick * np.linalg.norm(rest) * np.array([1.0, 0.6])
 
     def system(self, friction: float) -> System:
-        """Return it pressed on belts that run too fast to stick, a kick away from sliding equilibrium."""
+        """Return the system pressed on belts too fast to stick, displaced by a kick from sliding equilibrium."""
         points = {name: numbers for name, numbers, _, _ in self.feet} | {"mass": (0, 1)}
         body = ReducedBody(self.mass, self.stiffness, points=points, damping=self.damping, name="mass")
         push, (_, place) = self.push(), self.start(friction)
@@ -90,14 +90,14 @@ class Coupled:
         return System(contacts, drives=[Force(body.at("mass"), x=push[0], y=push[1]), start])
 
     def run(self, friction: float, scheme: Scheme, step: float, duration: float) -> xr.Dataset:
-        """March and record every step."""
+        """Simulate and record every step."""
         system = self.system(friction)
         point = system.drives[0].point  # type: ignore[attr-defined]
         probes = [Displacement(point, "x"), Displacement(point, "y")]
         return simulate(system, duration, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes)
 
     def seen(self, friction: float, scheme: Scheme, step: float, duration: float) -> Array:
-        """Return the exponents of the motion seen in time [1/s], the fastest growing first."""
+        """Return the exponents of the simulated motion [1/s], the fastest growing first."""
         run = self.run(friction, scheme, step, duration)
         only_sliding(run)
         every = max(1, round(0.15 * 2.0 * pi / abs(self.exponents(friction)).max() / step))
@@ -128,7 +128,7 @@ def exponents(motion: Array, interval: float, unit: float, count: int = 2) -> Ar
 
 
 def hoffmann() -> Coupled:
-    """Return Hoffmann's mass: springs k1 at 150° and k2 at 30°, contact spring k3 over a belt that runs to -x."""
+    """Return Hoffmann's mass: springs k1 at 150° and k2 at 30°, contact spring k3 over a belt that runs towards -x."""
     k1, k2, k3 = 2.0 * (2.0 - sqrt(3.0)) / 3.0, 2.0 * (2.0 + sqrt(3.0)) / 3.0, 4.0 / 3.0
     ways = [(k1, np.radians(150.0)), (k2, np.radians(30.0))]
     grounded = sum(k * np.outer((np.cos(a), np.sin(a)), (np.cos(a), np.sin(a))) for k, a in ways)
@@ -141,7 +141,7 @@ def hoffmann() -> Coupled:
         damping=np.zeros((3, 3)),
         stiffness=stiffness,
         feet=(("floor", (0, 2), 0.0, -1.0),),
-        # The normal force is -k3 y, the belt drags with mu N to -x.
+        # The normal force is -k3 y, the belt drags with mu N towards -x.
         sliding=lambda mu: free - mu * k3 * np.array([[0.0, 1.0], [0.0, 0.0]]),
         time=1.0,
     )
@@ -185,8 +185,8 @@ def sinou_limit(damping: tuple[float, float]) -> float:
 def bound(model: Coupled, step: float) -> float:
     """Return the relative error of an exponent: of second order in the step, ``(W h)² / 12``.
 
-    W is the highest frequency of the body without contact, since the exact modal scheme marches those modes and holds
-    the foot by impulses. Central differences have ``|s|² h² / 24``, less than that.
+    W is the highest frequency of the body without contact, since the exact modal scheme integrates those modes and
+    holds the foot by impulses. Central differences have ``|s|² h² / 24``, less than that.
     """
     return (model.highest * step) ** 2 / 12.0
 
@@ -208,7 +208,7 @@ def _rows(model: Coupled, friction: float, scheme: Scheme, step: float, duration
 
 
 def _limit_undamped(model: Coupled, low: float, high: float, scheme: Scheme, step: float, duration: float) -> float:
-    """Return where both frequencies meet, from motions on both sides.
+    """Return the friction at which both frequencies meet, from motions on both sides.
 
     The squares of the two exponents are the roots of a polynomial whose discriminant is smooth in the coefficient of
     friction and passes zero where they meet.
@@ -224,7 +224,7 @@ def _limit_undamped(model: Coupled, low: float, high: float, scheme: Scheme, ste
 
 
 def hoffmann_case() -> Outcome:
-    """Below flutter, above it, and where it begins."""
+    """Motion below and above flutter, and its onset."""
     model, step, duration = hoffmann(), 2e-3, 20.0
     curves: list[Curve] = []
 
@@ -248,7 +248,7 @@ SINOU_DAMPINGS = ((0.0, 0.0), (0.02, 0.02), (0.02, 0.06))
 
 
 def sinou_case() -> Outcome:
-    """Where flutter begins without damping, with equal and with unequal damping; growth on both sides."""
+    """Onset of flutter without damping, with equal and with unequal damping; growth on both sides."""
     step, duration = 1e-5, 0.06
     curves: list[Curve] = []
 
@@ -286,7 +286,7 @@ def _rest(row: Row) -> tuple[float, float, float, str, str, str]:
 
 
 def _slack(model: Coupled, limit: float, step: float) -> float:
-    """Return the error of a limit that an error of the exponents makes."""
+    """Return the error of a limit caused by an error of the exponents."""
     if not model.damping.any():
         w1, w2 = SINOU_FREQUENCIES
         # Discriminant (w1² - w2²)² - 4 mu² w1² w2² of slope 8 mu w1² w2²; squares off by 2 |s|² (W h)² / 12 each.

@@ -11,7 +11,7 @@ from ..bodies import FiniteElementBeam, Material, Rectangle
 from ..contact import Coulomb, PointContact, RigidTrack
 from ..drives import Drive, Gravity, InitialVelocity
 from ..integration import simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
 
@@ -29,9 +29,9 @@ def painleve_limit(angle: float) -> float:
 
 
 def slide(angle: float, friction: float, scheme: Scheme, steps: int = 20) -> xr.Dataset:
-    """March a rigid rod that is thrown along the ground, its end digging in."""
-    # The beam's angle is from the normal; leaning forward over its tip it digs in when it moves to -x.
-    # A cutoff below the first bending mode leaves the rigid motions.
+    """Simulate a rigid rod thrown along the ground with its end leading."""
+    # The beam's angle is from the normal; inclined forward over its tip it digs in when it moves towards -x.
+    # A cutoff below the first bending mode leaves only rigid motions.
     steel, square = Material(2.1e11, 7800.0), Rectangle(0.01, 0.01)
     rod = FiniteElementBeam(steel, square, 0.4, angle=pi / 2.0 - angle, elements=1, cutoff=1.0, root_support="free")
     drives: list[Drive] = [InitialVelocity(rod, x=-2.0), Gravity()]
@@ -40,7 +40,7 @@ def slide(angle: float, friction: float, scheme: Scheme, steps: int = 20) -> xr.
 
 
 def found_limit(angle: float, scheme: Scheme, width: float) -> float:
-    """Return the coefficient of friction from which steps jam, by halving, to `width`."""
+    """Return the coefficient of friction above which steps jam, by bisection to `width`."""
     low, high = 1.0, 4.0
     while high - low > width:
         middle = 0.5 * (low + high)
@@ -60,7 +60,7 @@ def painleve() -> Outcome:
         for degrees in ANGLES:
             limit = found_limit(radians(degrees), scheme, width)
             limits.append(limit)
-            known, reason = painleve_limit(radians(degrees)), "halved to 1e-6; whatever the step"
+            known, reason = painleve_limit(radians(degrees)), "bisected to 1e-6, for any step"
             found.append(Row(f"limit at {degrees:g}°", known, limit, width, reason, "1", scheme.name))
         curves.append(Curve(np.array(ANGLES), np.array(limits), f"first jam, {scheme.name}", marks=True))
         return [*found, *_laws(scheme)]

@@ -17,7 +17,7 @@ from ..connections import Spring
 from ..contact import LuGre, PointContact, RateAndState, RigidTrack
 from ..drives import Force, InitialState
 from ..integration import simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
@@ -26,7 +26,7 @@ from .frequencies import fitted_order
 
 @dataclass(frozen=True)
 class Pulled:
-    """A mass under a force of 1 N on a belt that runs to -x, held by a spring: pulled, as seen from the belt.
+    """A mass under a force of 1 N on a belt that runs towards -x, held by a spring: pulled, as seen from the belt.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Pulled:
     slip: float = 0.0
 
     def run(self, duration: float, step: float, scheme: Scheme) -> tuple[Array, Array, xr.Dataset]:
-        """March and return time, force of the spring [N], and the record of every step."""
+        """Simulate and return time, force of the spring [N], and the record of every step."""
         body = PointMass(self.mass)
         track = RigidTrack(velocity=-self.speed)
         start = InitialState(
@@ -68,9 +68,9 @@ class Pulled:
     def reference(
         self, duration: float, state: float, friction: Callable[[float, float], tuple[float, float]]
     ) -> tuple[Array, Array]:
-        """Return times and forces of the spring where it is longest or shortest, by LSODA to 1e-11.
+        """Return times and forces of the spring at its longest and shortest, by LSODA to 1e-11.
 
-        `friction` takes slip velocity and state, and returns ratio of forces and rate of the state.
+        `friction` is a function of slip velocity and state that returns the ratio of forces and the rate of the state.
         """
 
         def rates(time: float, y: Array) -> list[float]:
@@ -126,7 +126,7 @@ def lugre_reference() -> tuple[float, float, float]:
 
 
 def lugre() -> Outcome:
-    """Pull test at three steps; the longest is beyond what an explicit treatment of the bristles bears."""
+    """Pull test at three steps; the longest is unstable for an explicit treatment of the bristles."""
     period, peak, least = lugre_reference()
     curves: list[Curve] = []
 
@@ -164,7 +164,7 @@ def lugre() -> Outcome:
 
 
 AGE = RateAndState(reference=0.6, a=0.010, b=0.015, slip_distance=1e-3, velocity=1e-3)
-# So heavy that friction hardly changes its velocity: before and after, the slip velocity is known.
+# So heavy that friction hardly changes its velocity, and the slip velocity is known before and after.
 HEAVY, BEFORE, AFTER = 1e4, 1e-3, 1e-2
 
 
@@ -174,7 +174,7 @@ def steady(velocity: float) -> float:
 
 
 def velocity_step(evolution: str, time: Array) -> Array:
-    """Return the coefficient of friction [1] after the slip velocity has risen at once from `BEFORE` to `AFTER`.
+    """Return the coefficient of friction [1] after the slip velocity has jumped from `BEFORE` to `AFTER`.
 
     ``mu0 + a ln(V/V0) + b ln(V0 theta / D)`` with, from theta = D / V1, for the aging law
     ``theta = D/V2 + (D/V1 - D/V2) exp(-V2 t / D)``, for the slip law ``ln(V2 theta / D) = ln(V2/V1) exp(-V2 t / D)``.
@@ -185,7 +185,7 @@ def velocity_step(evolution: str, time: Array) -> Array:
 
 
 def _stepped(evolution: str, duration: float, step: float, scheme: Scheme) -> xr.Dataset:
-    """March a heavy mass whose belt moves with the second velocity, on a contact aged by the first."""
+    """Simulate a heavy mass whose belt moves with the second velocity, on a contact aged by the first."""
     law = replace(AGE, evolution=evolution, initial_state=AGE.slip_distance / BEFORE)
     body = PointMass(HEAVY)
     system = System(
@@ -201,7 +201,7 @@ def age_steps() -> Outcome:
     time = np.linspace(0.0, duration, 400)
     curves = [Curve(time, velocity_step(word, time), f"closed form, {word}") for word in ("aging", "slip")]
     passed = AFTER * step / AGE.slip_distance
-    # Twice the slip law's excess of friction over the slip distance bounds the aging law's, too.
+    # Twice the slip law's excess of friction over the slip distance also bounds the aging law's.
     slowed = 2.0 * AGE.b * log(AFTER / BEFORE) * AGE.slip_distance / AFTER / (HEAVY * AFTER)
     rounded = np.finfo(float).eps * AFTER * duration * HEAVY / step**2
     tolerance = AGE.b * passed**2 + (AGE.a + AGE.b) * slowed + rounded
@@ -212,7 +212,7 @@ def age_steps() -> Outcome:
         for word in ("aging", "slip"):
             run = _stepped(word, duration, step, scheme)
             ratio = run["tangential_force"].values / run["normal_force"].values
-            # With one step a sample, a force is that at the instant where the step begins.
+            # With one step per sample, a force is that at the start of the step.
             instants = run["time"].values - step
             known = velocity_step(word, instants)
             for words, at in (("at once", 0), ("after D", round(1 / passed)), ("after 10 D", ratio.size - 1)):
@@ -267,7 +267,7 @@ def slow_stick_slip() -> Outcome:
             span = time < 15.0
             curves.append(Curve(time[span], force[span], f"{scheme.name}, step {step:g} s"))
             share = (fastest * step / CREEP.slip_distance) ** 2 / 12.0
-            # What an impulse a step does to the rest point of the exact modal scheme's spring.
+            # Effect of one impulse per step on the rest point of the exact modal scheme's spring.
             rest = SLOW.stiffness / SLOW.mass * step**2 / 12.0 * peak
             close_force = share * (peak - least) + rest
             reason = "second order: (V h / D)² / 12 of the swing at the largest slip velocity, (w h)² / 12 of the force"

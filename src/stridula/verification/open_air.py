@@ -1,7 +1,7 @@
 """Sound of bodies in open air: spheres, a thin disc, a bar, the balance of power, and filters in time.
 
 A sphere and a disc as bodies of revolution, by rings of sources; a sphere and a bar as meshes, by the pressure on their
-surface. Each moves as it is told to: shapes stand in the place of modes.
+surface. Their motions are prescribed: shapes take the place of modes.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ STILL = 1e-6
 
 
 def ring_sphere(parts: int = 24, radius: float = RADIUS) -> RingSurface:
-    """Return a sphere as rings that pulsates, oscillates along its axis and across it."""
+    """Return a sphere of rings that pulsates, and oscillates along its axis and across it."""
     angles = (np.arange(2 * parts) + 0.5) * pi / (2 * parts)
     normals = np.stack([np.sin(angles), np.cos(angles)], axis=1)
     shapes = np.stack([np.ones(2 * parts), normals[:, 1], normals[:, 0]], axis=1)
@@ -44,7 +44,7 @@ def ring_sphere(parts: int = 24, radius: float = RADIUS) -> RingSurface:
 
 
 def meshed_sphere(parts: int = 6, radius: float = RADIUS) -> SurfacePressures:
-    """Return a sphere as a mesh, a cube drawn to it, that pulsates, oscillates along z and along x."""
+    """Return a meshed sphere, mapped from a cube, that pulsates, and oscillates along z and along x."""
     mesh = SolidMesh.block([2.0, 2.0, 2.0], [parts] * 3)
     square = (mesh.nodes - 1.0) ** 2
     first, second = square[:, [1, 2, 0]], square[:, [2, 0, 1]]
@@ -55,7 +55,7 @@ def meshed_sphere(parts: int = 6, radius: float = RADIUS) -> SurfacePressures:
 
 
 def disc(thickness: float, radius: float = RADIUS) -> RingSurface:
-    """Return a disc that oscillates along its axis, and one that bends with two waves round it."""
+    """Return a disc that oscillates along its axis, and bends with two waves around it."""
     mesh = RectangleProfile({"disc": ((0.0, radius), (0.0, thickness))}).mesh(lambda size, name: radius)
     places, normals, widths = cut_outline(mesh, radius / 8.0)
     shapes = np.stack([normals[:, 1], normals[:, 1] * (places[:, 0] / radius) ** 2], axis=1)
@@ -102,14 +102,14 @@ def spheres() -> Outcome:
 
 
 def discs() -> Outcome:
-    """A thin disc that oscillates along its axis: the air that it carries along, far away at low frequency."""
+    """A thin disc that oscillates along its axis: the added mass of the air, from the far field at low frequency."""
     far, rows, shares = 100.0, [], []
     thicknesses = np.array([0.2, 0.1, 0.05]) * RADIUS
     for thickness in thicknesses:
         pressure = heard(RingSources(disc(float(thickness))), STILL, np.array([[0.0, 0.0, far]]))[0, 0]
         carried = 4.0 * pi * far**2 * float(pressure.real) / AIR.density
         shares.append((carried - pi * RADIUS**2 * float(thickness)) / RADIUS**3)
-    # Thickness and thickness times its logarithm: that is how edges of a right angle add to a thin disc.
+    # Thickness and thickness times its logarithm: the corrections of right-angled edges to a thin disc.
     terms = np.stack([np.ones(3), thicknesses / RADIUS, thicknesses / RADIUS * np.log(thicknesses / RADIUS)], axis=1)
     limit = float(np.linalg.solve(terms, np.array(shares))[0])
     reason = "the thickness taken to zero from a twentieth of the radius, which makes ten times of an error of 0.4 %"
@@ -119,7 +119,7 @@ def discs() -> Outcome:
 
 
 def bar() -> Outcome:
-    """A slender bar of square section: the air that it carries along in the middle, per length, as the section's."""
+    """A slender bar of square section: the added mass of the air per length in its middle, as for the section."""
     width, lengths, far = 0.01, np.array([0.12, 0.2]), 200.0
     carried = []
     for length in lengths:
@@ -138,14 +138,14 @@ def bar() -> Outcome:
 
 
 def power() -> Outcome:
-    """Power over a far sphere against power at the surface, of a disc that bends: what leaves it arrives."""
+    """Power over a far sphere against power at the surface, for a bending disc."""
     surface, far, rows = disc(0.02), 30.0, []
     radiator = RingSources(surface)
     for number in (2.0, 6.0):
         wavenumber = number / RADIUS
         nodes, weights = np.polynomial.legendre.leggauss(24)
         across = np.sqrt(1.0 - nodes**2)
-        # The second shape goes round as the cosine of two angles, whose square has the mean 1/2.
+        # The second shape varies as cos 2 theta around the axis, whose square has the mean 1/2.
         places = far * np.stack([across, 0.0 * nodes, nodes], axis=1)
         pressure = heard(radiator, wavenumber, places)[:, 1]
         arriving = far**2 / (2.0 * AIR.impedance) * pi * float(weights @ np.abs(pressure) ** 2)
@@ -155,7 +155,7 @@ def power() -> Outcome:
         # Velocity is acceleration over i w.
         flow = (close * np.conj(surface.shapes[:, 1] / (1j * wavenumber * AIR.speed))).real
         leaving = 0.5 * pi * float((surface.places[:, 0] * surface.widths) @ flow)
-        reason = "edges met to 3 %, the pressure taken a thousandth of the radius above the surface"
+        reason = "edges resolved to 3 %, pressure a thousandth of the radius above the surface"
         rows.append(
             Row(f"power that arrives over power that leaves, ka = {number:g}", 1.0, arriving / leaving, 0.03, reason)
         )
@@ -181,7 +181,7 @@ def tones() -> Outcome:
         sine, cosine = np.linalg.lstsq(np.stack([np.sin(turn), np.cos(turn)], axis=1), found, rcond=None)[0]
         known = of_sphere(2.0 * pi * float(frequency) / AIR.speed, place)[0].sum()
         error = abs(sine + 1j * cosine - known) / abs(known)
-        reason = "what a response may leave at its end, 5e-3, falls on all frequencies"
+        reason = "truncation of a response at its end, 5e-3, affects all frequencies"
         rows.append(Row(f"tone of {frequency:.5g} Hz: error of pressure", 0.0, float(error), 1e-3, reason))
     taps = sent.responses[0]
     curve = Curve(1e3 * interval * (taps.first + np.arange(len(taps.taps))), taps.taps[:, 0], "pulsating sphere")

@@ -1,4 +1,4 @@
-"""Observed order of the time schemes on smooth motion, and what the exact modal scheme has exact."""
+"""Observed order of the time schemes on smooth motion, and exactness of the exact modal scheme."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..contact import PointContact
 from ..drives import Drive, Force, InitialVelocity
 from ..histories import Harmonic
 from ..integration import ExactModal, simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, schemes
@@ -49,18 +49,18 @@ def motion(angular: Array, damping: Array, force: Array, velocity: Array, time: 
 
 @dataclass(frozen=True)
 class Smooth:
-    """A body that moves without touching, and its exact motion at the end.
+    """A body that moves without contact, and its exact motion at the end.
 
     Attributes
     ----------
     name : str
-        What it is.
+        Description.
     system : System
-        The body among its like.
+        A system with the body.
     points : list of BodyPoint
-        Where it is looked at.
+        Points compared.
     exact : ndarray, shape (points, 2)
-        World displacements there at the end [m].
+        World displacements of the points at the end [m].
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Cattaneo's problem: a ball pressed on a plane and pulled along it sticks in the middle and slips round it."""
+"""Cattaneo's problem: a ball pressed on a plane and pulled along it sticks in the middle and slips around it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ RADIUS, SHEAR, POISSON = 0.05, 2e8, 0.42
 PRESSED, FRICTION, PULLED = 9.1954, 0.4, 7.0 / 8.0
 # Squares over the diameter of the contact; odd, so that one lies in the middle.
 GRIDS = (11, 19)
-# Steps in which forces rise, and in which the ball comes to rest.
+# Steps of the rise of forces, and of the settling of the ball.
 RISE, REST = 30, 40
 STEP = 1e-3
 
@@ -37,7 +37,7 @@ class Known(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What a run ends with: of the closed form, and the tractions over the squares."""
+    """Final state of a run: the quantities of the closed form, and the tractions over the squares."""
 
     known: Known
     distance: Array
@@ -46,7 +46,7 @@ class Found(NamedTuple):
 
 
 def closed_form(pulled: float = PULLED) -> Known:
-    """Return the answer for a pull of `pulled` times the force of full slip, ball and plane alike."""
+    """Return the answer for a pull of `pulled` times the force of full slip, for equal ball and plane."""
     radius = (3.0 * (1.0 - POISSON) * PRESSED * RADIUS / (4.0 * SHEAR)) ** (1.0 / 3.0)
     stuck = (1.0 - pulled) ** (1.0 / 3.0)
     shift = 3.0 * FRICTION * PRESSED * (2.0 - POISSON) / (8.0 * SHEAR * radius) * (1.0 - stuck**2)
@@ -62,10 +62,10 @@ def press_and_pull(squares: int, pulled: float = PULLED) -> Found:
     distance = np.linalg.norm(places, axis=1)
     near = distance < known.radius + side
     places, distance = places[near], distance[near]
-    # Ball and plane yield alike: twice what one of them does.
+    # Ball and plane are equal: twice the compliance of one.
     material = Material(SHEAR * (1.0 + POISSON), 1.0, POISSON)
     plane = ModalBody.half_space(material, places, side, coupled=False, name="plane")
-    # A mass and a damping that bring it to rest within a few steps, without a swing.
+    # A mass and a damping that bring the ball to rest within a few steps without oscillation.
     rate = 1.2 / STEP
     mass = 1.5 * PRESSED / known.approach / rate**2
     ball = ModalBody(np.zeros(3), {"middle": np.eye(3) / sqrt(mass)}, 2.0 * rate, name="ball")
@@ -90,7 +90,7 @@ def press_and_pull(squares: int, pulled: float = PULLED) -> Found:
     system = System(contacts, pushes)
     run = simulate(system, float(times[-1]), step=STEP, sample_rate=1.0 / STEP, probes=probes)
     normal, (shift, sunk) = run["normal_force"].values[-1], run["displacement"].values[-1]
-    # At rest in the end nothing slides: what sticks has not slid since the pull began.
+    # At rest nothing slides; points that stick have not slid since the start of the pull.
     slid = (run["status_share"].values[RISE + REST :, :, 2] > 0.0).any(axis=0)
     radius, stuck = (side * sqrt(float(count) / pi) for count in ((normal > 0.0).sum(), (~slid & (normal > 0.0)).sum()))
     pressure, shear = normal / side**2, run["tangential_force"].values[-1, :, 0] / side**2
@@ -115,18 +115,18 @@ def cattaneo() -> Outcome:
 
 
 def _rows(known: Known, found: Known, side: float, grid: str) -> list[Row]:
-    """Return what is found on a grid of squares of a side beside the closed form."""
-    # The gap of a ball, a mean over a square, is beyond that of its middle by side² / 12 R.
+    """Yield the results on a grid of squares beside the closed form."""
+    # The mean gap of a ball over a square exceeds that at its middle by side² / 12 R.
     gap, half = side**2 / (12.0 * RADIUS), 0.5 * side
     share, slipping = gap / known.approach, known.radius**2 - known.stuck**2
-    # In proportion to the approach of the whole contact less that of what sticks (Cattaneo): the gap of both.
+    # Proportional to the approach of the whole contact less that of the sticking part (Cattaneo).
     pulled = 2.0 * share * known.radius**2 / slipping
     by_gap = "gap in the middle of a square for its mean"
     return [
         Row(f"{grid}: radius of contact", known.radius, found.radius, half, "half a square", "m"),
         Row(f"{grid}: radius that sticks", known.stuck, found.stuck, half, "half a square", "m"),
         Row(f"{grid}: approach", known.approach, found.approach, gap, by_gap, "m"),
-        # The middle square has the mean of its pressure, too.
+        # The middle square also has the mean of its pressure.
         Row(f"{grid}: peak pressure", known.peak, found.peak, 2.0 * share * known.peak, f"{by_gap}, twice", "Pa"),
         Row(f"{grid}: shift", known.shift, found.shift, pulled * known.shift, f"{by_gap}, twice", "m"),
     ]

@@ -7,14 +7,15 @@ from math import pi, sqrt
 import numpy as np
 from scipy.special import j1
 
+from ..analysis.mobilities import mobility
 from ..arrays import Array
 from ..bodies import Material, ModalBeam, ModalPlate, Rectangle
 from .case import Case, Curve, Outcome, Row, Sketch
 
 STEEL = Material(2.1e11, 7800.0, 0.3)
-# Frequencies of the first modes (m, n) of a plate of 0.4 m x 0.3 m x 2 mm [Hz], to the digits that are printed.
+# Frequencies of the first modes (m, n) of a plate of 0.4 m x 0.3 m x 2 mm [Hz], as printed.
 PRINTED = {(1, 1): 85.640, (2, 1): 178.132, (1, 2): 250.070, (2, 2): 342.561}
-# Of the first modes in its plane: half-waves, whether of shear, frequency [Hz].
+# First in-plane modes: half-waves, whether a shear mode, frequency [Hz].
 PRINTED_IN_PLANE = (
     ((1, 1), "shear", 6704.01),
     ((1, 0), "longitudinal", 6799.10),
@@ -54,7 +55,7 @@ def levy(ratio: float = 1.0, terms: int = 4000) -> float:
 
 
 def deflection() -> Outcome:
-    """The modes' sum at the centre, and how fast it converges."""
+    """Sum over the modes at the centre, and its rate of convergence."""
     counts, errors, rows = np.array([5, 11, 25, 51, 101, 201]), [], []
     for count in counts:
         plate = ModalPlate(STEEL, 0.002, 0.4, 0.4, bending_modes=(int(count), int(count)))
@@ -71,20 +72,12 @@ def deflection() -> Outcome:
     return Outcome(rows, Sketch("modes a side", "deflection left out / (F a²/D)", curves, logarithmic=True))
 
 
-def mobility(plate: ModalPlate, place: tuple[float, float], angular: Array) -> Array:
-    """Return the velocity at a point over a harmonic force there [s/kg], at angular frequencies [rad/s]."""
-    modes = plate.modes()
-    own, damping = modes.angular_frequency, modes.damping
-    receptance = plate.shapes(*place) ** 2 / (own**2 - angular[:, None] ** 2 + 2j * damping * own * angular[:, None])
-    return np.asarray(1j * angular * receptance.sum(axis=1))
-
-
 def of_images(plate: ModalPlate, place: tuple[float, float], low: float, high: float) -> tuple[float, float]:
-    """Return the mean of the real mobility over that of an infinite plate, in a band [Hz], and what is left out.
+    """Return the mean of the real mobility over that of an infinite plate, in a band [Hz], and the truncation error.
 
     Every edge reflects with the other sign: the real mobility is the sum of ``±J0(k r)`` over the images at distances
     r, whose mean over the band is ``2 (k J1(k r)) / r`` between its ends over the difference of k². Damping quenches
-    the images by ``exp(-zeta k r / 2)``; the outermost ring of them counts as what is left out, at its size.
+    the images by ``exp(-zeta k r / 2)``; the magnitude of the outermost ring of them is the truncation error.
     """
     band = np.sqrt(2.0 * pi * np.array([low, high]) * sqrt(plate.surface_density / plate.rigidity))
     cells, zeta = np.arange(-3, 4), float(plate.modes().damping[0])
@@ -106,10 +99,11 @@ def of_images(plate: ModalPlate, place: tuple[float, float], low: float, high: f
 
 
 def of_modes_kept(plate: ModalPlate, frequency: Array) -> float:
-    """Return what the modes from zero to the cut-off give of the mean real mobility of a plate without edges.
+    """Return the share of modes from zero to the cutoff in the mean real mobility of a plate without edges.
 
-    Modes are as dense at every frequency, and one adds a constant times ``2 zeta u / ((u² - 1)² + 4 zeta² u²)`` at
-    u = w / omega; its integral is elementary. From zero to infinity it is ``1 - 2 zeta / pi`` of that without damping.
+    The density of modes is constant over frequency, and each adds a constant times
+    ``2 zeta u / ((u² - 1)² + 4 zeta² u²)`` at u = w / omega; its integral is elementary. From zero to
+    infinity it is ``1 - 2 zeta / pi`` of that without damping.
     """
     zeta = float(plate.modes().damping[0])
     middle = 1.0 - 2.0 * zeta**2
@@ -127,7 +121,7 @@ def answers() -> Outcome:
     infinite = 1.0 / (8.0 * sqrt(plate.rigidity * plate.surface_density))
     rows, curves = [], []
     for place in ((0.21, 0.17), (0.3, 0.25), (0.13, 0.33)):
-        real = mobility(plate, place, 2.0 * pi * frequency).real
+        real = mobility(plate.at(place), frequency=frequency).values.real
         images, rest = of_images(plate, place, low, high)
         known = of_modes_kept(plate, frequency) + images - 1.0
         rows.append(

@@ -1,7 +1,6 @@
 """Sound of surfaces in a baffle against closed forms: piston, monopole, modes of a plate; and its energy.
 
-All go through the impulse responses in time of `acoustics`; where an answer is known at a frequency, through their
-Fourier transform.
+All use the impulse responses in time of `acoustics`, or their Fourier transforms for answers known at a frequency.
 """
 
 from __future__ import annotations
@@ -25,11 +24,11 @@ from .case import Case, Curve, Outcome, Row, Sketch
 AIR = Air()
 STEEL = Material(2.1e11, 7800.0)
 SIDE = 0.4
-# Sample rate over the frequency of interest, and attenuation [dB] of the errors of fractional delays: the sound of even
-# modes at low frequency is what their fields leave of each other, down to 1e-5 of them.
+# Sample rate over the frequency of interest, and attenuation [dB] of the errors of fractional delays: the fields of
+# even modes at low frequency nearly cancel, down to 1e-5.
 SAMPLES = 20.0
 ATTENUATION = 150.0
-# Distance of listeners in the far field, over the size of what sounds.
+# Distance of listeners in the far field, over the size of the source.
 FAR = 3e4
 # Wallace's efficiencies of the modes (1, 1) and (2, 2) of a square plate.
 WALLACE = {
@@ -78,7 +77,7 @@ def far_surface(panel: Panel, frequency: float) -> Surface:
 def transfer(surface: Surface, listeners: Array, frequency: float) -> Array:
     """Return the pressures [Pa] at listeners for unit accelerations of the modes, shape (listeners, modes).
 
-    Whole samples are taken off the delays, so that their differences keep all digits: the phase is another for each
+    Whole samples are subtracted from the delays to keep all digits of their differences, which shifts the phase of each
     listener.
     """
     interval = 1.0 / (SAMPLES * frequency)
@@ -126,7 +125,7 @@ def piston() -> Outcome:
     ways = height, float(np.hypot(height, radius))
     first, second = (pulse(time - way / AIR.speed, length)[0] for way in ways)
     known = AIR.impedance * (first - second)
-    # The pulse's share above the bandwidth, and the error of the delays.
+    # Part of the pulse above the bandwidth, and error of the delays.
     tolerance = 1e-4 * float(np.abs(known).max())
     worst = int(np.argmax(np.abs(found - known)))
     reason = "delays to 100 dB, the rim in 60 rings, a pulse that ends 100 dB below the bandwidth"
@@ -197,7 +196,7 @@ def closed_form(panel: Panel, directions: Array, reach: float, frequency: float)
 
 
 def directivity() -> Outcome:
-    """Directions in which modes of a plate send, below and above coincidence."""
+    """Directivity of modes of a plate, below and above coincidence."""
     body = plate((3, 2))
     panel, names = panel_of(body), [f"({m},{n})" for m, n in body.numbers]
     slope = np.linspace(0.02, 0.48, 40) * pi
@@ -251,7 +250,7 @@ def _surface_power() -> Iterator[Row]:
         power = 0.5 * float(np.sum(areas * np.real(pressure) * panel.shapes(x, y)[:, 0]))
         far = float(power_of(panel, frequency)[0])
         lift = (number * height / SIDE) ** 2
-        # The resistance at the height z goes as sin(k R) / R with R² = r² + z²: within (kz)² / 2.
+        # The resistance at the height z varies as sin(k R) / R with R² = r² + z²: within (kz)² / 2.
         reason = "the surface's pressure is taken 2 mm above it: (kz)² / 2; far field 1e-5"
         yield Row(f"power at the surface, ka = {number:.4g}", far, power, (0.5 * lift + 3e-5) * far, reason, "W")
 
@@ -259,9 +258,9 @@ def _surface_power() -> Iterator[Row]:
 def _ringing() -> Iterator[Row]:
     """Yield the energy of the sound of a struck mode, over a hemisphere and all time.
 
-    By Parseval it is the integral of ``rho c sigma N |v|²`` over all frequencies. A mode that loses its energy at the
-    ratio zeta, of which sound takes the ratio z, gives it the share z / zeta: sigma is then taken at the natural
-    frequency, for a band whose relative width is 2 zeta and over which sigma changes by twice that.
+    By Parseval it is the integral of ``rho c sigma N |v|²`` over all frequencies. A mode of damping ratio zeta,
+    of which z is due to sound, radiates the share z / zeta of its energy: sigma is then taken at the natural frequency,
+    for a band of relative width 2 zeta over which sigma changes by twice that.
     """
     damping = 0.002
     body = plate((1, 1), damping)
@@ -282,20 +281,20 @@ def _ringing() -> Iterator[Row]:
     efficiency = [float(radiation_efficiency(body, float(node), AIR)[0]) for node in nodes]
     sigma = np.interp(frequency[low], nodes, efficiency)
     sent = AIR.impedance * float(mean_square(panel)[0]) * float(np.sum(sigma * velocity[low]))
-    # Efficiencies go as the square of the frequency; chords of a 15th of the natural one are (1/15)² / 4 above them.
+    # Efficiencies vary as the square of the frequency; chords of a 15th of the natural one exceed them by (1/15)² / 4.
     reason = "efficiencies at 60 frequencies, linear between: (1/15)² / 4, half as much for the rest"
     yield Row("energy of the sound of a struck mode", sent, heard, 1.5 / 900.0 * sent, reason, "J")
     share = float(radiation_damping(body, AIR)[0]) / damping
     lost = 2.0 * damping * angular * float(np.sum(velocity))
     reason = "4 zeta: relative width of the band times the slope of the efficiency"
-    yield Row("its share of what the mode loses", share, heard / lost, 4.0 * damping * share, reason)
+    yield Row("its share of the loss of the mode", share, heard / lost, 4.0 * damping * share, reason)
 
 
 def _energy_of_sound(panel: Panel, motion: Array, interval: float) -> float:
-    """Return the energy [J] that motion sends through a hemisphere."""
+    """Return the energy radiated by a motion through a hemisphere [J]."""
     directions, angles = hemisphere(8, 12)
     reach = 300.0 * panel.length
-    # The delay less whole samples.
+    # Fraction of the delay beyond whole samples.
     shift = 20.0 - float(np.floor(reach / (AIR.speed * interval)))
     kernel, energy = interpolation(0.2), 0.0
     surface = far_surface(panel, 0.2 / interval)
@@ -337,7 +336,7 @@ CASES = (
     ),
     Case(
         "radiation-balance",
-        "Where the energy of sound comes from",
+        "Balance of the energy of sound",
         "conservation of energy; radiation damping of light fluids (Cremer, Heckl & Petersson 2005, section 6.6)",
         balance,
     ),

@@ -1,4 +1,4 @@
-"""Run the cases, draw them, and write the table of what was expected and what came out."""
+"""Run and draw the cases, and write the table of expected and obtained values."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ def verify(
     Parameters
     ----------
     folder : str or Path
-        Where to write; made if it is not there.
+        Folder to write to, created if necessary.
     only : str, optional
         Run only the cases with this word in their name or title.
     report : callable, optional
-        Told each case before it runs.
+        Called with a line about each case before it runs.
     cases : sequence of Case, optional
-        The cases to choose from.
+        Cases to choose from.
 
     Returns
     -------
@@ -71,9 +71,9 @@ def _run(case: Case, target: Path) -> Outcome:
     try:
         outcome = case.run()
     except Exception as error:
-        # A case that breaks falls short, and the others still run.
+        # A case that raises counts as failed, and the others still run.
         outcome = _broken(f"{type(error).__name__}: {error}")
-    # Matplotlib is slow to import, and a word that names no case should be told at once.
+    # Imported here because Matplotlib is slow, and a word without a case should be reported at once.
     from .figures import draw
 
     save_figure(draw(case, outcome.sketch), target / f"{case.name}.png")
@@ -86,7 +86,7 @@ def _broken(words: str) -> Outcome:
 
 
 def closing_line(rows: Sequence[dict[str, Any]]) -> str:
-    """Return how many rows are within their tolerance, in one line."""
+    """Return the number of rows within their tolerance in one line."""
     missed = [f"{row['case']}: {row['quantity']} {row['scheme']}".rstrip() for row in rows if not row["holds"]]
     line = f"{len(rows) - len(missed)} of {len(rows)} quantities within their tolerance"
     return f"{line}; not: {'; '.join(missed)}" if missed else line
@@ -122,5 +122,5 @@ def _line(row: dict[str, Any]) -> str:
 
 
 def figure(value: float | None, digits: int = 7) -> str:
-    """Return a number of a row in words."""
+    """Return a number of a row as text."""
     return "none" if value is None else f"{value:.{digits}g}"

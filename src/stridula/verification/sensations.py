@@ -11,7 +11,7 @@ from ..extras import missing
 from .case import Case, Curve, Outcome, Row, Sketch
 
 RATE = 48000
-# Levels [dB] and durations [s]. The stationary method filters from silence: at 80 dB that start alone is heard as 5 %.
+# Levels [dB] and durations [s]. The stationary method filters from silence: at 80 dB that onset alone accounts for 5 %.
 STEADY, STEADY_LASTS = (40.0, 60.0), 2.0
 VARYING, VARYING_LASTS = (40.0, 60.0, 80.0), 1.0
 TOLERANCE = "ISO 532-1, the larger of 5 % and 0.1 sone"

@@ -15,7 +15,7 @@ from ..contact import Coulomb, FrictionLaw, PointContact, RigidTrack, StaticKine
 from ..drives import Force, InitialState
 from ..histories import Harmonic
 from ..integration import simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
@@ -38,7 +38,7 @@ class Slider:
     belt : float, optional
         Velocity of the floor [m/s].
     push : Harmonic, optional
-        Force on the mass along the floor, times 1 N; none if left out.
+        Factor on a force of 1 N along the floor; none if left out.
     """
 
     mass: float
@@ -51,7 +51,7 @@ class Slider:
     push: Harmonic | None = None
 
     def run(self, duration: float, step: float, scheme: Scheme) -> xr.Dataset:
-        """March and record every step."""
+        """Simulate and record every step."""
         body = PointMass(self.mass)
         system = System(
             PointContact(body.centre, RigidTrack(velocity=self.belt), friction=self.friction),
@@ -67,7 +67,7 @@ class Slider:
 
 
 def turning_points(position: float, velocity: float, angular: float, offset: float) -> tuple[list[float], float]:
-    """Return the turning points of a mass on a spring under Coulomb friction, the last one where it stays, and when.
+    """Return the turning points of a mass on a spring under Coulomb friction, the last being its rest, and their times.
 
     It swings about ``-offset sign(x')`` with ``offset = mu N / k``: the amplitude falls by ``2 offset`` every half
     period, and it stays at the first turning point within the offset.
@@ -99,7 +99,7 @@ def turned(position: Array) -> Array:
 
 
 def stuck_from(run: xr.Dataset) -> float:
-    """Return when a run begins to stick for good [s]; NaN if it does not."""
+    """Return the time from which a run sticks permanently [s]; NaN if it does not."""
     moving = np.flatnonzero(run["status"].values != STICKING)
     if moving.size and moving[-1] == run.sizes["time"] - 1:
         return float("nan")
@@ -111,7 +111,7 @@ def _settles(slider: Slider, step: float, units: str = "m") -> Outcome:
     offset = slider.friction.coefficient * slider.normal / slider.stiffness  # type: ignore[attr-defined]
     points, time = turning_points(slider.position, slider.velocity, angular, offset)
     curves = [Curve(_turning_times(points, time, angular), np.array(points), "expected turning points", marks=True)]
-    # Friction turns over at a step instead of inside it.
+    # Friction reverses at a step instead of inside it.
     largest = max(abs(point) for point in [slider.position, *points])
     kick = (slider.stiffness * largest + offset * slider.stiffness) / slider.mass * step
 
@@ -136,7 +136,7 @@ def _settles(slider: Slider, step: float, units: str = "m") -> Outcome:
         ]
         late = (len(points) + 1) * step
         reason = "a step for each reversal and for the start"
-        return [*turning, Row("sticks for good from", time, stuck_from(run), late, reason, "s", scheme.name)]
+        return [*turning, Row("sticks permanently from", time, stuck_from(run), late, reason, "s", scheme.name)]
 
     return Outcome(by_scheme(rows), Sketch("time [s]", "displacement [m]", curves))
 
@@ -146,7 +146,7 @@ def _turning_times(points: list[float], last: float, angular: float) -> Array:
 
 
 def sdnd100() -> Outcome:
-    """Slider let go from 0.85 mm: m = 1, k = 1e4, N = 10, mu = 0.1."""
+    """Slider released from 0.85 mm: m = 1, k = 1e4, N = 10, mu = 0.1."""
     return _settles(Slider(1.0, 1e4, 10.0, Coulomb(0.1), position=0.85e-3), step=1e-5)
 
 
@@ -246,8 +246,8 @@ def belt_without_jump() -> Outcome:
         place = run["displacement"].values[:, 0] - middle
         curves.append(Curve(run["time"].values, place, scheme.name))
         last = place[run["time"].values > begin + (cycles - 2) * 2.0 * pi / angular]
-        # The limit is reached within a step, v h away; each time it grazes the belt's velocity adds a step's worth of
-        # what the spring does within it.
+        # The limit is reached within a step, v h away; each time it grazes the belt's velocity adds the effect
+        # of the spring within a step.
         tolerance = same.belt * step + cycles * swing * (angular * step) ** 2
         reason = "leaves within v h of the limit; grazes the belt for a step a cycle: v h + n (v/w) (w h)²"
         return [Row("amplitude after 30 cycles", swing, float(np.ptp(last) / 2), tolerance, reason, "m", scheme.name)]
@@ -260,7 +260,7 @@ FREQUENCY, FRICTION = 0.8, 0.2
 
 
 def den_hartog() -> Outcome:
-    """Mass and spring of 1 under ``cos(w t)`` N, rubbed so little that it never stops: its amplitude, steps a period.
+    """Mass and spring of 1 under ``cos(w t)`` N, under little friction, never at rest: amplitude by steps per period.
 
     With ``V = 1 / (1 - w²)`` and ``U = sin(pi/w) / (w (1 + cos(pi/w)))`` it is ``sqrt(V² - (U mu N)²)``.
     """

@@ -1,4 +1,4 @@
-"""Sound of spheres in decibels: levels that are printed, pressures on the surface and away, and an elastic ball."""
+"""Sound of spheres in decibels: printed levels, pressures on the surface and away from it, and an elastic ball."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from .case import Case, Curve, Outcome, Row, Sketch
 from .open_air import AIR, PLACES, RADIUS, meshed_sphere, of_sphere, ring_sphere
 
 STEEL = Material(2.1e11, 7850.0, 0.3)
-# Of NAFEMS's sphere: radius [m], amplitude of the velocity [m/s], speed of sound [m/s], density [kg/m³], and effective
+# NAFEMS sphere: radius [m], amplitude of the velocity [m/s], speed of sound [m/s], density [kg/m³], and effective
 # values of the pressure on it [dB] by frequency [Hz].
 BIG, SPEED, SOUND, DENSITY = 1.0, 0.1, 340.0, 1.225
 LEVELS = {20.0: 114.160, 40.0: 118.843, 60.0: 120.777, 80.0: 121.725, 100.0: 122.246}
 REFERENCE = 20e-6
-# Wavenumbers times the radius, up to where a standing wave fits into the sphere.
+# Wavenumbers times the radius, below the first standing wave in the sphere.
 NUMBERS = (0.1, 0.5, 1.0, 2.0, 3.0, pi)
-BAR = "the bar of the benchmark, 0.1 dB"
+BAR = "tolerance of the benchmark, 0.1 dB"
 
 
 def level_of_nafems(frequency: float) -> float:
@@ -37,7 +37,7 @@ def level_of_nafems(frequency: float) -> float:
 
 
 def pulsating() -> Outcome:
-    """NAFEMS's sphere that pulsates: levels on its surface, by rings and by a mesh."""
+    """NAFEMS pulsating sphere: levels on its surface, with rings and with a mesh."""
     rows, curves, frequencies = [], [], np.array(list(LEVELS))
     for words, _, _, on_surface in _spheres(BIG):
         found = []
@@ -45,7 +45,7 @@ def pulsating() -> Outcome:
             wavenumber = 2.0 * pi * frequency / SOUND
             pressure = on_surface(wavenumber)[:, 0]
             acceleration = 2.0 * pi * frequency * SPEED
-            # The level farthest from the one that is known, of all places on the surface.
+            # The level farthest from the known one, among all places on the surface.
             levels = 20.0 * np.log10(DENSITY * acceleration * np.abs(pressure) / np.sqrt(2.0) / REFERENCE)
             found.append(float(levels[np.abs(levels - level).argmax()]))
             rows.append(Row(f"{words}: level at {frequency:g} Hz", level, found[-1], 0.1, BAR, "dB"))
@@ -143,7 +143,7 @@ def breathing() -> float:
 
 
 def breathing_amplitude() -> float:
-    """Return the radial motion of the surface in the breathing mode [kg^(-1/2)], which goes as ``j1(w r / cl)``."""
+    """Return the radial motion of the surface in the breathing mode [kg^(-1/2)], which varies as ``j1(w r / cl)``."""
     wavenumber = 2.0 * pi * breathing() / _longitudinal()
     nodes, weights = np.polynomial.legendre.leggauss(40)
     r = 0.5 * RADIUS * (nodes + 1.0)
@@ -163,7 +163,7 @@ def oblate() -> float:
         along = (n**2 - 1 - 0.5 * eta**2) * trans + eta * transer
         return float(normal * along - shear * tangent)
 
-    # The first change of sign: at first the determinant has none.
+    # The first change of sign of the determinant.
     eta = np.linspace(1.0, 4.0, 301)
     values = np.array([determinant(one) for one in eta])
     first = int(np.flatnonzero(values[:-1] * values[1:] < 0.0)[0])
@@ -181,14 +181,14 @@ def _transverse() -> float:
 
 
 def _breathing_mode(body: SolidBody) -> int:
-    """Return the number of the mode that moves the surface outwards the most."""
+    """Return the number of the mode with the largest outward motion of the surface."""
     surface = body.surface()
     moving = np.flatnonzero(~body.modes().massless)
     return int(moving[np.abs(surface.areas @ surface.shapes).argmax()])
 
 
 def _joined(blocks: list[Array]) -> tuple[Array, Array]:
-    """Return nodes and hexahedra of blocks, grids of places, which are joined where nodes coincide."""
+    """Return nodes and hexahedra of blocks, given as grids of places, joined at coincident nodes."""
     places, elements, first = [], [], 0
     for block in blocks:
         number = first + np.arange(block[..., 0].size).reshape(block.shape[:3])
@@ -208,7 +208,7 @@ def _joined(blocks: list[Array]) -> tuple[Array, Array]:
 
 
 def _spheres(radius: float) -> Iterator[tuple[str, Radiator, Array, Callable[[float], Array]]]:
-    """Yield spheres by rings and by a mesh: words, radiator, points on it [m], pressures there by wavenumber."""
+    """Yield spheres of rings and of a mesh: name, radiator, points on it [m], pressures there by wavenumber."""
     rings, mesh = RingSources(ring_sphere(radius=radius)), meshed_sphere(radius=radius)
     places = rings.surface.places
     half = np.stack([places[:, 0], 0.0 * places[:, 0], places[:, 1]], axis=1)
@@ -240,7 +240,7 @@ def _arriving_over_leaving(radiator: SurfacePressures, shape: int, wavenumber: f
 
 
 def cases() -> Iterator[Case]:
-    """Yield the cases of spheres that sound."""
+    """Yield the cases of radiating spheres."""
     nafems = "NAFEMS, pulsating sphere; rho c v k a / sqrt(1 + k² a²)"
     yield Case("sphere-pulsating", "NAFEMS's sphere that pulsates", nafems, pulsating)
     morse = "Morse & Ingard 1968, Theoretical Acoustics"

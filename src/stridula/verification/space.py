@@ -12,11 +12,11 @@ from ..connections import Spring
 from ..contact import Coulomb, PointContact, RigidTrack
 from ..drives import Force, Gravity, InitialVelocity
 from ..integration import simulate
-from ..integration.schemes import Scheme
 from ..linear.equilibrium import find_equilibrium
 from ..linear.modes import modes_of
 from ..linear.structure import Structure
 from ..linear.vibration import vibration
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
@@ -27,8 +27,8 @@ GRAVITY, FRICTION, THROWN = 9.81, 0.5, 1.0
 def slope() -> Outcome:
     """A particle thrown along a slope of friction's own angle: its speed and its speed downhill add up to a constant.
 
-    Friction and weight along the slope are alike in size, so the speed loses what the speed downhill gains. In the end
-    it goes straight down, at half the speed that it was thrown with.
+    Friction and weight along the slope are equal in size, so the speed loses what the speed downhill gains. In the end
+    it moves straight down, at half its initial speed.
     """
     angle, step = atan(FRICTION), 1e-3
     mass = RigidBody(1.0)
@@ -81,11 +81,11 @@ def across() -> Outcome:
             swinging, periods * per_period * step, scheme=scheme, step=step, sample_rate=1.0 / step, probes=probes
         )
         swings = np.abs(run["displacement"].values[:, 0]).reshape(periods, per_period).max(axis=1)
-        # The largest of a period is its first, a quarter of it on.
+        # The largest value of a period comes first, after a quarter of it.
         times = (np.arange(periods) + 0.25) * per_period * step
         curves.append(Curve(times, 1e3 * swings, scheme.name, marks=True))
         ratio = -float(np.polyfit(times, np.log(swings), 1)[0]) / own
-        # Peaks between samples, and the velocity of three slips that friction is along: both (w h)² / 2 of the whole.
+        # Peaks between samples, and the slip velocity of friction, from three slips: both (w h)² / 2 of the whole.
         tolerance = 2.0 * (own * step) ** 2 * known + 0.5 * (own * step) ** 2 / (periods * own * per_period * step)
         return [Row("damping ratio, decay", known, ratio, tolerance, "sampling and step, (w h)²", "1", scheme.name)]
 

@@ -1,4 +1,4 @@
-"""Sliding stability of the paper's pair: against the formula, against printed figures, and as growth seen in time."""
+"""Sliding stability of the paper's pair: against the formula, against printed figures, and as growth in time."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ from ..bodies import FiniteElementBeam, ModalBeam, ReducedBody
 from ..contact import Coulomb, PointContact
 from ..drives import Force, InitialState
 from ..integration import simulate
-from ..integration.schemes import Scheme
+from ..lowering.schemes import Scheme
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
 from .frequencies import SQUARE, STEEL
 from .instabilities import exponents, only_sliding
 
 PUSH = 1e-3
-# Frequency below which figures are printed [Hz].
+# Highest frequency of the printed figures [Hz].
 AUDIBLE = 6000.0
 # Printed for the pair of 0.15 and 0.40 m at 45°: coefficient of friction, frequencies [Hz], growths [1/s].
 PRINTED_FREE = (0.0, 109.2, 403.8, 588.2, 1210.7, 2352.8)
 PRINTED_GROWING = ((1.1, ((3221.1, 1503.7),)), (1.5, ((891.4, 1454.0), (3486.1, 4595.0))))
-# Printed for the pair of 0.2 and 0.3 m: angle [°] and the first multiple of 0.02 that is unstable.
+# Printed for the pair of 0.2 and 0.3 m: angle [°] and the first unstable multiple of 0.02.
 PRINTED_ONSETS = ((30.0, 0.58), (45.0, 1.02), (60.0, 1.74))
 GRID = 0.02
-# Growth that counts [1/s]; beyond the onset it rises with the square root, to 20 within 1e-4.
+# Least growth that counts [1/s]; beyond the onset it rises as the square root, to 20 within 1e-4.
 COUNTS = 0.1
 
 
 @dataclass(frozen=True)
 class Pair:
-    """A rod, guided at its root, that is pushed along its axis over a beam and digs in.
+    """A rod, guided at its root, that is pushed along its axis over a beam, tip first.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class Pair:
         return ModalBeam(STEEL, SQUARE, self.track, bending_modes=self.bending, axial_modes=self.axial)
 
     def found(self, friction: float) -> xr.Dataset:
-        """Return its vibration in sliding as the package has it; whether friction would hold it is not asked."""
+        """Return its vibration in sliding by the package, without checking whether friction would hold it."""
         rod, beam = self.rod, self.beam
         contact = PointContact(rod.tip, beam, at=self.track / 2.0, friction=Coulomb(friction))
         return sliding_stability(System(contact, drives=[Force(rod.root, axial=-PUSH)]), status="sliding")
@@ -74,7 +74,7 @@ class Pair:
     def formula(self, friction: float) -> Array:
         """Return exponents [1/s] with positive frequency of ``(Y'Z, Y'KZ)``, ``Z = null(G)``, ``Y = null(G + mu T)``.
 
-        Pushed along its axis the tip moves to -x. Rows are those of the modes; a free rigid motion gives zero.
+        Pushed along its axis the tip moves towards -x. Rows are those of the modes; a free rigid motion gives zero.
         """
         rod, beam = self.rod, self.beam
         tip, under = rod.trace(0.0), beam.trace(self.track / 2.0)
@@ -87,12 +87,12 @@ class Pair:
         return both[np.lexsort((-both.real, np.round(both.imag, 3)))][both.size // 2 :]
 
     def rounding(self, exponent: complex) -> float:
-        """Return what rounding of the squares of exponents may make of one [1/s]."""
+        """Return the error of an exponent due to rounding of its square [1/s]."""
         highest = float(self.beam.modes().angular_frequency.max()), float(self.rod.modes().angular_frequency.max())
         return 10.0 * np.finfo(float).eps * max(highest) ** 2 / max(abs(exponent), 1.0)
 
 
-# So fine that what is left out moves no digit that is printed.
+# So fine that the truncation changes no printed digit.
 FINE = Pair(elements=60, bending=120, axial=120)
 
 
@@ -103,7 +103,7 @@ def below(frequency: float, found: xr.Dataset) -> Array:
 
 
 def growing(values: Array) -> Array:
-    """Return those exponents that grow."""
+    """Return the growing exponents."""
     return values[values.real > COUNTS]
 
 
@@ -139,7 +139,7 @@ def _printed_rows() -> list[Row]:
 
 
 def _onset_rows() -> list[Row]:
-    """Return the first unstable multiple of 0.02 at each angle: what is printed is a scan."""
+    """Return the first unstable multiple of 0.02 at each angle, as in the printed scan."""
     rows = []
     for angle, onset in PRINTED_ONSETS:
         pair = Pair(0.2, 0.3, angle, elements=12, bending=30, axial=15)
@@ -153,14 +153,14 @@ def _onset_rows() -> list[Row]:
 def _seen(which: int, scheme: Scheme) -> tuple[complex, complex, float, Curve]:
     """Return a growing exponent of the pair with modes below 6 kHz, and that of its normal force in time.
 
-    As bodies given by matrices their contact point is frozen: small motions are linear as long as they slide.
+    For bodies given by matrices the contact point is fixed, so that small motions are linear while they slide.
     """
     pair, friction = Pair(), 1.5
     rod, beam = _matrices(pair.rod, "rod"), _matrices(pair.beam, "beam")
     contact = PointContact(rod.at("0"), beam.at("1"), friction=Coulomb(friction))
     along = radians(pair.angle)
     push = Force(rod.at("1"), x=-PUSH * sin(along), y=-PUSH * cos(along))
-    # Shapes and rest are found here by the formula, not by the package.
+    # Shapes and equilibrium are computed here by the formula, not by the package.
     tip, under = rod.trace("0"), beam.trace("1")
     tangent, normal = (np.concatenate([tip[k], -under[k]]) for k in (0, 1))
     angular = np.concatenate([rod.modes().angular_frequency, beam.modes().angular_frequency])
@@ -196,7 +196,7 @@ def _seen(which: int, scheme: Scheme) -> tuple[complex, complex, float, Curve]:
 
 
 def _rest(angular: Array, acts: Array, normal: Array, load: Array) -> tuple[Array, Array]:
-    """Return where the pair rests in the frame of its free rigid motion, and that motion."""
+    """Return the equilibrium of the pair in the frame of its free rigid motion, and that motion."""
     rigid = np.eye(angular.size)[:, angular == 0.0]
     free = rigid @ scipy.linalg.null_space((normal @ rigid)[None])[:, 0]
     size = angular.size
@@ -238,8 +238,8 @@ def stability() -> Outcome:
 
 
 ONSETS = (
-    "Printed onsets are the first multiples of 0.02 that are unstable: undamped, with all modes and growth above "
-    "0.1 1/s counted, flutter begins at 0.579, 1.002 and 1.734, near 1823 Hz, whatever the number of modes."
+    "Printed onsets are the first unstable multiples of 0.02: undamped, with all modes and growth above "
+    "0.1 1/s counted, flutter begins at 0.579, 1.002 and 1.734, near 1823 Hz, for any number of modes."
 )
 
 CASES = (

@@ -38,7 +38,7 @@ def frequencies() -> Outcome:
         Row(f"partial {k}", float(known[k - 1]), float(found[k - 1]), 1e-12 * float(known[k - 1]), "round-off", "Hz")
         for k in (1, 2, 4, 8, 16, 40)
     ]
-    # Two partials give B back: (f_k / k f_1)² = (1 + B k²) / (1 + B).
+    # B from two partials: (f_k / k f_1)² = (1 + B k²) / (1 + B).
     share = (found[39] / (40.0 * found[0])) ** 2
     back = float((share - 1.0) / (1600.0 - share))
     rows.append(Row("inharmonicity", inharmonicity, back, 8.0 * np.finfo(float).eps, "round-off of the squares"))
@@ -53,16 +53,16 @@ def frequencies() -> Outcome:
 class Bowed:
     """A nearly ideal string under a bow that moves across it, along y.
 
-    The bow is a rigid track whose tangent is y and whose normal is x. A force presses the string on it, along x and at
-    the very point that it touches; axial motion and bending are uncoupled and the bow does not yield, so the normal
-    force is that force at every step, and x stands for the direction across string and bow that a plane does not have.
+    The bow is a rigid track whose tangent is y and whose normal is x. A force along x presses the string on it at the
+    contact point; axial motion and bending are uncoupled and the bow is rigid, so the normal force equals that force at
+    every step, and x represents the direction normal to string and bow, which does not exist in the plane.
 
     Attributes
     ----------
     place : float
-        Share of the length between the left end, the bridge, and the bow [1].
+        Distance of the bow from the left end, the bridge, as a fraction of the length [1].
     push : float
-        Bow force as a share of Schelleng's maximum [1].
+        Bow force as a fraction of Schelleng's maximum [1].
     modes : int, optional
         Number of modes.
     spread, decay : float, optional
@@ -74,7 +74,7 @@ class Bowed:
     friction : FrictionLaw, optional
         Law of friction.
     inharmonicity : float, optional
-        What stiffness there must be [1].
+        Inharmonicity due to bending stiffness [1].
     """
 
     place: float
@@ -91,7 +91,7 @@ class Bowed:
 
     @property
     def tension(self) -> float:
-        """Tension [N]: of the impedance ``T / c`` and the period ``2 L / c``."""
+        """Tension [N], from the impedance ``T / c`` and the period ``2 L / c``."""
         return self.impedance * 2.0 * self.length / self.period
 
     @property
@@ -118,14 +118,14 @@ class Bowed:
 
     @property
     def most(self) -> float:
-        """Schelleng's maximal bow force ``2 Z v / beta dmu`` [N]: above, the corner does not free the string."""
+        """Schelleng's maximal bow force ``2 Z v / beta dmu`` [N], above which the corner cannot free the string."""
         return 2.0 * self.impedance * self.speed / (self.place * self.contrast)
 
     @property
     def least(self) -> float:
-        """Schelleng's minimal bow force ``Z² v / 2 R beta² dmu`` [N]: below, the string breaks free too soon.
+        """Schelleng's minimal bow force ``Z² v / 2 R beta² dmu`` [N], below which the string slips too early.
 
-        The resistance R of a bridge that takes as much of a corner in a period as the decay s of all modes takes is
+        The resistance R of a bridge that attenuates a corner per period as much as the decay s of all modes is
         ``Z / s T`` times 2.
         """
         resistance = 2.0 * self.impedance / (self.decay * self.period)
@@ -138,15 +138,15 @@ class Bowed:
 
     @property
     def corner(self) -> float:
-        """Time that the corner takes to pass [periods].
+        """Duration of the passage of the corner [periods].
 
-        The modes kept resolve ``1 / n`` of a period; in a period Kelvin-Voigt damping makes a step a Gaussian one of
-        standard deviation ``sqrt(spread T)``, of which four are taken.
+        The modes kept resolve ``1 / n`` of a period; in a period Kelvin-Voigt damping smooths a step to a Gaussian
+        width of standard deviation ``sqrt(spread T)``, of which four are counted.
         """
         return 1.0 / self.modes + 4.0 * sqrt(self.spread / self.period)
 
     def run(self, periods: float = 160.0) -> xr.Dataset:
-        """March so many periods from rest, the bow starting within the first four, and record 1200 samples in each."""
+        """Simulate a number of periods from rest, the bow starting within the first four, with 1200 samples in each."""
         string = self.string
         point, bow = string.at(self.place * self.length), RigidTrack(velocity=self.speed, history=Ramp(4 * self.period))
         system = bowed(point, bow, self.friction, self.force)
@@ -164,7 +164,7 @@ def bowed(point: BodyPoint, bow: RigidTrack, friction: FrictionLaw, force: float
 
 
 def left_out(modes: int, place: float) -> float:
-    """Return a bound of the share of a force that the modes left out bring to a support, its place counted from there.
+    """Return a bound of the share of a force, at a place from a support, that omitted modes transmit to the support.
 
     ``(2 / pi) sum of sin(k pi a / L) / k`` over k > n, by Abel's partial summation.
     """
@@ -172,7 +172,7 @@ def left_out(modes: int, place: float) -> float:
 
 
 def supports() -> Outcome:
-    """A stiff wire under a bow that slides steadily: a force at a point at rest; and an ideal string that is thrown."""
+    """A stiff wire under a steadily sliding bow, which is a constant force at a point; and a thrown ideal string."""
     wire = ModalBeam(STEEL, WIRE, SPEAKING_LENGTH, bending_modes=300, axial_modes=1, tension=TENSION)
     rows, ratio, force = [], 0.4, 5.0
     reason = "modes left out: 2 / (pi (n + 1) sin(pi a / 2 L)) of the force, by Abel's summation"
@@ -197,10 +197,10 @@ def supports() -> Outcome:
 
 
 def _thrown(ideal: Bowed) -> list[Row]:
-    """Return the rows of a string thrown down at V: its supports feel -Z V for half a period, then +Z V."""
+    """Return the rows of a string thrown down at V: its support forces are -Z V for half a period, then +Z V."""
     string, speed = replace(ideal.string, damping=0.0), 2.0
     point = string.at(0.1 * string.length)
-    # Hardly pressed: at a ratio of 0 the bow does nothing.
+    # Hardly pressed, and without friction, so that the bow has no effect.
     system = bowed(point, RigidTrack(), Coulomb(0.0), 1e-6, InitialVelocity(string, y=-speed))
     step = ideal.period / 4000.0
     run = simulate(
@@ -245,14 +245,14 @@ def motion(case: Bowed, run: xr.Dataset, words: str, last: int = 40) -> list[Row
     place, speed, corner = case.place, case.speed, case.corner
     slip = -speed * (1.0 - place) / place
     faster = -speed * (1.0 - place + corner) / (place - corner)
-    waits = "the corner waits under the bow no longer than it takes to pass: 1/n + 4 sqrt(spread / T)"
-    follows = "the slip share within that, as the bow moves back what it moves forth"
+    waits = "the corner is delayed under the bow by at most its passage: 1/n + 4 sqrt(spread / T)"
+    follows = "as for the share of slip, since motion back equals motion forth"
     normal = run["normal_force"].values
     off = float(np.abs(normal - case.force).max())
     scheme = ExactModal().name
     rows = [
         Row(f"{words}: largest change of normal force", 0.0, off, 1e-9 * case.force, "round-off", "N", scheme),
-        Row(f"{words}: slips a period", 1.0, begins.size / last, 1.0 / last, "one at the edge", "1", scheme),
+        Row(f"{words}: slips per period", 1.0, begins.size / last, 1.0 / last, "one at the edge", "1", scheme),
         Row(f"{words}: period", case.period, period, corner * case.period, waits, "s", scheme),
         Row(f"{words}: share of slip", place, share, corner, waits, "1", scheme),
         Row(f"{words}: velocity of slip", slip, velocity, slip - faster, follows, "m/s", scheme),
@@ -261,10 +261,10 @@ def motion(case: Bowed, run: xr.Dataset, words: str, last: int = 40) -> list[Row
 
 
 def _bridge(case: Bowed, kept: xr.Dataset, begins: Array, words: str) -> Row:
-    """Return the row of the force on the bridge, which rises in proportion to the way of the bow while it sticks.
+    """Return the row of the force on the bridge, which rises in proportion to the travel of the bow while it sticks.
 
-    Waves between bridge and bow have the period ``beta T``, so means over that know nothing of them: the first in each
-    stick is taken from the last.
+    Waves between bridge and bow have the period ``beta T``, so that they vanish in means over it: the first mean in
+    each stick is subtracted from the last.
     """
     force, slips = kept["support_force"].values[:, 0], kept["status"].values == SLIDING
     window, passes = round(case.place * SAMPLES), round(case.corner * SAMPLES)

@@ -1,4 +1,4 @@
-"""Many points at once: a patch test through two meshes, a coin that slides and spins, a pin on a disc that squeals."""
+"""Many contact points: a patch test through two meshes, a coin that slides and spins, a squealing pin on a disc."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from ..contact import Coulomb, PointContact, RigidTrack, SurfaceContact
 from ..drives import Force, InitialEquilibrium, InitialState
 from ..histories import Constant
 from ..integration import simulate
-from ..integration.schemes import Scheme
 from ..linear.equilibrium import find_equilibrium
 from ..linear.structure import Structure
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..scenarios.load import load_scenario
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
 
 ROUND_OFF = "round-off"
-# Modes below it [Hz]; what is left out yields statically at the faces.
+# Highest frequency of the modes [Hz]; omitted modes add static flexibility at the faces.
 PRESSURE, CUTOFF = 1e6, 5e4
-# Where the ratio of the velocities of a coin stays, and its friction there, over the weight and the radius.
+# Stationary ratio of the velocities of a coin, and its friction there, over the weight and the radius.
 RATIO, DRAG, MOMENT = 0.652998, 0.616031, 0.471694
 RADIUS, WEIGHT, FRICTION = 0.1, 10.0, 0.2
-# The rig of Allgaier and others, as Ansys has it.
+# The rig of Allgaier and others, as in the Ansys manual.
 MEASURED, BAND = 2215.0, (500.0, 4000.0)
-# Growth over the frequency that rounding leaves of modes that nothing damps.
+# Growth of undamped modes due to rounding, over the frequency.
 EXPONENT = 1e-6
 
 
@@ -54,7 +54,7 @@ def patches(overlay: bool = True) -> System:
 
 
 def patch_test() -> Outcome:
-    """A uniform pressure goes through faces of unlike meshes as it is."""
+    """A uniform pressure passes unchanged through faces of different meshes."""
     system = patches()
     (surface,) = system.faces
     found = find_equilibrium(Structure(system), np.full(len(system.contacts), 0.1))
@@ -72,7 +72,7 @@ def patch_test() -> Outcome:
 def coin(rings: int, around: int, speed: float, spin: float) -> tuple[System, Array]:
     """Return a disc of 1 kg that slides along x and spins about y, and the places of its points.
 
-    Each of these always bears its share of the weight.
+    Each point always carries its share of the weight.
     """
     nodes, weights = np.polynomial.legendre.leggauss(rings)
     radii, shares = RADIUS * np.sqrt(0.5 * (nodes + 1.0)), np.repeat(0.5 * weights, around) / around
@@ -96,9 +96,9 @@ def coin(rings: int, around: int, speed: float, spin: float) -> tuple[System, Ar
 
 
 def spinning(rings: int = 4, around: int = 12, spin: float = 20.0) -> Outcome:
-    """A coin stops sliding and spinning at once, at one ratio of the two whatever it began with; here it begins so."""
+    """A coin stops sliding and spinning together, at one ratio of both for any start; here it starts at this ratio."""
     system, places = coin(rings, around, RATIO * RADIUS * spin, spin)
-    # The step of the directions between the points of a ring, to the second power.
+    # Second order in the angle between the points of a ring.
     share, reason = (pi / around) ** 2 / 12.0, "second order of the distance of the points"
     curves = [Curve(np.array([0.0, 1.4]), np.full(2, RATIO), "closed form")]
 
@@ -115,7 +115,7 @@ def spinning(rings: int = 4, around: int = 12, spin: float = 20.0) -> Outcome:
         return [
             Row("friction at the start", drag, float(forces[5, :, 0].sum()), share * drag, reason, "N", scheme.name),
             Row("its moment at the start", spun, float(moment[5]), share * spun, reason, "N m", scheme.name),
-            # The ratio departs from a stable one by what the forces are off.
+            # The ratio deviates from the stable one as much as the forces.
             Row("v / R w half way", RATIO, float(ratios[-1]), 2.0 * share * RATIO, reason, "1", scheme.name),
         ]
 
@@ -147,7 +147,7 @@ def pin_on_disc() -> Outcome:
         starts = [InitialEquilibrium(held), InitialEquilibrium(held, mode="most unstable", amplitude=1e-9)]
         rest, run = (simulate(replace(system, drives=[*drives, start]), 8e-3, **asked) for start in starts)
         away = run["displacement"].values.ravel() - rest["displacement"].values.ravel()
-        # Means over whole periods, apart by whole periods.
+        # Means over whole periods, whole periods apart.
         periods, time = round(3.0 / frequency * 1e5), run["time"].values
         sizes = [float(np.sqrt(np.mean(away[at : at + periods] ** 2))) for at in (50, 50 + 4 * periods)]
         seen = log(sizes[1] / sizes[0]) / float(time[50 + 4 * periods] - time[50])

@@ -1,4 +1,4 @@
-"""Bodies that turn: waves carried round, their lag by Coriolis forces, and the speed at which one stands still."""
+"""Turning bodies: transport of waves, their lag by Coriolis forces, and the speed at which a wave stands still."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from ..contact import PointContact
 from ..drives import Force
 from ..histories import Sampled
 from ..integration import simulate
-from ..integration.schemes import Scheme
 from ..linear.equilibrium import find_equilibrium
 from ..linear.modes import modes_of
 from ..linear.structure import SEPARATED, Structure
 from ..linear.vibration import vibration
+from ..lowering.schemes import Scheme
 from ..records import Displacement
 from ..system import System
 from .case import Case, Curve, Outcome, Row, Sketch, by_scheme
@@ -45,7 +45,7 @@ def _untouched(body: AxisymmetricBody, force: Force | None = None) -> System:
 
 
 def _frequencies(body: AxisymmetricBody) -> Array:
-    """Return the frequencies of a body that nothing touches, as linear theory of its system has them [Hz], rising."""
+    """Return the rising frequencies of a body without contact by linear theory of its system [Hz]."""
     structure = Structure(_untouched(body))
     found = modes_of(structure, vibration(structure, find_equilibrium(structure, np.zeros(1), [SEPARATED])))
     return np.sort(np.abs(found.values.imag)) / (2.0 * pi)
@@ -55,8 +55,8 @@ def ring() -> Outcome:
     """A free ring of 176 mm at 12 000 rpm: its waves turn by (n² - 1) / (n² + 1) of its own turn (Bryan 1890).
 
     In the material the pair of n waves is split by twice 2 n / (n² + 1) of the speed: 320 and 240 Hz between the
-    frequencies that Ansys prints, 411.535 and 91.535, 643.899 and 403.899 Hz. Their means are higher than at rest by
-    tension, which is of second order and left out here.
+    frequencies that Ansys prints, 411.535 and 91.535, 643.899 and 403.899 Hz. Tension, a second-order effect
+    neglected here, raises their means above those at rest.
     """
     rows, turns = [], 12e3 * RPM
     turning = _ring(turns).modes().turning
@@ -80,9 +80,9 @@ def ring() -> Outcome:
 
 
 def disc() -> Outcome:
-    """A disc held at its bore: pairs split into f + n W and f - n W, a wave stands still at w / n, a blow beats.
+    """A disc held at its bore: pairs split into f + n W and f - n W, a wave stands still at w / n, a blow causes beats.
 
-    Bending waves of a thin disc hardly lag; what they lag by is found with them, and taken into the closed forms.
+    Bending waves of a thin disc hardly lag; their lag is computed with the modes and included in the closed forms.
     """
     turns = 60.0
     body = _disc(turns)
@@ -92,7 +92,7 @@ def disc() -> Outcome:
     drag = np.zeros(modes.count)
     for pair, by in zip(pairs, modes.turning.drag, strict=True):
         drag[list(pair)] = np.array([1.0, -1.0]) * by
-    # The body apart has three rigid motions.
+    # The separate body has three rigid motions.
     known, found = np.sort(np.abs(frequency + drag * turns / (2.0 * pi))), _frequencies(body)[3:]
     worst = int(np.abs(found - known).argmax())
     rows = [
@@ -135,7 +135,7 @@ def disc() -> Outcome:
         )
         time, seen = run["time"].values, run["displacement"].values[:, 0]
         expected = np.zeros_like(time)
-        # A triangular blow about its middle has the share sinc² of a frequency.
+        # The spectrum of a triangular blow about its middle is sinc².
         for w, shape, by in zip(modes.angular_frequency, body.trace(HERE)[2], np.abs(drag) * turns, strict=True):
             for sign in (0.5, -0.5):
                 f = w + 2.0 * sign * by
@@ -149,7 +149,7 @@ def disc() -> Outcome:
             curves.append(Curve(1e3 * time[after], 1e6 * expected[after], "closed form"))
         curves.append(Curve(1e3 * time, 1e6 * seen, scheme.name))
         reason = "phase of the highest modes, (w h)² w t / 24, and W h"
-        return [Row("blow heard where it struck, error", 0.0, error, tolerance + 2e-3, reason, "1", scheme.name)]
+        return [Row("response at the place of the blow, error", 0.0, error, tolerance + 2e-3, reason, "1", scheme.name)]
 
     return Outcome([*rows, *by_scheme(beats)], Sketch("time [ms]", "displacement [um]", curves))
 

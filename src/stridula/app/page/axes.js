@@ -1,21 +1,21 @@
-// Axes with ticks, numbers, units and a title; what does not change is drawn once and copied from then on.
+// Axes with ticks, numbers, units and a title; the unchanging part is drawn once and then copied.
 const STEPS = [1, 2, 2.5, 5, 10];
 const ROOFS = [1, 1.25, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10];
 const ROUNDING = 1e-9;
 const SMALL = "11px system-ui, sans-serif";
-const APART = 44; // Room of a number across [px]
-const ABOVE = 26; // and of one up.
+const APART = 44; // Space for a number across [px]
+const ABOVE = 26; // and upwards.
 
 export function short(value) {
   return Number(value.toPrecision(3)).toString();
 }
 
-// A number as it stands at a tick.
+// The label of a tick.
 export function told(value) {
   return short(value).replace("-", "−");
 }
 
-// Round values between two ends, at most so many steps apart.
+// Round values between two ends, with a limited number of steps.
 export function ticks(low, high, most) {
   const rough = (high - low) / Math.max(1, most);
   if (!(rough > 0) || !Number.isFinite(rough)) return [];
@@ -26,7 +26,7 @@ export function ticks(low, high, most) {
   return found;
 }
 
-// The next round value above one: an axis that ends there does not tremble.
+// The next round value above a number: an axis that ends there is steady.
 export function roof(value) {
   const size = 10 ** Math.floor(Math.log10(value));
   return size * ROOFS.find((one) => one * size >= value * (1 - ROUNDING));
@@ -67,7 +67,7 @@ export function paintAxes(draw, { left, top, width, height }, { x, y }, colours)
   draw.textAlign = "left";
 }
 
-// Say in place of a picture why there is none.
+// Show a text in place of a picture.
 export function inWords(draw, { left, top, width, height }, words, colours) {
   draw.strokeStyle = colours.line;
   draw.strokeRect(left + 0.5, top + 0.5, width - 1, height - 1);
@@ -78,7 +78,7 @@ export function inWords(draw, { left, top, width, height }, words, colours) {
   draw.textAlign = "left";
 }
 
-// What is drawn once for what it depends on.
+// A picture redrawn only if its arguments change.
 export class Layer {
   draw(onto, width, height, depends, paint) {
     const scale = onto.getTransform().a;

@@ -1,22 +1,22 @@
-// Bowing and rubbing by hand: along the picture the speed of the hand is a velocity, down it presses harder.
+// Bowing and rubbing by hand: the speed of the hand along the picture is a velocity, moving down presses harder.
 import { short } from "./axes.js";
 
-export const TICK = 50; // Between what is sent [ms].
-const SMOOTH = 0.5; // Share of the hand's speed since the last tick in the speed that is played.
-const HARDER = 16; // Down the whole picture the force becomes so many times as large.
+export const TICK = 50; // Interval of messages [ms].
+const SMOOTH = 0.5; // Weight of the hand's speed since the last tick in the played speed.
+const HARDER = 16; // Factor of the force over the height of the picture.
 const DIGITS = 3;
 const VELOCITIES = /^drives\.[^.]+\.velocity$|\.surface_velocity$|\.track\.velocity$/;
 const FORCES = /^drives\./;
 const NEWTONS = /^[GMkmµn]?N$/;
 
-// The controls that a hand plays, null for what a system has not: the velocity, and of the forces the largest.
+// The controls played by hand, null if a system has none: the velocity, and the largest of the forces.
 export function played(controls, values) {
   const size = ({ key }) => Math.abs(values[key]);
   const forces = controls.filter(({ key, unit }) => FORCES.test(key) && NEWTONS.test(unit)).sort((a, b) => size(b) - size(a));
   return { velocity: controls.find(({ key }) => VELOCITIES.test(key)) ?? null, force: forces[0] ?? null };
 }
 
-// A hand on the picture, in shares of its width and height.
+// A hand on the picture, in fractions of its width and height.
 export class Hand {
   constructor({ velocity, force }, values, x, y) {
     Object.assign(this, { velocity, force, x, y });
@@ -28,7 +28,7 @@ export class Hand {
     Object.assign(this, { x, y });
   }
 
-  // The values in SI that are played now, by key, after so many milliseconds.
+  // The values played after a time [ms], in SI, by key.
   tick(passed) {
     this.speed += SMOOTH * ((this.x - this.lastX) / (passed / 1000) - this.speed);
     this.lastX = this.x;
@@ -38,7 +38,7 @@ export class Hand {
     return found;
   }
 
-  // A width a second is the fastest; what only goes one way goes it whichever way the hand moves.
+  // One width per second is the fastest; a velocity of only one sign keeps it in both directions of the hand.
   #drawn() {
     const { low, high } = this.velocity;
     if (low < 0 && high > 0) return this.speed * Math.max(-low, high);
@@ -55,7 +55,7 @@ function inWords(what, values) {
   return played.map(({ key, unit, scale }) => `${short(values[key] / scale)} ${unit}`).join(", ");
 }
 
-// Let a canvas be bowed: what is played comes back to what it was when the hand lets go.
+// Bowing on a canvas: values return to their previous ones when the hand lets go.
 export class Bow {
   constructor(canvas, scene, controls, tell) {
     Object.assign(this, { canvas, scene, controls, tell, hand: null });
@@ -64,11 +64,11 @@ export class Bow {
     for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) canvas.addEventListener(end, () => this.release());
   }
 
-  // Follow what is played: whether there is something for a hand.
+  // Update to the scenario: whether there are controls for a hand.
   follow() {
     const { velocity, force } = this.#what();
     this.canvas.classList.toggle("bowed", Boolean(velocity || force));
-    const words = this.canvas.hidden ? [] : [velocity && "across draws it", force && "down presses it"].filter(Boolean);
+    const words = this.canvas.hidden ? [] : [velocity && "across to bow", force && "down to press"].filter(Boolean);
     if (!this.hand) this.tell(words.length ? `drag: ${words.join(", ")}` : "");
   }
 
@@ -106,7 +106,7 @@ export class Bow {
     }, TICK);
   }
 
-  // Play other values of what the hand has, as one movement that nothing goes back to.
+  // Play other values of the controls of the hand, without steps of undo.
   #set(values) {
     const others = Object.entries(this.scene.now.overrides).filter(([key]) => !this.keys.includes(key));
     this.scene.set({ overrides: { ...Object.fromEntries(others), ...values } }, true);

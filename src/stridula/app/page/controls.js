@@ -1,4 +1,4 @@
-// The controls: built from what the server says of them, in groups; those that a scenario lacks are hidden.
+// The controls, built in groups from their description by the server; those that a scenario lacks are hidden.
 export class Controls {
   constructor(form, hello, scene) {
     this.scene = scene;
@@ -7,7 +7,7 @@ export class Controls {
     this.build(hello);
   }
 
-  // Build the controls of a kind of systems.
+  // Build the controls of a kind of system.
   build(hello) {
     const form = this.form;
     this.rows = new Map();
@@ -16,7 +16,7 @@ export class Controls {
     for (const group of hello.groups) {
       const field = document.createElement("fieldset");
       field.append(Object.assign(document.createElement("legend"), { textContent: group }));
-      // What one turns most comes first.
+      // The most used controls come first.
       for (const control of hello.controls.filter((one) => one.group === group)) field.append(this.#number(control));
       for (const choice of hello.choices.filter((one) => one.group === group)) field.append(this.#choice(choice));
       form.append(field);
@@ -87,7 +87,7 @@ export class Controls {
     return row;
   }
 
-  // Show the values in SI that are played.
+  // Show the played values, given in SI.
   show(values, again = false) {
     const before = this.values ?? {};
     this.values = values;
@@ -97,7 +97,7 @@ export class Controls {
     }
   }
 
-  // Say beside each control why it was refused, and show the value that is played; return what no control is to blame for.
+  // Show beside each control why it was refused, and its played value; return refused keys without a control.
   refuse(refused) {
     for (const [key, { row, show }] of this.rows) {
       const words = row.querySelector(".refused");
@@ -122,5 +122,5 @@ export function si(shown, control) {
 }
 
 function spoken(unit) {
-  return { "°": "degrees", mm: "millimetres", N: "newtons", "cm/s": "centimetres a second", "mm/s": "millimetres a second", "%": "percent" }[unit] ?? unit;
+  return { "°": "degrees", mm: "millimetres", N: "newtons", "cm/s": "centimetres per second", "mm/s": "millimetres per second", "%": "percent" }[unit] ?? unit;
 }

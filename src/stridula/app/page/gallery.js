@@ -1,4 +1,4 @@
-// The cases as pictures that one knows: one group of cards, of which one is played.
+// The cases as cards with pictures, one of which is played.
 import { draw, sketchOf } from "./sketches.js";
 
 export class Gallery {
@@ -6,7 +6,7 @@ export class Gallery {
     const [dialog, cards] = [document.getElementById("gallery"), document.getElementById("cards")];
     this.cards = new Map(presets.map((one) => [one.name, card(one)]));
     cards.replaceChildren(...this.cards.values());
-    // With keys one goes through the cards and hears each; a card that is pressed is the one wanted.
+    // Keys move through the cards and play each; pressing a card chooses it.
     cards.addEventListener("change", ({ target }) => choose(target.value));
     cards.addEventListener("click", (event) => event.detail && event.target.matches("input") && dialog.close());
     cards.addEventListener("keydown", (event) => {
@@ -20,7 +20,7 @@ export class Gallery {
     });
   }
 
-  // Show which is played, none of one's own.
+  // Mark the played case, none for the user's own.
   show(name) {
     draw(document.getElementById("instrument"), name);
     for (const [one, item] of this.cards) item.querySelector("input").checked = one === name;

@@ -1,5 +1,5 @@
-// Force, state and motion of the contact that is shown, as far back as pictures go.
-const KEPT = 1 << 15; // Points that are kept.
+// Force, state and motion of the displayed contact, as far back as the pictures show.
+const KEPT = 1 << 15; // Number of points kept.
 
 export class History {
   constructor() {
@@ -9,12 +9,12 @@ export class History {
     this.place = new Float64Array(KEPT);
     this.speed = new Float32Array(KEPT);
     this.count = 0;
-    this.begun = 0; // Where the stroke began.
+    this.begun = 0; // Start of the stroke.
   }
 
-  // Take over what was seen in a part.
+  // Add the points of a part.
   take({ clock, stroke, place, interval }, [force, state, moved, speed]) {
-    // A server that began anew counts its time from the start.
+    // A restarted server counts time from zero.
     if (clock < this.clock) this.count = this.begun = 0;
     const seen = force.length;
     for (let i = 0; i < seen; i++) {
@@ -30,7 +30,7 @@ export class History {
     this.stroke = stroke;
   }
 
-  // Points of the last seconds, not before one of them.
+  // Points of the last seconds, from a given one on.
   since(seconds, begun = 0) {
     const first = Math.max(begun, this.count - KEPT + 1, 0);
     const found = [];
@@ -42,7 +42,7 @@ export class History {
     return found.reverse();
   }
 
-  // The state now.
+  // The present state.
   get now() {
     return this.state[(this.count - 1) % KEPT];
   }

@@ -1,12 +1,12 @@
-// Systems that are no two beams: lines, points and what joins them, the tracks that they slide on, and all contacts.
-const VIBRATION = 0.06; // What is exaggerated, as a share of the picture's extent.
-const STILL = 1e-9; // Share of the extent below which nothing vibrates.
-const SMALLEST = 1e-3; // Extent of what has none [m].
-const GROUND = 0.3; // How far from a point the ground is to which a spring holds it, as a share of the extent.
-const BLOCK = 14; // Size of what stands for a point [px].
+// Systems other than two beams: lines, points, connections, tracks and all contacts.
+const VIBRATION = 0.06; // Size of the exaggerated vibration, as a fraction of the picture's extent.
+const STILL = 1e-9; // Fraction of the extent below which nothing vibrates.
+const SMALLEST = 1e-3; // Extent of a system without one [m].
+const GROUND = 0.3; // Distance of a point from the ground of its spring, as a fraction of the extent.
+const BLOCK = 14; // Size of the block drawn for a point [px].
 const MARGIN = 28;
 
-// Where everything is, for one frame, in metres: places to scale, and what departs from them.
+// Positions of one frame in metres: places to scale, and deviations from them.
 export function placed(scene, values) {
   let at = 0;
   return scene.lines.map(({ places, count }) => {
@@ -17,7 +17,7 @@ export function placed(scene, values) {
   });
 }
 
-// The box around what was seen of a system so far, and the largest departure now.
+// The box around the motion of a system so far, and the largest deviation now.
 export class Frame {
   constructor() {
     this.box = null;
@@ -39,7 +39,7 @@ export class Frame {
     this.box = [left, low, right, high];
     this.extent = Math.max(right - left, high - low, SMALLEST);
     const wanted = most > STILL * this.extent ? (VIBRATION * this.extent) / most : 0;
-    // Sooner smaller than larger: what is drawn never leaves the picture.
+    // Rounded down, so that nothing leaves the picture.
     const before = this.exaggeration;
     this.exaggeration = !before || !wanted || wanted < before ? wanted : before * Math.min(1.01, wanted / before);
     return this.exaggeration;
@@ -67,14 +67,14 @@ export function drawLines(draw, scene, lines, contacts, at, much, colours, state
   draw.strokeStyle = colours.soft;
   for (const { ends, along } of scene.joined) {
     const [one, other] = ends.map(([line, row]) => drawn[line].points[row]);
-    // What holds a point that touches another body would be drawn over what passes there.
+    // A support of a point on another body would be drawn over that body.
     if (!other && !scene.lines[ends[0][0]].slides) continue;
     const wall = wallOf(scene, ends[0], along, extent);
     if (other) {
       coil(draw, other, one);
       continue;
     }
-    // At half the height of the block that stands for a point.
+    // At half the height of the block of a point.
     const [x, y] = at(wall);
     coil(draw, [x, y - BLOCK / 2], [one[0], one[1] - BLOCK / 2]);
     path(draw, [-1, 1].map((s) => [x + s * BLOCK * along[1], y - BLOCK / 2 - s * BLOCK * along[0]]));
@@ -103,14 +103,14 @@ export function drawLines(draw, scene, lines, contacts, at, much, colours, state
   });
 }
 
-// Where a contact is marked: at the point that is touched, else at the tip that slides.
+// Position of the mark of a contact: the touched point, else the sliding tip.
 export function mark({ tip, touched }, lines, much) {
   const [line, row] = touched ?? tip;
   const { places, apart } = lines[line];
   return [places[row][0] + much * apart[row][0], places[row][1] + much * apart[row][1]];
 }
 
-// Where the ground is to which a spring holds a point.
+// Position of the ground of a spring.
 function wallOf(scene, [line, row], along, extent) {
   const [x, y] = scene.lines[line].places[row];
   return [x - GROUND * extent * along[0], y - GROUND * extent * along[1]];
@@ -124,7 +124,7 @@ function coil(draw, [x0, y0], [x1, y1]) {
   path(draw, [[x0, y0], ...turns.map(([t, side]) => [x0 + t * (x1 - x0) + side * nx, y0 + t * (y1 - y0) + side * ny]), [x1, y1]]);
 }
 
-// A surface that passes: a line with strokes that move along with it.
+// A moving surface: a line with strokes that move with it.
 function passing(draw, { normal, tangent, touched }, travel, [x, y], at, colours, extent) {
   const reach = touched ? 0.1 * extent : extent;
   const [gap, long] = [0.06 * extent, 0.02 * extent];
@@ -134,7 +134,7 @@ function passing(draw, { normal, tangent, touched }, travel, [x, y], at, colours
   draw.lineWidth = 1.5;
   path(draw, [point(-reach, 0), point(reach, 0)]);
   draw.lineWidth = 1;
-  // Where the surface is does not depend on where the tip is.
+  // The position of the surface does not depend on that of the tip.
   const along = touched ? travel : travel - (x * tangent[0] + y * tangent[1]);
   const first = Math.ceil((-reach - along) / gap) * gap + along;
   for (let s = first; s <= reach; s += gap) path(draw, [point(s, 0), point(s - long, long)]);

@@ -1,11 +1,11 @@
-// What was heard last, at true speed again and again: for what is computed slower than it sounds.
+// The last sound in a loop at true speed, for systems computed slower than real time.
 import { highPassed, joined } from "./samples.js";
 
 const RATE = 48000;
 const LONGEST = 4; // [s]
-const SHORTEST = 0.02; // What is shorter is no sound [s].
-const LED_OVER = 0.25; // At most this share of it is led over from its end to its beginning,
-const BLEND = 0.05; // and at most so much [s].
+const SHORTEST = 0.02; // Shortest sound [s].
+const LED_OVER = 0.25; // Largest fraction of the sound that is cross-faded from its end to its beginning,
+const BLEND = 0.05; // and largest duration of the cross-fade [s].
 const LOUDEST = 0.7; // 3 dB below full scale.
 
 export class Loop {
@@ -13,7 +13,7 @@ export class Loop {
     Object.assign(this, { onChange, parts: [], samples: 0, source: null });
   }
 
-  // Begin again: something else is played or heard.
+  // Discard the sound after a change of scenario or source.
   forget() {
     this.parts = [];
     this.samples = 0;
@@ -45,7 +45,7 @@ export class Loop {
     this.onChange();
   }
 
-  // Softer than the loudest it may be, never louder.
+  // The volume lowers the sound from the loudest allowed level.
   volume(decibels) {
     if (this.gain) this.gain.gain.value = 10 ** (Math.min(0, decibels) / 20);
   }
@@ -58,7 +58,7 @@ export class Loop {
   }
 }
 
-// Sound in one piece, without weight, as loud as can be, its end led over to its beginning.
+// The sound in one piece, without its mean, at full level, with its end cross-faded to its beginning.
 export function looped(parts) {
   const whole = highPassed(joined(parts), RATE);
   const over = Math.min(Math.round(BLEND * RATE), Math.floor(LED_OVER * whole.length));

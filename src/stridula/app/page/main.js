@@ -1,4 +1,4 @@
-// The page: what the server says is shown, what one does is said to the server.
+// The page: shows messages of the server, and sends it the actions of the user.
 import { short } from "./axes.js";
 import { Bow } from "./bow.js";
 import { Controls } from "./controls.js";
@@ -26,21 +26,21 @@ const sound = new Sound(stream, heard);
 const loop = new Loop(showLoop);
 const recorder = new Recorder(48000);
 const moves = new Map();
-const sent = new Map(); // Scenes that were not answered yet, by revision.
-const SLOW = 1.05; // Seconds played in one below which the sound would break, and
-const MARGIN = 1.1; // what is left to others then.
-const TOO_SLOW = 0.5; // What is slower is not computed for a map unless one asks.
-const PREPARES = 400; // A scene that takes longer to be played is being prepared [ms].
-const LOWEST = 20; // What is slower is no note [Hz].
-const LONGEST = 60000; // A scenario of one's own is at most so long [bytes].
-const LONG = 5; // Time of drawing from which every other frame is left out [ms].
+const sent = new Map(); // Scenes not answered yet, by revision.
+const SLOW = 1.05; // Seconds played per second below which the sound would have gaps,
+const MARGIN = 1.1; // and the margin left to other work then.
+const TOO_SLOW = 0.5; // Seconds played per second below which maps are computed only on request.
+const PREPARES = 400; // Time after which a scene is shown as being prepared [ms].
+const LOWEST = 20; // Lowest frequency of a note [Hz].
+const LONGEST = 60000; // Largest scenario accepted from the user [bytes].
+const LONG = 5; // Time of drawing above which every other frame is skipped [ms].
 const stats = { drawing: 0, revision: 0, played: 0, samples: 0, frames: 0, fps: 0, dropouts: 0, latency: null, latencies: [], connected: false, level: 0, peak: 0 };
 let hello, controls, map, bow, gallery, described, sources;
-let turned = "null"; // What the controls were built of, beyond two beams.
-let slowest = 1; // How many seconds one second takes where that is slower than sound.
+let turned = "null"; // The controls shown, if not those of two beams.
+let slowest = 1; // Seconds needed to play one second, 1 if it keeps up with the sound.
 let revision = 0;
-let begun = 0; // The revision at which what is played began.
-let heardLast; // What was listened to when the last part was made.
+let begun = 0; // The revision at which the motion began.
+let heardLast; // Source of the last part.
 let mode = "live";
 let skipped = false;
 let badLink = false;
@@ -66,7 +66,7 @@ function told(message) {
     theory: () => theory(message),
     now: () => message.revision >= begun && goesOn(message),
     speed: () => {
-      // As the machine is busy now: only what is clearly another speed changes how fast it is shown.
+      // The load of the machine varies: only a clearly different speed changes the pace.
       const needed = paceOf(message.speed);
       if (needed > 1.1 * slowest || needed < 0.8 * slowest) keepUp(message.speed);
     },
@@ -121,7 +121,7 @@ function changed() {
   send();
 }
 
-// Let address bar and buttons follow what is to be played.
+// Update the address bar and buttons to the scene.
 function note() {
   clearTimeout(note.timer);
   note.timer = setTimeout(async () => history.replaceState(null, "", await scene.link()), 150);
@@ -132,11 +132,11 @@ function note() {
 
 function shown(message) {
   answered(message.revision);
-  // Of bodies that are drawn already nothing is said again.
+  // Bodies already drawn are not sent again.
   if (message.drawn && !message.surfaces) for (const name of ["surfaces", "touches", "up"]) message[name] = described[name];
   described = message;
   stats.revision = message.revision;
-  // What is played in place of a link that cannot be read does not take its message away.
+  // The scene played in place of an unreadable link does not remove its message.
   $("problem").hidden = !badLink;
   badLink = false;
   if (!message.goes_on) {
@@ -161,10 +161,10 @@ function shown(message) {
   bow.follow();
   showCase(message);
   showToml();
-  write("numbers", `${message.modes} modes, ${message.steps} steps of ${short(1e6 * message.step)} µs a sample${message.longer ? ", twice as long as usual, to keep up with the sound" : ""}. `);
+  write("numbers", `${message.modes} modes, ${message.steps} steps of ${short(1e6 * message.step)} µs per sample${message.longer ? ", twice as long as usual, to keep up with the sound" : ""}. `);
 }
 
-// Systems have controls of their own.
+// Systems have their own controls.
 function build(wanted) {
   const told = JSON.stringify(wanted);
   if (told === turned) return;
@@ -172,7 +172,7 @@ function build(wanted) {
   controls.build(wanted ?? hello);
 }
 
-// What can be heard of a system.
+// Sources of a system.
 function offer({ sources: offered, source }) {
   if (JSON.stringify(offered) === JSON.stringify(sources)) return;
   sources = offered;
@@ -181,7 +181,7 @@ function offer({ sources: offered, source }) {
   showSource();
 }
 
-// What goes on now, in words, and the note of it.
+// The present motion as text, and its note.
 function goesOn({ words, regime, frequency }) {
   write("now", words);
   write("note", ["squeal", "stick-slip"].includes(regime) && frequency >= LOWEST ? reading(frequency, pictures.modes) : "");
@@ -193,7 +193,7 @@ function paceOf(speed) {
   return needed < 10 ? Math.ceil(10 * needed) / 10 : Math.ceil(needed);
 }
 
-// What is computed slower than it sounds is played as fast as it can be, and that is said.
+// Systems slower than real time are played as fast as possible, with a notice.
 function keepUp(speed) {
   const needed = paceOf(speed);
   const own = [...$("speed").options].find((one) => one.dataset.own);
@@ -203,21 +203,21 @@ function keepUp(speed) {
   slowest = needed;
   if (needed === 1) loop.stop();
   if (needed > 1) {
-    const option = new Option(`Slow, 1 : ${needed}, as fast as it can`, String(needed));
+    const option = new Option(`Slow, 1 : ${needed}, as fast as possible`, String(needed));
     option.dataset.own = "1";
     $("speed").append(option);
     option.selected = $("speed").value === "1" || wasSlow;
   } else if (wasSlow) $("speed").value = "1";
-  $("pace").textContent = needed > 1 ? `It is shown ${needed} times slower than it sounds, as fast as this machine can, and without sound.` : "";
+  $("pace").textContent = needed > 1 ? `Shown ${needed} times slower than real time, as fast as this machine can, and without sound.` : "";
   pace();
   showLoop();
 }
 
-// What is slow is heard at true speed when one asks, over and over.
+// On request, slow systems are heard at true speed in a loop.
 function showLoop() {
   $("loop").hidden = slowest === 1;
   $("loop").setAttribute("aria-pressed", String(Boolean(loop.source)));
-  $("loop").textContent = loop.source ? "Stop the loop" : "Loop what was heard";
+  $("loop").textContent = loop.source ? "Stop the loop" : "Loop the last sound";
   write("loop-words", slowest > 1 && loop.source ? `The last ${short(1000 * loop.seconds)} ms, at true speed.` : "");
 }
 
@@ -232,7 +232,7 @@ function showCase(message) {
   $("case-words").title = $("case-words").textContent;
 }
 
-// What was refused goes back to what is played; why it was is said beside its control, or above all where there is none.
+// Refused values return to those played; the reason is shown beside the control, or at the top if there is none.
 function putBack({ revision: number, refused, kept }) {
   const asked = sent.get(number);
   for (const one of [...sent.keys()]) if (one <= number) sent.delete(one);
@@ -243,12 +243,12 @@ function putBack({ revision: number, refused, kept }) {
   note();
 }
 
-// Write where something changed: what is written is laid out again.
+// Write only changes, since writing causes a new layout.
 function write(id, text) {
   if ($(id).textContent !== text) $(id).textContent = text;
 }
 
-// The text is long: it is written where it is seen.
+// The text is long, so it is written only if visible.
 function showToml() {
   if (!$("scenario").open || !described || document.activeElement === $("toml")) return;
   $("toml").value = `# ${scene.command()}\n${described.toml}`;
@@ -267,18 +267,18 @@ function problem(lines) {
 
 function stroke({ why, goes_on: goesOn }) {
   $("stroke").textContent = `Last stroke: ${why}.`;
-  if (!goesOn) problem([`The stroke has ended: ${why}. Press New stroke, switch Stroke again on, or change something.`]);
+  if (!goesOn) problem([`The stroke has ended: ${why}. Press New stroke, switch Repeat strokes on, or change a setting.`]);
 }
 
 function theory({ equilibrium, modes }) {
   pictures.modes = modes;
-  const words = { sliding: "it slides steadily", held: "friction can hold the tip", "lifted off": "it lifts off", jammed: "it jams: it neither slides on nor opens" };
+  const words = { sliding: "it slides steadily", held: "friction can hold the tip", "lifted off": "it lifts off", jammed: "it jams: it neither slides nor opens" };
   const growing = modes.map(({ frequency, growth_rate: growth }) => `${short(frequency)} Hz (growth ${short(growth)} 1/s)`).join(", ");
   $("theory").textContent = `Linear theory: ${words[equilibrium] ?? equilibrium}; ${growing ? `vibrations grow at ${growing}.` : "no vibration grows."}`;
 }
 
 function came({ parts: data, heard: listened }) {
-  // What was asked for before something else was listened to came as it was.
+  // Parts requested before a change of the source still have the old one.
   if (listened.name !== heardLast) pictures.spectrogram.clear();
   heardLast = listened.name;
   for (const part of parts(data)) {
@@ -294,11 +294,11 @@ function came({ parts: data, heard: listened }) {
 
 function lost({ code, reason }) {
   stats.connected = false;
-  $("lost").textContent = code === 4429 ? `No room: ${reason}. This page tries again every 5 s.` : code === 4403 ? `Refused: ${reason}.` : "Connection lost. This page comes back by itself when the server does.";
+  $("lost").textContent = code === 4429 ? `No room: ${reason}. This page tries again every 5 s.` : code === 4403 ? `Refused: ${reason}.` : "Connection lost. This page reconnects when the server is back.";
   $("lost").hidden = false;
 }
 
-// What the player says: meters, drop-outs, and when a change was heard first.
+// Messages of the player: meters, drop-outs, and the first sound of a change.
 function heard(data) {
   if ("revision" in data && moves.has(data.revision)) {
     stats.latency = performance.now() - moves.get(data.revision) + 1000 * sound.late;
@@ -325,7 +325,7 @@ function heard(data) {
   $("scale-out").textContent = `full scale ${Number((fullScale / factor).toPrecision(2))} ${unit}`;
 }
 
-// Why nothing is to be heard, nothing if something is.
+// Why there is no sound, an empty text if there is.
 function silence() {
   if (!sound.on) return "muted";
   if (mode === "paused") return "silent while paused";
@@ -360,7 +360,7 @@ function listen() {
 function pace() {
   const slow = Number($("speed").value);
   pictures.pace(slow);
-  // Nobody sees or hears a page in the background that is muted.
+  // A muted page in the background rests.
   const rests = mode === "paused" || (document.hidden && !sound.on);
   stream.postMessage({ pace: { mode: rests ? "paused" : slow === 1 ? "live" : "slow", slow, own: Boolean($("speed").selectedOptions[0].dataset.own) } });
   if (mode === "paused" || slow !== 1) sound.flush();
@@ -372,7 +372,7 @@ function pace() {
 
 function draw() {
   requestAnimationFrame(draw);
-  // Where drawing takes long, every other frame of the screen leaves room for the sound.
+  // If drawing is slow, every other frame is skipped to leave time for the sound.
   skipped = !skipped && stats.drawing > LONG;
   if (skipped) return;
   const began = performance.now();
@@ -382,7 +382,7 @@ function draw() {
   stats.drawing += 0.05 * (performance.now() - began - stats.drawing);
 }
 
-// Begin to record, or end it and offer what was.
+// Begin to record, or end and offer the recording.
 function record() {
   const begins = !recorder.on;
   $("record").setAttribute("aria-pressed", String(begins));
@@ -449,13 +449,13 @@ async function readLink() {
   try {
     return await scene.read(location.hash);
   } catch {
-    problem(["The link cannot be read: it must be one that Copy link made."]);
+    problem(["The link cannot be read: it must be a link made by Copy link."]);
     badLink = !described;
     return false;
   }
 }
 
-// Play a scenario of one's own, unless it is longer than the server takes.
+// Play a scenario of the user, unless it is longer than the server accepts.
 async function playOwn(file, name) {
   if (file.size > LONGEST) problem([`scenario must be at most ${LONGEST / 1000} kB, got ${name} of ${Math.ceil(file.size / 1000)} kB`]);
   else scene.set({ case: "", text: await file.text(), overrides: {} });
@@ -475,7 +475,7 @@ $("link").addEventListener("click", async () => {
 $("share").hidden = !navigator.share;
 $("share").addEventListener("click", async () => {
   history.replaceState(null, "", await scene.link());
-  // Who closes the list of ways to share has changed their mind.
+  // Closing the dialog is not an error.
   await navigator.share({ title: document.title, text: $("now").textContent, url: location.href }).catch(() => {});
 });
 for (const name of ["A", "B"]) $(`slot-${name.toLowerCase()}`).addEventListener("click", () => slots.go(name));
@@ -512,7 +512,7 @@ $("sound").addEventListener("click", async () => {
 $("loop").addEventListener("click", () => {
   if (loop.source) loop.stop();
   else if (loop.isLongEnough) loop.play(Number($("volume").value));
-  else write("loop-words", "Nothing long enough to be heard was computed yet.");
+  else write("loop-words", "The sound computed so far is too short to play.");
 });
 $("source").addEventListener("change", listenTo);
 $("volume").addEventListener("input", listen);
@@ -559,7 +559,7 @@ async function copied(text, what) {
   }
 }
 
-// Words beside the pictures change slowly enough to be read.
+// Texts beside the pictures change slowly enough to be read.
 setInterval(() => {
   if (pictures.much === undefined) return;
   const shares = pictures.shares.map((share, i) => `${STATES[i]} ${Math.round(100 * share)} %`);

@@ -1,11 +1,11 @@
-// The map of regimes around what is played, and the cross-hair that goes there.
+// The map of regimes around the played scenario, and its cross-hair.
 import { si } from "./controls.js";
 import { paintAxes } from "./axes.js";
 
 const POINTS = 16;
-const HELD = 5000; // Time without a drop-out after which a map that was held back goes on [ms].
+const HELD = 5000; // Time without a drop-out after which a suspended map continues [ms].
 const QUIET = 700; // Time without a change after which a map is computed [ms].
-// What tells regimes apart without colours.
+// Signs that distinguish regimes without colours.
 const SIGNS = { "stable sliding": "", sticking: "–", "stick-slip": "/", squeal: "~", judder: "×", "off the track": "·" };
 
 export class RegimeMap {
@@ -45,7 +45,7 @@ export class RegimeMap {
     );
   }
 
-  // Follow a scenario: what can be varied, and a new map if anything but the cross-hair moved.
+  // Update to a scenario: the keys to vary, and a new map unless only the cross-hair moved.
   follow(at_once = false) {
     const numbers = this.controls.numbers();
     this.#offer(this.x, numbers, "contact.friction.coefficient", 0);
@@ -57,7 +57,7 @@ export class RegimeMap {
     if (wanted === this.known) return;
     this.known = wanted;
     this.cells.clear();
-    this.words.textContent = this.slow && !this.on.checked ? "not computed by itself: this system takes long" : "";
+    this.words.textContent = this.slow && !this.on.checked ? "computed only on request: this system is slow" : "";
     this.say({ type: "no map" });
     clearTimeout(this.timer);
     this.pending = null;
@@ -65,19 +65,19 @@ export class RegimeMap {
     this.timer = setTimeout(() => this.#ask(a, b), at_once ? 0 : QUIET);
   }
 
-  // What is slow is not computed hundreds of times unless one asks for it.
+  // Slow systems are not computed hundreds of times except on request.
   rest(slow) {
     if (slow === Boolean(this.slow)) return;
     this.slow = slow;
     this.on.checked = !slow;
   }
 
-  // Make room for the sound: a map that is being computed waits.
+  // Suspend the computation of a map in favour of the sound.
   hold() {
     if (!this.pending) return;
     const [a, b] = this.pending;
     this.say({ type: "no map" });
-    this.words.textContent = "waits: the sound comes first";
+    this.words.textContent = "suspended in favour of the sound";
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.#ask(a, b), HELD);
   }
@@ -90,7 +90,7 @@ export class RegimeMap {
     const control = this.controls.numbers().find((one) => one.key === this[name].value);
     if (!control) return null;
     const value = this.controls.values[control.key] / control.scale;
-    // Of both senses the one that is played.
+    // The sense of motion that is played.
     const [low, high] = control.low < 0 ? (value < 0 ? [control.low, 0] : [0, control.high]) : [control.low, control.high];
     return { key: control.key, control, low: Math.min(low, value), high: Math.max(high, value) };
   }
@@ -157,7 +157,7 @@ export class RegimeMap {
     const scale = Math.min(2, window.devicePixelRatio || 1);
     const { clientWidth, clientHeight } = this.canvas;
     const sides = [this.side("x"), this.side("y")];
-    // It is drawn again where something of it changed.
+    // Redrawn after a change.
     const shown = JSON.stringify([clientWidth, clientHeight, scale, colours.line, this.cells.size, this.known, sides, this.controls.values]);
     if (shown === this.shown) return;
     this.shown = shown;

@@ -1,30 +1,30 @@
-// What a frequency is as a note, and which of the modes that grow in theory it may be.
+// The note of a frequency, and the growing mode of linear theory it may belong to.
 const NAMES = ["C", "C♯", "D", "D♯", "E", "F", "F♯", "G", "G♯", "A", "A♯", "B"];
 const A4 = 440; // [Hz]
-const A4_KEY = 69; // Its number as MIDI counts keys.
-const NEAR = 0.05; // A tone belongs to a mode at most so far away, relative to the mode.
+const A4_KEY = 69; // Its MIDI number.
+const NEAR = 0.05; // Largest distance of a tone from its mode, relative to the mode.
 
-// The nearest note of equal temperament, with the number of its octave, and how far above it the frequency is.
+// The nearest note of equal temperament with its octave, and the deviation of the frequency from it.
 export function noteOf(frequency) {
   const key = A4_KEY + 12 * Math.log2(frequency / A4);
   const nearest = Math.round(key);
   return { name: `${NAMES[((nearest % 12) + 12) % 12]}${Math.floor(nearest / 12) - 1}`, cents: Math.round(100 * (key - nearest)) };
 }
 
-// The mode whose frequency is nearest, null where none is near.
+// The mode of nearest frequency, null if none is near.
 export function modeOf(frequency, modes) {
   const away = (mode) => Math.abs(frequency / mode.frequency - 1);
   const nearest = modes.reduce((best, mode) => (best === null || away(mode) < away(best) ? mode : best), null);
   return nearest !== null && away(nearest) <= NEAR ? nearest : null;
 }
 
-// Both in words, nothing where there is no tone.
+// Note and mode as text, empty without a tone.
 export function reading(frequency, modes) {
   if (!(frequency > 0)) return "";
   const { name, cents } = noteOf(frequency);
   const off = cents === 0 ? "" : ` ${cents > 0 ? "+" : "−"}${Math.abs(cents)} cents`;
   const mode = modeOf(frequency, modes);
-  return `${name}${off}${mode ? `, near the mode that grows at ${pitch(mode.frequency)}` : ""}`;
+  return `${name}${off}${mode ? `, near the growing mode at ${pitch(mode.frequency)}` : ""}`;
 }
 
 function pitch(frequency) {

@@ -1,14 +1,14 @@
-// The eye: it goes round what is seen, by mouse, finger and keys.
+// The viewpoint, which moves around the bodies by mouse, finger and keys.
 import { cross, dot, unit } from "./surfaces.js";
 
 const ELEVATION = Math.PI / 6;
 const AZIMUTH = (7 * Math.PI) / 36;
-const STEP = Math.PI / 36; // Of an arrow key [rad].
+const STEP = Math.PI / 36; // Step of an arrow key [rad].
 const STEEPEST = Math.PI / 2 - 0.01;
 const ZOOM = 1.15;
 const [NEAREST, FARTHEST] = [0.15, 4];
-const PASSES = 4; // In which all that is seen comes to the middle.
-const DRAG = 0.008; // For a pixel [rad].
+const PASSES = 4; // Iterations that centre the bodies.
+const DRAG = 0.008; // Angle per pixel [rad].
 
 export class Orbit {
   constructor(canvas, onMove) {
@@ -28,12 +28,12 @@ export class Orbit {
     this.onMove?.();
   }
 
-  // Directions to the right, up and to the eye as it begins, for what is up in the world,
+  // Initial directions to the right, up and to the eye, for the upward direction of the world,
   start(up) {
     return axesAt(up, AZIMUTH, ELEVATION);
   }
 
-  // and as it is.
+  // and present ones.
   axes(up) {
     return axesAt(up, this.azimuth, this.elevation);
   }
@@ -65,7 +65,7 @@ export class Orbit {
     does();
   }
 
-  // The page scrolls on unless one looks at the picture.
+  // The page scrolls unless the picture has the focus.
   #wheel(event) {
     if (document.activeElement !== this.canvas) return;
     event.preventDefault();
@@ -103,7 +103,7 @@ function axesAt(up, azimuth, elevation) {
   return { right, up: cross(eye, right), eye };
 }
 
-// How far the eye is from the middle of places so that all of them are in sight, and the middle, for what is near is larger.
+// Distance of the eye from the centre of places so that all are in sight, and that centre, in perspective.
 export function fitted(places, start, axes, views) {
   let [middle, far] = [start, 0];
   for (let pass = 0; pass < PASSES; pass++) {
@@ -125,7 +125,7 @@ function distanceTo(places, middle, { right, up, eye }, [across, upwards]) {
   return far;
 }
 
-// Lowest and highest slope at which places are seen.
+// Lowest and highest slope of the lines of sight to places.
 function endsOf(places, middle, { up, eye }, far) {
   let [low, high] = [Infinity, -Infinity];
   for (let k = 0; k < places.length; k += 3) {

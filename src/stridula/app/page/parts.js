@@ -1,4 +1,4 @@
-// How parts lie in what the server sends: see `packed` on its side.
+// Format of the parts sent by the server: see `packed` on its side.
 const HEAD = 72;
 
 // Yield the head of each part and the values that follow it.

@@ -2,8 +2,8 @@
 import { inWords, Layer, paintAxes, roof } from "./axes.js";
 
 const PORTRAIT = 0.06; // Time shown live [s]
-const SHORTEST = 4e-4; // and at least.
-const SHRINK = 0.97; // How fast the axes come down, for each picture.
+const SHORTEST = 4e-4; // and shortest time.
+const SHRINK = 0.97; // Factor by which the axes shrink per picture.
 const DEEP_YELLOW = "#8a7f00"; // Sliding on a light ground.
 const [STICKING, SLIDING] = [1, 2];
 const [LEFT, RIGHT, ABOVE, BELOW] = [58, 12, 6, 32];
@@ -16,7 +16,7 @@ export class Phase {
   draw([draw, width, height], history, slow, colours, states, dark) {
     const points = history.since(slow === 1 ? PORTRAIT : Math.max(PORTRAIT / slow, SHORTEST), history.begun);
     if (points.length < 2) return;
-    // Travel at the mean velocity is no vibration.
+    // Travel at the mean velocity does not count as vibration.
     const [first, last] = [points[0], points.at(-1)];
     const drift = (history.place[last] - history.place[first]) / Math.max(1e-9, history.time[last] - history.time[first]);
     const across = points.map((k) => history.place[k] - drift * (history.time[k] - history.time[first]));
@@ -35,7 +35,7 @@ export class Phase {
         x: { low: -half * scale, high: half * scale, title: `displacement [${unit}]` },
         y: { low: -most * speed, high: most * speed, title: `velocity [${per}]` },
       };
-      // Nothing can be read off axes on which nothing moves.
+      // Axes without motion are not shown.
       if (!sticks) paintAxes(paint, box, sides, colours);
       else inWords(paint, box, ["The tip sticks:", "it does not move", "along the track."], colours);
     });

@@ -1,4 +1,4 @@
-// The pictures: what has come since the last one, drawn once for each frame of the screen.
+// The pictures, drawn once per frame from the parts received since the last one.
 import { rounded, short } from "./axes.js";
 import { History } from "./history.js";
 import { drawLines, Frame, placed } from "./lines.js";
@@ -9,7 +9,7 @@ import { path, Timeline, WINDOW } from "./timeline.js";
 const RATE = 48000;
 export const STATES = ["separated", "sticking", "sliding"];
 
-// Where a word beside the tip begins: on the side to which the slider does not lean, or below where there is no room.
+// Position of a text beside the tip: on the side away from the slider, or below if there is no space.
 export function besideTip(x, y, lean, word, width) {
   const left = lean > 0 ? x - 14 - word : x + 14;
   if (left >= 4 && left + word <= width - 4) return [left, y - 14];
@@ -38,7 +38,7 @@ export class Pictures {
     this.spectrogram.repaint();
   }
 
-  // Take over a part.
+  // Add a part.
   take({ head, values }) {
     const [, clock, stroke, samples, seen, nodes, points, contacts, place] = head;
     let at = 0;
@@ -52,7 +52,7 @@ export class Pictures {
   }
 
   describe(scene) {
-    // Another system begins another picture.
+    // A new system starts a new picture.
     const known = JSON.stringify([scene.lines, scene.track, scene.drawn]);
     if (known !== this.known) this.frame = new Frame();
     if (this.scene && drawnAs(scene) !== drawnAs(this.scene)) this.shapes = null;
@@ -63,7 +63,7 @@ export class Pictures {
     this.space.describe(scene);
   }
 
-  // Begin anew: nothing of what was played is shown of what is.
+  // Clear the pictures for a new motion.
   clear() {
     this.modes = [];
     this.spectrogram.clear();
@@ -126,7 +126,7 @@ export class Pictures {
     for (const value of track) most = Math.max(most, Math.abs(value));
     for (const value of slider) most = Math.max(most, Math.abs(value));
     const wanted = (0.06 * beam.length) / most;
-    // Sooner smaller than larger: what is drawn never leaves the picture.
+    // Rounded down, so that nothing leaves the picture.
     this.exaggeration = this.exaggeration === 0 || wanted < this.exaggeration ? wanted : this.exaggeration * Math.min(1.01, wanted / this.exaggeration);
     const much = rounded(this.exaggeration);
     const at = (x, y) => [x0 + scale * x, y0 - scale * y];
@@ -181,12 +181,12 @@ export class Pictures {
     draw.fillText(`stroke ${this.history.stroke}, ${short(1000 * this.frame.extent)} mm across`, 8, height - 6);
   }
 
-  // Frequency of the strongest tone of what was heard last [Hz], null where there is none or too little was heard.
+  // Frequency of the strongest tone of the last sound [Hz], null if there is none or too little sound.
   get tone() {
     return this.spectrogram.tone;
   }
 
-  // Hear it, and how loud it is.
+  // Update the spectrogram and the level.
   #hear(sound) {
     this.spectrogram.hear(sound);
     let [sum, mean] = [0, 0];
@@ -196,10 +196,10 @@ export class Pictures {
   }
 }
 
-// How bodies are drawn: in space, as lines, or as two beams.
+// Drawing of the bodies: in space, as lines, or as two beams.
 const drawnAs = ({ drawn, lines }) => (drawn ? "space" : lines ? "lines" : "beams");
 
-// Numbers that a part has of the lines of a system.
+// Number of values in a part for the lines of a system.
 function expected({ lines }) {
   return lines.reduce((sum, { places }) => sum + 2 * (places.length + 1), 0);
 }

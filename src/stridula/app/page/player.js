@@ -1,17 +1,17 @@
-// What sounds: a queue of samples, a high-pass, a volume and a limiter; in the thread of the sound where there is one.
+// The player: a queue of samples, a high-pass, a volume and a limiter, in the audio thread if available.
 const CEILING = 0.7; // Never louder than 3 dB below full scale.
-const AHEAD = 0.003; // The limiter sees loud samples so much earlier than they sound [s].
-const RELEASE = 0.15; // It lets go over so much [s].
-const LOWEST = 20; // What is slower cannot be heard [Hz].
-const FADE = 0.005; // Sound goes and comes over so much where samples are missing [s].
-const SPAN = 0.25; // A level is that of the largest sample in so many spans of time [s].
+const AHEAD = 0.003; // Look-ahead of the limiter [s].
+const RELEASE = 0.15; // Release time of the limiter [s].
+const LOWEST = 20; // Cutoff of the high-pass [Hz].
+const FADE = 0.005; // Fade time around missing samples [s].
+const SPAN = 0.25; // The level is that of the largest sample in several spans of this time [s].
 const SPANS = 16;
-const RISE = 1; // It rises over so much, and falls faster [s].
+const RISE = 1; // Rise time of the gain, which falls faster [s].
 const FALL = 0.02;
-const MOST = 30; // It amplifies at most so much.
-const FAINT = 1e-6; // What is fainter is silence, in which it stays.
+const MOST = 30; // Largest gain.
+const FAINT = 1e-6; // Fainter sound is silence, during which the gain stays constant.
 
-// A level that follows slowly what is heard: it peaks where the limiter begins, which rests.
+// An automatic level that follows the sound slowly, with peaks just below the limiter.
 class Level {
   constructor(sampleRate) {
     this.on = true;
@@ -23,7 +23,7 @@ class Level {
     this.fall = 1 - Math.exp(-1 / (FALL * sampleRate));
   }
 
-  // Hear a sample and return how much it is to be amplified.
+  // Add a sample and return its gain.
   heard(value) {
     const size = Math.abs(value);
     if (size > this.largest[this.at]) {
@@ -90,7 +90,7 @@ export class Voice {
     for (const value of sound) this.queue[this.written++ & this.mask] = value;
   }
 
-  // Fill a block with what sounds next.
+  // Fill a block with the next samples.
   fill(out) {
     const step = 1 / (FADE * this.sampleRate);
     if (!this.runs && this.written - this.read >= this.needed && this.written > this.read) this.runs = true;
@@ -108,7 +108,7 @@ export class Voice {
         value = this.last ?? 0;
         this.fade = Math.max(0, this.fade - step);
       }
-      // A high-pass takes the weight of the slider away.
+      // A high-pass removes the mean force.
       this.low = this.keep * (this.low + value - this.before);
       this.before = value;
       this.volume += 0.002 * (this.wanted - this.volume);

@@ -1,15 +1,15 @@
-// How much sound is kept ahead: more while drop-outs go on, and less again after a while without one.
+// Length of the queued sound: longer while drop-outs continue, shorter again after a time without one.
 const LEAST = 0.08; // [s]
 const MOST = 0.3; // [s]
-const MORE = 0.02; // How much more after a drop-out [s].
-const LESS = 0.005; // How much less after each calm while [s].
+const MORE = 0.02; // Increase after a drop-out [s].
+const LESS = 0.005; // Decrease after each calm period [s].
 const CALM = 20000; // [ms]
 const RECENT = 10000; // [ms]
 
 export class Queue {
   constructor() {
     this.length = LEAST;
-    this.last = -Infinity; // When the last drop-out was, or something was let go after it [ms].
+    this.last = -Infinity; // Time of the last drop-out or the last decrease after it [ms].
     this.dropped = -Infinity;
   }
 
@@ -18,7 +18,7 @@ export class Queue {
     this.last = this.dropped = now;
   }
 
-  // Let go of what is no longer needed.
+  // Shorten the queue if possible.
   rest(now) {
     while (this.length > LEAST && now - this.last >= CALM) {
       this.length = Math.max(LEAST, this.length - LESS);
@@ -26,7 +26,7 @@ export class Queue {
     }
   }
 
-  // Whether the longest queue is not long enough.
+  // Whether even the longest queue is too short.
   isBehind(now) {
     return this.length > MOST - 2 * LESS && now - this.dropped < RECENT;
   }

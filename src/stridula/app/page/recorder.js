@@ -1,4 +1,4 @@
-// What sounds, kept from press to press, and as a WAV file.
+// Recording of the sound as a WAV file.
 import { highPassed, joined } from "./samples.js";
 
 const LONGEST = 60; // [s]
@@ -15,7 +15,7 @@ export class Recorder {
     return this.blocks !== null;
   }
 
-  // How much was kept [s].
+  // Recorded time [s].
   get seconds() {
     return this.kept / this.rate;
   }
@@ -24,7 +24,7 @@ export class Recorder {
     Object.assign(this, { blocks: [], kept: 0, sources: new Map() });
   }
 
-  // Keep a part, which times its scale is what sounds; returns whether there is room for more. Its unit is that of what is heard.
+  // Keep a part, to be multiplied by its scale, in the unit of its source; return whether there is room for more.
   take(sound, { scale, unit }) {
     const part = sound.slice(0, LONGEST * this.rate - this.kept);
     this.sources.set(`${scale} ${unit}`, { scale, unit });
@@ -33,7 +33,7 @@ export class Recorder {
     return this.kept < LONGEST * this.rate;
   }
 
-  // Return the bytes of a WAV file, null where nothing was kept.
+  // Return the bytes of a WAV file, null if nothing was recorded.
   end() {
     const { blocks, sources } = this;
     this.blocks = null;
@@ -41,7 +41,7 @@ export class Recorder {
     const sound = highPassed(joined(blocks), this.rate);
     const largest = sound.reduce((most, value) => Math.max(most, Math.abs(value)), 0) / HEADROOM || 1;
     const [{ scale, unit }] = sources.values();
-    // Of several sources full scale is no one value.
+    // Several sources have no common full scale.
     const full = sources.size === 1 ? `full scale is ${Number((largest / scale).toPrecision(6))} ${unit}` : "several sources";
     return wav(sound, largest, this.rate, `stridula: recorded on the page, ${full}`);
   }

@@ -1,7 +1,7 @@
-// Sound as numbers: pieces in one, and without what cannot be heard.
-const LOWEST = 20; // What is slower cannot be heard [Hz].
+// Sound as numbers: joined pieces, and a high-pass.
+const LOWEST = 20; // Cutoff of the high-pass [Hz].
 
-// Pieces one after the other.
+// Pieces joined in sequence.
 export function joined(parts) {
   const found = new Float32Array(parts.reduce((sum, { length }) => sum + length, 0));
   let at = 0;
@@ -12,7 +12,7 @@ export function joined(parts) {
   return found;
 }
 
-// A high-pass as the player has it.
+// The high-pass of the player.
 export function highPassed(sound, rate) {
   const keep = Math.exp((-2 * Math.PI * LOWEST) / rate);
   let [low, before] = [0, sound[0]];

@@ -1,17 +1,17 @@
-// What is played, as the address bar holds it: a case or a text, and values by key. Undo goes back through them.
+// The scene as stored in the address bar: a case or a text, and values by key, with undo.
 const KEEP = 100;
 
 export class Scene {
-  // Before something else is played, onLeave lets go of what is on the way.
+  // Before another scene is played, onLeave ends movements in progress.
   constructor(onChange, onLeave = () => {}) {
     Object.assign(this, { onChange, onLeave });
     this.now = { case: "squeal", text: null, overrides: {} };
     this.past = [];
     this.future = [];
-    this.places = {}; // Keys that a key with a * means.
+    this.places = {}; // Keys for which a key with a * stands.
   }
 
-  // Change what is played; a movement that goes on is one step of undo.
+  // Change the scene; a continuous movement is one step of undo.
   set(next, goesOn = false) {
     if (!goesOn) {
       this.onLeave();
@@ -27,7 +27,7 @@ export class Scene {
     this.set({ overrides: { ...this.now.overrides, ...some } }, goesOn);
   }
 
-  // Put back what was refused of what was sent, unless it was turned again since.
+  // Restore refused values, unless they were changed again since.
   putBack(sent, refused, kept) {
     if ("" in refused) {
       if (sent.case === this.now.case && sent.text === this.now.text) this.now = { ...structuredClone(kept), case: kept.text === null ? kept.case : "" };
@@ -42,7 +42,7 @@ export class Scene {
     this.now = { ...this.now, overrides };
   }
 
-  // Another kind of table: what belonged to the old one goes.
+  // A table of another kind: values of the old kind are removed.
   kind(key, value, begins) {
     this.onLeave();
     const table = key.slice(0, key.lastIndexOf(".") + 1);
@@ -50,7 +50,7 @@ export class Scene {
     this.set({ overrides: { ...Object.fromEntries(kept), [key]: value, ...begins } });
   }
 
-  // What is played with the way back and the way on, to be taken up again.
+  // The scene with its undo and redo steps, to be restored later.
   get whole() {
     return structuredClone({ now: this.now, past: this.past, future: this.future });
   }
@@ -93,7 +93,7 @@ export class Scene {
     return this.future.length > 0;
   }
 
-  // The command line that runs the same.
+  // The command that runs the same scenario.
   command() {
     const words = Object.entries(this.now.overrides).flatMap(([key, value]) => (this.places[key] ?? [key]).map((one) => `--set ${quoted(`${one}=${value}`)}`));
     return ["stridula run", this.now.text === null ? this.now.case : "scenario.toml", ...words].join(" ");
@@ -107,7 +107,7 @@ export class Scene {
     return `#${words}`;
   }
 
-  // Take over what a link says; anything that it does not say is as the case has it.
+  // Read a link; values that it lacks are those of the case.
   async read(hash) {
     const words = new URLSearchParams(hash.replace(/^#/, ""));
     if (![...words].length) return false;

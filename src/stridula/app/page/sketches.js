@@ -1,5 +1,5 @@
-// What an instrument looks like, drawn by hand with a few strokes on a ground of 64 by 40; by the name of its case.
-// `tip` is what rubs, `heard` what one hears or how it moves.
+// Sketches of instruments, a few strokes on a ground of 64 by 40, by the name of their case.
+// `tip` is the rubbing part, `heard` the sound or the motion.
 const CHALK = {
   like: "chalk on a board",
   paths: [["", "M5 5h54v26H5z M5 34h54"], ["tip", "M30 20l9-11 3.5 2.8-9 11z"], ["heard", "M12 24q4-3 8 0t8-1.5"]],
@@ -88,7 +88,7 @@ const KNOWN = {
   "pin-on-disc": PIN,
 };
 
-// The sketch of a case, a plain one of those that have none.
+// The sketch of a case, a plain one for cases without.
 export function sketchOf(name) {
   return Object.hasOwn(KNOWN, name) ? KNOWN[name] : PLAIN;
 }

@@ -1,12 +1,12 @@
-// Two settings to switch between, A and B: each keeps what it plays and its own way back.
+// Two settings to switch between, A and B, each with its own scene and undo.
 export class Slots {
   constructor(scene) {
     this.scene = scene;
     this.heard = "A";
-    this.other = null; // The setting that is not heard, once there is one.
+    this.other = null; // The setting that is not playing, once there is one.
   }
 
-  // Hear one of them: the second begins as a copy of the first.
+  // Play one of them; the second begins as a copy of the first.
   go(name) {
     if (name === this.heard) return;
     this.scene.onLeave();
@@ -16,7 +16,7 @@ export class Slots {
     this.scene.take(other);
   }
 
-  // Let both be known at once, the first heard.
+  // Set both at once and play the first.
   set(first, second) {
     this.other = { now: second, past: [], future: [] };
     this.heard = "A";

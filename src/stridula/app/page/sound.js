@@ -1,10 +1,10 @@
-// What one hears: the player, fed by the stream; muted at first.
+// The sound: the player, fed by the stream; muted at first.
 import { Voice } from "./player.js";
 
-const QUANTUM = 128; // Samples that the thread of the sound takes at once.
-const BLOCK = 1024; // Samples that a page without one takes at once.
+const QUANTUM = 128; // Samples per block of the audio thread.
+const BLOCK = 1024; // Samples per block without an audio thread.
 
-// A player in the thread of the sound; returns what tells it something.
+// A player in the audio thread; returns a function that sends it messages.
 async function threaded(context, onTold) {
   await context.audioWorklet.addModule("player.js");
   const node = new AudioWorkletNode(context, "player", { numberOfInputs: 0, outputChannelCount: [1] });
@@ -13,7 +13,7 @@ async function threaded(context, onTold) {
   return (data, moved = []) => node.port.postMessage(data, moved);
 }
 
-// The same in the page itself: browsers keep the thread of the sound to secure addresses.
+// The same in the page itself: browsers allow the audio thread on secure addresses only.
 function unthreaded(context, onTold) {
   const voice = new Voice(context.sampleRate, onTold);
   const node = context.createScriptProcessor(BLOCK, 0, 1);
@@ -22,7 +22,7 @@ function unthreaded(context, onTold) {
     for (let at = 0; at < BLOCK; at += QUANTUM) voice.fill(out.subarray(at, at + QUANTUM));
   };
   node.connect(context.destination);
-  // A node that nothing holds may be collected, and is silent then.
+  // A node without a reference may be collected, and falls silent.
   return Object.assign((data) => voice.told(data), { node });
 }
 
@@ -68,7 +68,7 @@ export class Sound {
     this.tell?.({ flush: true });
   }
 
-  // Set the volume, on top of a level that follows what is heard if it is to be levelled.
+  // Set the volume, in addition to the automatic level if it is on.
   volume(decibels, levelled) {
     Object.assign(this, { decibels, levelled });
     this.#tell();

@@ -1,19 +1,19 @@
-// Systems in space: bodies coloured by the velocity out of their surfaces, contacts by their state, seen from all sides.
+// Systems in space: bodies coloured by the velocity out of their surfaces, contacts by their state, seen from any side.
 import { roof, rounded } from "./axes.js";
 import { fitted, Orbit } from "./orbit.js";
 import { Body } from "./surfaces.js";
 
-const VIBRATION = 0.05; // What is exaggerated, as a share of the extent of the bodies.
-const STILL = 1e-10; // Share of the extent below which nothing vibrates.
-const STEADY = [0.005, 20]; // A mean is taken over so much time played [s], and so many pictures.
-const FALL = 2000; // The scale of colours comes down over so much [ms].
+const VIBRATION = 0.05; // Size of the exaggerated vibration, as a fraction of the extent of the bodies.
+const STILL = 1e-10; // Fraction of the extent below which nothing vibrates.
+const STEADY = [0.005, 20]; // Time played [s], and number of pictures, of a running mean.
+const FALL = 2000; // Time in which the scale of colours falls [ms].
 const HALF_VIEW = Math.tan((15 * Math.PI) / 180);
 const FILLED = 0.94;
 const DOTS = [9, 13]; // Size of the dots of many contacts and of one [px].
-const NO_WEBGL = "This browser has no WebGL 2, so bodies in space are not drawn. All else plays.";
-const NOT_LOADED = "The drawing in space could not be loaded. The next change tries again, and all else plays.";
+const NO_WEBGL = "This browser has no WebGL 2, so bodies in space are not drawn. Everything else works.";
+const NOT_LOADED = "The drawing in space could not be loaded. The next change tries again; everything else works.";
 const STATES = ["separated", "sticking", "sliding"];
-// From inwards over still to outwards, as films have it (RdBu of ColorBrewer, reversed).
+// From inwards through zero to outwards, as in films (RdBu of ColorBrewer, reversed).
 const COLOURS = ["#053061", "#2166ac", "#4393c3", "#92c5de", "#d1e5f0", "#f7f7f7", "#fddbc7", "#f4a582", "#d6604d", "#b2182b", "#67001f"];
 const SHADES = 256;
 
@@ -24,14 +24,14 @@ export class Space {
     this.bodies = [];
   }
 
-  // Show or hide it, and make what is drawn of a scene: in the plane nothing, and nothing is loaded for it.
+  // Show or hide the view and create the drawing of a scene; nothing is loaded for scenes in the plane.
   async describe({ drawn, surfaces, touches, up }) {
     if (drawn === this.drawnAs) return;
     Object.assign(this, { drawnAs: drawn, ready: false, much: 0 });
     const isEmpty = drawn && !surfaces.length;
     if (drawn && !isEmpty) await (this.loading ??= this.#load());
     if (this.drawnAs !== drawn) return;
-    const words = isEmpty ? "None of its bodies has a surface that could be drawn." : this.isMissing ? NO_WEBGL : drawn && !this.renderer ? NOT_LOADED : "";
+    const words = isEmpty ? "None of the bodies has a surface to draw." : this.isMissing ? NO_WEBGL : drawn && !this.renderer ? NOT_LOADED : "";
     if (words === NOT_LOADED) Object.assign(this, { loading: null, drawnAs: "" });
     this.canvas.hidden = this.legend.hidden = !drawn || Boolean(words);
     this.missing.hidden = !drawn || !words;
@@ -44,7 +44,7 @@ export class Space {
   async #load() {
     try {
       this.three ??= await import("./vendor/three.module.min.js");
-      // What cannot be drawn is told, here and not by the library.
+      // Errors are reported here and not by the library.
       this.isSlow = isSoftware();
       const context = this.canvas.getContext("webgl2", { antialias: !this.isSlow, alpha: true });
       this.isMissing = !context;
@@ -66,7 +66,7 @@ export class Space {
     this.touches = scene.touches.map(({ body, row, place }) => body !== null && { body: this.bodies.find(({ name }) => name === body), row, place });
     this.up = scene.up;
     this.#measure();
-    // Of the same bodies, one of which is turned, the eye stays where it is.
+    // The viewpoint is kept if the bodies are the same.
     const names = JSON.stringify(this.bodies.map(({ name }) => name));
     if (names !== this.names) this.orbit.home();
     this.names = names;
@@ -79,7 +79,7 @@ export class Space {
     Object.assign(this, { steady: null, top: 0, exaggeration: 0, fitted: null, drawn: null });
   }
 
-  // The middle of the picture as it begins, and the largest extent.
+  // The initial centre of the picture, and the largest extent.
   #measure() {
     const { right, up, eye } = this.orbit.start(this.up);
     const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
@@ -111,7 +111,7 @@ export class Space {
     return { body, mesh, edges, place, normal, colour };
   }
 
-  // Contacts are seen through bodies: they lie between them.
+  // Contacts lie between bodies and are drawn on top of them.
   #dots() {
     const three = this.three;
     const count = Math.max(1, this.touches.length);
@@ -124,7 +124,7 @@ export class Space {
     return points;
   }
 
-  // Draw a part: its numbers, how fast they change, and the states of the contacts. Returns the exaggeration.
+  // Draw a part from coordinates, their rates and the states of the contacts; return the exaggeration.
   draw({ track, contacts }, clock, colours) {
     if (!this.ready || track.length !== 2 * this.count || this.canvas.hidden) return this.much ?? 0;
     if (track !== this.drawn) this.#move(track, contacts, clock, colours);
@@ -134,7 +134,7 @@ export class Space {
     return this.much;
   }
 
-  // Draw what was drawn last: a browser keeps it until the next picture of the page only.
+  // Redraw the last picture, which a browser keeps only until the next frame.
   again() {
     if (!this.ready) return;
     this.#look();
@@ -152,7 +152,7 @@ export class Space {
       at += body.numbers;
     }
     const wanted = most > STILL * this.extent ? (VIBRATION * this.extent) / most : 0;
-    // Sooner smaller than larger, as in the plane.
+    // Rounded down, as in the plane.
     this.exaggeration = !this.exaggeration || wanted < this.exaggeration ? wanted : this.exaggeration * Math.min(1.01, wanted / this.exaggeration);
     this.much = this.exaggeration ? rounded(this.exaggeration) : 0;
     for (const side of this.sides) fastest = Math.max(fastest, this.#shape(side));
@@ -161,7 +161,7 @@ export class Space {
     this.#touch(contacts, colours);
   }
 
-  // The mean that vibration departs from.
+  // The mean about which the bodies vibrate.
   #follow(track, clock) {
     if (!this.steady) this.steady = track.slice(0, this.count);
     const share = 1 - Math.exp(-Math.min(1 / STEADY[1], Math.max(0, clock - (this.clock ?? clock)) / STEADY[0]));
@@ -169,7 +169,7 @@ export class Space {
     for (let k = 0; k < this.count; k++) this.steady[k] += share * (track[k] - this.steady[k]);
   }
 
-  // Put corners and normals where they are; returns the largest velocity out of the surface.
+  // Update corners and normals; return the largest velocity out of the surface.
   #shape({ body, place, normal }) {
     const { source, index, departed, mean, velocity } = body;
     const [to, out, much, rest] = [place.array, normal.array, this.much, body.surface.place];
@@ -202,7 +202,7 @@ export class Space {
     return fastest;
   }
 
-  // The scale of colours: up at once, down slowly, in round numbers.
+  // The scale of colours rises at once and falls slowly, in round numbers.
   #scale(fastest) {
     const now = performance.now();
     this.top = Math.max(fastest, this.top * Math.exp(((this.scaled ?? now) - now) / FALL), 1e-12);
@@ -243,7 +243,7 @@ export class Space {
     return this.fitted?.width !== width || this.fitted?.height !== height;
   }
 
-  // Let the eye look from where it is.
+  // Update the camera to the viewpoint.
   #look() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     const { camera, orbit } = this;
@@ -268,7 +268,7 @@ export class Space {
   }
 }
 
-// Whether pictures are made by the processor: then smooth edges would take most of the time.
+// Whether rendering is done in software: then smooth edges would take most of the time.
 function isSoftware() {
   const context = document.createElement("canvas").getContext("webgl2");
   const info = context?.getExtension("WEBGL_debug_renderer_info");
@@ -277,7 +277,7 @@ function isSoftware() {
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
-// Colours in the linear components that a renderer takes, three numbers a shade.
+// Colours in linear components for the renderer, three numbers per shade.
 function shades(three) {
   const stops = COLOURS.map((one) => new three.Color(one));
   const found = new Float32Array(3 * SHADES);

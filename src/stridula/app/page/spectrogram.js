@@ -1,4 +1,4 @@
-// The spectrogram of what is heard, with its axes and the scale of its colours.
+// The spectrogram of the sound, with its axes and the scale of its colours.
 import { inWords, Layer, paintAxes, ticks, told } from "./axes.js";
 import { joined } from "./samples.js";
 import { hann, spectrum, strongestTone } from "./spectrum.js";
@@ -6,11 +6,11 @@ import { hann, spectrum, strongestTone } from "./spectrum.js";
 const RATE = 48000;
 const SIZE = 1024; // Samples of a spectrum.
 const HOP = 256; // Samples between spectra.
-const HEARD = 1 << 14; // Samples in which the strongest tone is looked for: bins of 3 Hz.
+const HEARD = 1 << 14; // Samples in which the strongest tone is sought: bins of 3 Hz.
 const HIGHEST = 12000; // Highest frequency shown [Hz].
 const DEEP = 60; // Level shown below the loudest [dB].
-const KEPT = 2000; // Spectra that are kept.
-const FORGETS = 0.995; // How fast the loudest is forgotten, for each spectrum.
+const KEPT = 2000; // Number of spectra kept.
+const FORGETS = 0.995; // Factor by which the loudest level decays per spectrum.
 const [LEFT, RIGHT, ABOVE, BELOW] = [42, 56, 6, 32];
 const BAR = 10; // Width of the scale of colours [px].
 
@@ -21,7 +21,7 @@ export class Spectrogram {
     this.clear();
   }
 
-  // Begin anew: something else is heard.
+  // Clear the spectrogram for another source.
   clear() {
     this.columns = [];
     this.image = null;
@@ -29,29 +29,29 @@ export class Spectrogram {
     this.forget();
   }
 
-  // Begin to listen anew: what was heard goes on otherwise.
+  // Discard the samples so far after a discontinuity.
   forget() {
     this.sound = this.heard = new Float32Array(0);
   }
 
-  // Draw all of it again, in other colours.
+  // Redraw all in other colours.
   repaint() {
     this.columns.forEach((column) => (column.drawn = false));
     this.image = null;
   }
 
-  // Keep the spectra of what is heard.
+  // Add the spectra of new sound.
   hear(sound) {
     this.heard = joined([this.heard, sound]).slice(-HEARD);
     const all = joined([this.sound, sound]);
     let start = 0;
     for (; start + SIZE <= all.length; start += HOP) this.columns.push({ power: spectrum(all.subarray(start, start + SIZE), this.window) });
     this.sound = all.slice(start);
-    // A page that nobody sees draws none of them.
+    // A hidden page draws nothing.
     if (this.columns.length > 2 * KEPT) this.columns = this.columns.slice(-KEPT);
   }
 
-  // Frequency of the strongest tone of what was heard last [Hz], null where there is none or too little was heard.
+  // Frequency of the strongest tone of the last sound [Hz], null if there is none or too little sound.
   get tone() {
     return this.heard.length === HEARD ? strongestTone(this.heard, RATE) : null;
   }
@@ -74,7 +74,7 @@ export class Spectrogram {
     }
   }
 
-  // Move the image on by the spectra that are new.
+  // Scroll the image by the new spectra.
   #paint({ width, height }, dark) {
     if (!this.image || this.image.width !== Math.floor(width) || this.image.height !== Math.floor(height)) {
       this.image = new OffscreenCanvas(Math.floor(width), Math.floor(height));
@@ -123,7 +123,7 @@ function axes(draw, box, width, colours, dark) {
   draw.textAlign = "left";
 }
 
-// A scale from ground to ink that rises evenly in lightness: it reads without colours, too.
+// A scale from ground to ink with evenly rising lightness, readable without colours.
 export function heat(share, dark) {
   const t = Math.max(0, Math.min(1, share));
   const stops = dark

@@ -1,32 +1,32 @@
-// The thread that speaks with the server: it asks for the next parts in time, hands sound to the player and pictures to
-// the page, so that neither waits for the other.
+// The thread that communicates with the server: it requests the next parts in time and passes sound to the player and
+// pictures to the page, so that neither waits for the other.
 import { parts } from "./parts.js";
 import { Queue } from "./queue.js";
 
 const PART = 480; // Samples of a part while live.
-const FEWEST = 2; // Parts asked for at once.
+const FEWEST = 2; // Parts per request.
 const RATE = 48000;
-const RETRY = 1000; // Time between attempts to come back [ms]
-const ROOM = 5000; // and to find room.
-const FULL = 4429; // Codes of a server that is full
-const ELSEWHERE = 4403; // and of one whose page this is not.
+const RETRY = 1000; // Time between attempts to reconnect [ms],
+const ROOM = 5000; // and to a full server.
+const FULL = 4429; // Codes of a full server
+const ELSEWHERE = 4403; // and of another server than that of this page.
 const FRAME = 1000 / 60;
-const LEAST = 12; // Samples of a part of what is shown as fast as it can be: of smaller ones the way takes longer than they do,
-const PICTURES = 30; // and so many parts a second are enough.
+const LEAST = 12; // Least samples of a part of slow systems, since smaller parts take longer to send than to compute,
+const PICTURES = 30; // and sufficient number of parts per second.
 
 let socket, player, url;
 const queue = new Queue();
 let behind = false;
 let pace = { mode: "live", slow: 1, own: false };
-let asked = 0; // Samples asked for that have not come.
-let left = 0; // Samples the player has.
-let heard = { scale: 1 }; // What is listened to, and what it is multiplied by for the player, now
-let next = null; // and what is asked for from now on.
-let clock = 0; // When time without a player was last counted [ms].
-let owed = 0; // Samples owed to slow motion.
+let asked = 0; // Samples requested but not received.
+let left = 0; // Samples in the player.
+let heard = { scale: 1 }; // The present source, with its factor for the player,
+let next = null; // and the source of later requests.
+let clock = 0; // Last update of the time without a player [ms].
+let owed = 0; // Samples due in slow motion.
 let file = null;
 let hasScene = false;
-let waiting = null; // A scene to be sent once the last one is answered.
+let waiting = null; // The scene to send once the last one is answered.
 let answered = true;
 
 self.onmessage = ({ data }) => {
@@ -100,7 +100,7 @@ function told(message) {
     file = message;
     return;
   }
-  // A message that is refused as a whole may be the scene that is waited for.
+  // A message refused as a whole may be the scene in question.
   if (["scene", "refused", "problem"].includes(message.type)) {
     hasScene = hasScene || message.type === "scene";
     answered = true;
@@ -114,7 +114,7 @@ function told(message) {
   feed();
 }
 
-// What comes as bytes is a file that was announced, or the parts that were asked for.
+// Bytes are an announced file, or requested parts.
 function came(data) {
   if (file) {
     postMessage({ file: { ...file, data } }, [data]);
@@ -135,14 +135,14 @@ function came(data) {
   feed();
 }
 
-// What was asked for before something else was listened to comes as it was.
+// Parts requested before a change of the source still have the old one.
 function takeNext() {
   if (asked || next === null) return;
   heard = next;
   next = null;
 }
 
-// Ask for what is missing.
+// Request missing parts.
 function feed() {
   if (!hasScene || asked || pace.mode === "paused") return;
   if (pace.mode === "live") {
@@ -169,7 +169,7 @@ function feed() {
   }
 }
 
-// Say where it changed whether the machine keeps up.
+// Report changes of whether the machine keeps up.
 function judge() {
   const now = performance.now();
   queue.rest(now);

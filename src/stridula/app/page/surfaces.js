@@ -1,15 +1,15 @@
-// Bodies in space as numbers: where the corners of their surfaces are, and how modes move them. No drawing here.
-const CREASE = Math.cos((35 * Math.PI) / 180); // Normals of polygons that meet at less are one.
-const FEWEST_ANGLES = 60; // Places round an axis,
-const ANGLES_OF_WAVE = 5; // and for each wave.
+// Bodies in space as numbers: the corners of their surfaces, and their motion in modes, without drawing.
+const CREASE = Math.cos((35 * Math.PI) / 180); // Polygons that meet at smaller angles share normals.
+const FEWEST_ANGLES = 60; // Fewest places around an axis,
+const ANGLES_OF_WAVE = 5; // and places per wave.
 
-// Arrays as the server says them: see `said` on its side.
+// Arrays as encoded by the server: see `said` on its side.
 export function heard({ shape, values }) {
   const bytes = Uint8Array.from(atob(values), (one) => one.charCodeAt(0));
   return { shape, values: new Float32Array(bytes.buffer) };
 }
 
-// Displacements for numbers: rows (3 a corner) times numbers.
+// Displacements from coordinates: rows (3 per corner) times coordinates.
 function times({ values }, numbers, out) {
   const count = numbers.length;
   for (let row = 0, at = 0; row < out.length; row++) {
@@ -34,7 +34,7 @@ class Polygons {
   }
 }
 
-// A surface of revolution: an outline that is swept round, with waves round the axis.
+// A surface of revolution: a swept outline, with waves around the axis.
 class Rings {
   constructor({ place, sides, shapes, orders, phases, frame, origin }) {
     this.shapes = heard(shapes);
@@ -83,7 +83,7 @@ class Rings {
     return found;
   }
 
-  // Waves first, for all places round the axis at once.
+  // Waves first, for all places around the axis at once.
   moved(numbers, out) {
     const { points, angles, waves, amplitudes, directions, frame } = this;
     const { values } = this.shapes;
@@ -117,7 +117,7 @@ class Rings {
   }
 }
 
-// A body with its surface, split along creases so that each side has a normal of its own.
+// A body with its surface, split along creases so that each side has its own normal.
 export class Body {
   constructor(described) {
     const { name, numbers, rows } = described;
@@ -132,7 +132,7 @@ export class Body {
     Object.assign(this, split(place, faces, triangles));
   }
 
-  // Let numbers and their rates say where it is; numbers that are steady move it to scale.
+  // Set the position from coordinates and their rates; steady coordinates move it to scale.
   move(numbers, rates, steady) {
     const apart = numbers.map((one, k) => one - steady[k]);
     this.surface.moved(apart, this.departed);
@@ -144,7 +144,7 @@ export class Body {
     return most;
   }
 
-  // Where a contact is, with what departs from the mean so many times larger.
+  // Position of a contact, with the deviation from the mean exaggerated.
   touching(row, place, much, steady) {
     return place.map((one, i) => {
       let sum = one;
@@ -154,7 +154,7 @@ export class Body {
   }
 }
 
-// Triangles of a polygon; where middles of edges come between corners, each corner with the middles beside it.
+// Triangles of a polygon; with midside nodes, each corner with the two beside it.
 function triangled(corners) {
   if (corners.length < 6) return fan(corners);
   const middles = corners.filter((_, i) => i % 2);
@@ -163,7 +163,7 @@ function triangled(corners) {
 
 const fan = ([first, ...others]) => others.slice(1).map((other, i) => [first, others[i], other]);
 
-// Corners once for each smooth part that they belong to, triangles by their numbers, and the edges between parts.
+// Corners once for each of their smooth parts, triangles by their numbers, and the edges between parts.
 function split(place, faces, triangles) {
   const normals = triangles.map((corners) => unit(across(place, corners)));
   const around = Array.from({ length: place.length / 3 }, () => []);

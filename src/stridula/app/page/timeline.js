@@ -1,12 +1,12 @@
-// Normal force over time, and under it the state of the contact.
+// Normal force over time, and below it the state of the contact.
 import { Layer, paintAxes, roof } from "./axes.js";
 
 export const WINDOW = 1.0; // Time shown live [s].
-const FALL = 400; // An axis comes down over so much [ms].
+const FALL = 400; // Time in which an axis shrinks [ms].
 const LANE = 11; // Height of the ribbon of a state [px].
 const [LEFT, RIGHT, ABOVE, BELOW] = [50, 10, 6, 32];
 
-// The top of an axis: up at once to what is seen, and soon down to it.
+// The top of an axis rises at once to the largest value and soon falls to it.
 export class Top {
   constructor() {
     this.value = this.time = 0;
@@ -47,7 +47,7 @@ export class Timeline {
 
   #axes(draw, { inner, tall, lanes, top, span }, colours, states) {
     const [scale, unit] = span < 0.1 ? [1000, "ms"] : [1, "s"];
-    // The numbers of time stand under the ribbons.
+    // The numbers of time are below the ribbons.
     paintAxes(draw, { left: LEFT, top: ABOVE, width: inner, height: tall }, { x: { low: 0, high: 0, title: "" }, y: { low: 0, high: top, title: "force [N]" } }, colours);
     const under = { left: LEFT, top: ABOVE, width: inner, height: tall + lanes };
     paintAxes(draw, under, { x: { low: -span * scale, high: 0, title: `time before now [${unit}]` }, y: { low: 0, high: 0, title: "" } }, colours);
@@ -56,7 +56,7 @@ export class Timeline {
   }
 }
 
-// Of the points in a column the largest and the least: nothing is lost between them.
+// The largest and the smallest point in each column, so that no peak is lost.
 function columnsOf(points, history, x) {
   const columns = new Map();
   for (const k of points) {

@@ -1,4 +1,4 @@
-// The guided tour: a setting for each stop, a few sentences, and the picture that they are about.
+// The guided tour: for each stop a setting, a few sentences, and a picture to look at.
 export class Tour {
   constructor(stops, scene, slots) {
     Object.assign(this, { stops, scene, slots, at: null });
@@ -27,7 +27,7 @@ export class Tour {
     this.next.focus({ preventScroll: true });
   }
 
-  // What is played stays.
+  // The scene is kept.
   leave() {
     this.panel.hidden = true;
     this.#mark(null);

@@ -1,7 +1,7 @@
-"""What the paper prints, and how it is measured on our runs.
+"""Claims of the paper, and their measurement on our runs.
 
-Tolerances are those declared before the search for the parameters. A claim that the search looked at is `fitted`, any
-other `predicted`.
+Tolerances were declared before the search for the parameters. A claim used in the search is `fitted`, any other
+`predicted`.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ class Claim:
     Attributes
     ----------
     claim : str
-        What is claimed.
+        Description of the claim.
     section : str
-        Where in the paper.
+        Section of the paper.
     printed : str
-        What the paper prints.
+        Value or words printed in the paper.
     low, high : float
-        The claim holds when the measured value lies between them, ends included.
+        Range, ends included, in which the measured value must lie.
     units : str
         Unit of the measured value.
     measure : callable
-        Takes `Runs`, returns the value.
+        Function of `Runs` that returns the value.
     fitted : bool
-        Whether the search for the parameters looked at it.
+        Whether the search for the parameters used it.
     detail : callable, optional
-        Takes `Runs`, returns a sentence on what lies behind the value.
+        Function of `Runs` that returns a sentence with details of the value.
     chaotic : str, optional
-        Case whose runs go apart from starts that differ by parts in a million: the value is the median over starts.
+        Case whose runs diverge from starts that differ by parts in a million: the value is the median over starts.
     """
 
     claim: str
@@ -60,7 +60,7 @@ class Claim:
 
     @property
     def tolerance(self) -> str:
-        """The range in words."""
+        """The range as text."""
         unit = f" {self.units}" if self.units != "1" else ""
         if np.isinf(self.high):
             return f"at least {self.low:.4g}{unit}"
@@ -89,7 +89,7 @@ class Claim:
         return row
 
     def values(self, runs: Runs) -> Array:
-        """Return the value from each start, shape (starts,), or (1,) where the first start says it."""
+        """Return the value from each start, shape (starts,), or (1,) if one start suffices."""
         if not self.chaotic:
             return np.array([float(self.measure(runs))])
         together = {claim.claim: claim.measure for claim in CLAIMS if claim.chaotic == self.chaotic}
@@ -98,7 +98,7 @@ class Claim:
 
 
 def near(printed: float, share: float) -> tuple[float, float]:
-    """Return the range of plus or minus a share of a printed number."""
+    """Return the range of plus or minus a fraction of a printed number."""
     return printed * (1.0 - share), printed * (1.0 + share)
 
 
@@ -106,7 +106,7 @@ def near(printed: float, share: float) -> tuple[float, float]:
 
 
 def slides_from(runs: Runs) -> float:
-    """Return when 3.1 starts to slide for good [s]; NaN unless that lasts to the end at 1 s or later."""
+    """Return the time from which 3.1 slides permanently [s]; NaN unless that lasts to the end at 1 s or later."""
     run = runs.record("stable-sliding")
     lasted = run.attrs["ended"] == "finished" and float(run["time"][-1]) >= 1.0 - 1e-9
     return analysis.settling_time(run) if lasted else float("nan")
@@ -117,14 +117,14 @@ def _settled(run: xr.Dataset) -> xr.Dataset:
 
 
 def friction_cone(runs: Runs) -> float:
-    """Return the largest ``| |tangential| / (friction normal) - 1 |`` [1] once 3.1 slides for good."""
+    """Return the largest ``| |tangential| / (friction normal) - 1 |`` [1] once 3.1 slides permanently."""
     run = _settled(runs.record("stable-sliding"))
     friction = runs.scenario("stable-sliding").system.contacts[0].friction.coefficient_at(1.0)
     return float(np.abs(np.abs(run.tangential_force) / (friction * run.normal_force) - 1.0).max())
 
 
 def force_jump(runs: Runs) -> float:
-    """Return the largest jump of the normal force at 10 kHz over its mean [1], once 3.1 slides for good."""
+    """Return the largest jump of the normal force at 10 kHz over its mean [1], once 3.1 slides permanently."""
     force = _settled(runs.record("stable-sliding"))["normal_force"]
     return analysis.largest_jump(force) / float(force.mean())
 
@@ -189,7 +189,7 @@ def advance_in_stops(runs: Runs) -> float:
 
 
 def last_burst(runs: Runs) -> float:
-    """Return when the last burst of 3.2 that is separated for at least 10 % of its length starts [s]."""
+    """Return the start of the last burst of 3.2 that is separated for at least 10 % of its length [s]."""
     run = runs.record("squeal")
     starts = [burst[0] for burst in analysis.bursts(run) if _lifts_off(run, burst)]
     return float(starts[-1]) if starts else float("nan")
@@ -219,7 +219,7 @@ def _median_length(intervals: Any) -> float:
 
 
 def axial_slides_from(runs: Runs) -> float:
-    """Return when the axial case below friction 1 starts to slide for good [s]."""
+    """Return the time from which the axial case below friction 1 slides permanently [s]."""
     run = runs.record("axial-sliding")
     return analysis.settling_time(run)
 
@@ -303,7 +303,7 @@ def _endings(case: str) -> Callable[[Runs], str]:
     return words
 
 
-# Heard: in the sound file, which the paper does not have
+# Tones in the sound files, which the paper does not have
 
 
 def heard_tone(case: str, printed: float) -> Callable[[Runs], float]:
@@ -332,7 +332,7 @@ def _ranks(case: str, measure: Callable[[Runs], float]) -> Callable[[Runs], str]
 
 
 def _heard(runs: Runs, case: str) -> tuple[Any, Any]:
-    """Return the tones of a case's sound in its bursts, as late as the sound comes."""
+    """Return the tones of a case's sound in its bursts, delayed by the travel time of the sound."""
     sound = runs.sound(case).isel(listener=0)
     late = 1.0 / Air().speed
     return analysis.tones(sound, analysis.bursts(runs.record(case)) + late)

@@ -1,4 +1,4 @@
-"""The paper's figures 2 to 21, the same quantities over the same axes, and the frequency over the load."""
+"""The paper's figures 2 to 21, with the same quantities and axes, and the frequency over the load."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ class PaperFigure:
     Attributes
     ----------
     number : int
-        Its number.
+        Number of the figure.
     case : str
-        The case it shows.
+        Case that it shows.
     variable : str
-        What is drawn over time.
+        Variable drawn over time.
     caption : str
-        What one sees.
+        Caption.
     zoomed : bool
         Whether it shows one burst only.
     """
@@ -45,7 +45,7 @@ class PaperFigure:
         return f"figure-{self.number:02d}.png"
 
     def draw(self, runs: Runs) -> Figure:
-        """Draw it from the case's run."""
+        """Draw the figure from the run of the case."""
         run = runs.record(self.case)
         title = f"Figure {self.number}. {self.caption}"
         names = [self.variable, "status"] if self.zoomed else [self.variable]
@@ -62,7 +62,7 @@ def _one_burst(run: xr.Dataset) -> tuple[float, float]:
 
 
 def pressure_figure(runs: Runs) -> Figure:
-    """Draw the frequencies of every start over the load, their medians, and the modes that grow in steady sliding."""
+    """Draw the frequencies of all starts over the load, their medians, and the growing modes of steady sliding."""
     figure = Figure(figsize=(8.0, 5.0), layout="constrained")
     axes = figure.subplots()
     known = relaxations(runs)

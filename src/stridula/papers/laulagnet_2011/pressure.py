@@ -1,4 +1,4 @@
-"""How the frequency of the relaxations goes with the load, as medians over starts: section 3.4."""
+"""Frequency of the relaxations over the load, as medians over starts: section 3.4."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ...studies.ensembles import perturbed_starts
 from .runs import Runs, median_over_starts
 
 PRESSURES = tuple(float(load) for load in np.round(np.geomspace(10.0, 200.0, 24), 1))
-# Starts under each load: those that march side by side.
+# Starts under each load, computed side by side.
 STARTS = 8
 
 
@@ -29,7 +29,7 @@ class Relaxations:
     load : float
         Normal load [N].
     frequency, resolution : ndarray, shape (starts,)
-        Dominant frequency inside the relaxations and what their length resolves [Hz]; NaN from a start without any.
+        Dominant frequency inside the relaxations and its resolution [Hz]; NaN for a start without relaxations.
     """
 
     load: float
@@ -70,7 +70,7 @@ def _under(runs: Runs, load: float) -> Relaxations:
 
 
 def largest_fall(runs: Runs) -> float:
-    """Return how far the median frequency falls below what a lower load gave, in resolutions [1]."""
+    """Return the largest fall of the median frequency below that of a lower load, in resolutions [1]."""
     known = _known(runs)
     falls = [
         (before.median - after.median) / max(before.resolved, after.resolved)
@@ -87,12 +87,12 @@ def rise(runs: Runs) -> float:
 
 
 def rise_without_a_fall(runs: Runs) -> float:
-    """Return `rise`, NaN where the frequency falls by more than its resolution on the way."""
+    """Return `rise`, or NaN if the frequency falls by more than its resolution between two loads."""
     return rise(runs) if largest_fall(runs) <= 1.0 else float("nan")
 
 
 def ladder_words(runs: Runs) -> str:
-    """Return the median frequency under each load and the largest fall, in words."""
+    """Return the median frequency under each load and the largest fall as text."""
     return f"largest fall {largest_fall(runs):.3g} resolutions; " + ", ".join(
         f"{one.load:g} N: {one.median:.0f} Hz" for one in relaxations(runs)
     )
@@ -103,9 +103,9 @@ def _known(runs: Runs) -> list[Relaxations]:
 
 
 def growing_modes(runs: Runs) -> list[tuple[float, float, str]]:
-    """Return frequency [Hz] and growth rate [1/s] of the modes that grow in steady sliding, and their names.
+    """Return frequency [Hz], growth rate [1/s] and name of the growing modes of steady sliding.
 
-    A mode is named by the mode of the slider with its tip pinned that is nearest in frequency.
+    A mode is named after the nearest mode in frequency of the slider with its tip pinned.
     """
     system = runs.scenario("strong-pressure").system
     found: Any = sliding_stability(system)

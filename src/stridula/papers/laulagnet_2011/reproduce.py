@@ -1,4 +1,4 @@
-"""The paper from end to end: runs, figures, records and claims in one folder."""
+"""Reproduction of the whole paper: runs, figures, records and claims in one folder."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def reproduce(folder: str | Path, report: Callable[[str], None] = lambda name: N
     Parameters
     ----------
     folder : str or Path
-        Where to write; made if it is not there.
+        Folder to write to, created if necessary.
     report : callable, optional
-        Told each thing before it is made.
+        Called with the name of each item before it is made.
 
     Returns
     -------
@@ -60,14 +60,14 @@ def reproduce(folder: str | Path, report: Callable[[str], None] = lambda name: N
 
 
 def closing_line(rows: Sequence[dict[str, Any]]) -> str:
-    """Return how many claims hold, in one line."""
+    """Return the number of claims that hold in one line."""
     missed = [f"{row['section']} {row['claim']}" for row in rows if not row["holds"]]
     line = f"{len(rows) - len(missed)} of {len(rows)} claims of the paper hold"
     return f"{line}; not: {'; '.join(missed)}" if missed else line
 
 
 def measured(row: dict[str, Any]) -> str:
-    """Return the value of a row with its unit and, where it is a median over starts, its interval."""
+    """Return the value of a row with its unit and, for a median over starts, its interval."""
     if row["measured"] is None:
         return "none"
     unit = "" if row["units"] == "1" else f" {row['units']}"

@@ -1,4 +1,4 @@
-"""The runs behind the paper's claims, each made once and only when a claim asks for it."""
+"""The runs for the paper's claims, each made once and only on request."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from ...studies.ensembles import median_and_interval, perturbed_starts
 
 CASES = ("stable-sliding", "squeal", "axial-sliding", "judder", "weak-pressure", "strong-pressure")
 LOADS = (20.0, 40.0, 80.0, 150.0)
-# Starts of the cases that do not repeat: measures of one of them hold by chance.
+# Number of starts of chaotic cases, for which a measure of a single run may hold by chance.
 STARTS = 16
 LADDER = tuple(np.round(np.arange(0.5, 1.501, 0.05), 2))
 LAST = 0.3
@@ -37,7 +37,7 @@ class Runs:
     overrides : mapping, optional
         Scenario keys and values that replace the shipped ones in every case, such as ``{"damping": 0.01}``.
     report : callable, optional
-        Told the name of each run before it starts.
+        Called with the name of each run before it starts.
     """
 
     overrides: Mapping[str, Any] = field(default_factory=dict)
@@ -55,9 +55,9 @@ class Runs:
         return self._kept(case, case)
 
     def sound(self, case: str, path: str | Path | None = None) -> xr.DataArray:
-        """Return what a sound file of a case holds [Pa]: two ears a metre above the track, in a baffle.
+        """Return the sound of a case from its file [Pa]: two ears a metre above the track, in a baffle.
 
-        The file is written to `path`, or to one that is gone again if left out.
+        The file is written to `path`, or to a temporary file if left out.
         """
         if case not in self._sounds or path is not None:
             self.report(f"sound of {case}")
@@ -73,7 +73,7 @@ class Runs:
         return self._kept(f"pressure-{load:g}", "strong-pressure", normal_load=load)
 
     def ladder(self, case: str) -> dict[float, str]:
-        """Return how a case ends at each coefficient of friction of `LADDER`: sliding, stuck or vibrating."""
+        """Return the ending of a case at each coefficient of friction of `LADDER`: sliding, stuck or vibrating."""
         found: dict[float, str] = self.once(
             f"{case} over friction", lambda: {float(friction): self._ends(case, float(friction)) for friction in LADDER}
         )
@@ -84,7 +84,7 @@ class Runs:
         return ending(self.scenario(case, coefficient=friction).simulate())
 
     def once(self, name: str, make: Callable[[], Any]) -> Any:
-        """Return what `make` returns, made when it is first asked for by this name."""
+        """Return the result of `make`, called on the first request for this name."""
         if name not in self._made:
             self._made[name] = make()
         return self._made[name]
@@ -94,7 +94,7 @@ class Runs:
     ) -> dict[str, Array]:
         """Return measures of a case from starts that differ by parts in a million, each of shape (starts,).
 
-        A measure is given these runs with the case's record from one of the starts.
+        A measure receives these runs with the case's record from one of the starts.
         """
         self.report(f"{case} from {starts} starts")
         scenario = self.scenario(case)
@@ -130,7 +130,7 @@ def median_over_starts(values: Array) -> tuple[float, list[float] | None]:
 
 
 def ending(run: xr.Dataset) -> str:
-    """Return what the last 0.3 s of a run are: ``sliding`` at every step, ``stuck`` at every step, or ``vibrating``."""
+    """Return the state of the last 0.3 s of a run: ``sliding`` or ``stuck`` at every step, or else ``vibrating``."""
     begins = float(run["time"][-1]) - LAST
     if settling_time(run) <= begins:
         return "sliding"

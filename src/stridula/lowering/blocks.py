@@ -10,10 +10,11 @@ import numpy as np
 
 from .._kernels import layout as at
 from ..arrays import Array
-from ..assembly import Assembly, ContactRows
 from ..bodies.paths import Path
 from ..checks import ArgumentError, at_most
 from ..contact import FrictionLaw
+from .assembly import Assembly
+from .contact_rows import ContactRows
 from .schemes import Scheme
 from .stepping import Stepping
 

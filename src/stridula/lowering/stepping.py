@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..assembly import Assembly
+from .assembly import Assembly
 from .schemes import Coefficients, Scheme
 
 # Recurrence of residual shapes: share of an increment kept, stiffness of a step. They answer without a lag that would

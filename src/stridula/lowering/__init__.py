@@ -1,0 +1,21 @@
+"""Descriptions lowered to flat arrays: modes, contact rows, loads and probes, then blocks under a time scheme."""
+
+from .assembly import Assembly, assemble, going_on, with_travel
+from .contact_rows import ContactRows
+from .coordinates import without_massless_coupling
+from .motion import Prescribed, Signal
+from .probe_rows import ProbeRows
+from .turning_modes import TurningModes
+
+__all__ = [
+    "Assembly",
+    "ContactRows",
+    "Prescribed",
+    "ProbeRows",
+    "Signal",
+    "TurningModes",
+    "assemble",
+    "going_on",
+    "with_travel",
+    "without_massless_coupling",
+]

@@ -1,0 +1,205 @@
+"""A system as flat arrays of modes, contact rows, loads and probe rows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import Array
+from ..bodies.ordinary import of_ordinary_size
+from ..records.probes import Probe
+from ..system import System
+from .contact_rows import ContactRows, contact_rows
+from .coordinates import Coordinates, are_uncoupled, pairs_of
+from .loads import Load, loads_of
+from .motion import Prescribed, Signal, motion_of, prescribed_of
+from .probe_rows import ProbeRows, probe_rows
+from .turning_modes import TurningModes, turning_modes
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """A system as flat arrays, body by body, those whose modes are coupled first.
+
+    Attributes
+    ----------
+    angular_frequency, damping_rate : ndarray, shape (modes,)
+        Undamped angular frequencies w [rad/s] and ``2 zeta w`` [1/s]; zero for coupled modes.
+    massless : ndarray of bool, shape (modes,)
+        Which are residual shapes, of unit stiffness and no mass.
+    stiffness, dissipation : ndarray, shape (coupled, coupled)
+        Stiffness [1/s²] and damping matrix [1/s] of the coupled modes, which come first.
+    contacts : list of ContactRows
+        One for each contact, and another one after it for its second tangent in space: pairs of rows.
+    motion : callable
+        Motions imposed on the contacts [m] over time and step: of the tip and of the track along the tangent, of the
+        gap; shape (times, pairs, 3).
+    loads : ndarray, shape (loads, modes)
+        Modal forces of the drives for a unit signal.
+    signals : list of callable
+        Functions of time and step [s]: first one for each row of `loads`, then the imposed displacement, velocity and
+        acceleration.
+    position, velocity : ndarray, shape (modes,)
+        Modal positions and velocities at the start.
+    friction_state : ndarray, shape (pairs,)
+        Internal states of the laws of friction at the start.
+    probes : list of ProbeRows
+        One for each probe.
+    prescribed : Prescribed
+        What decides how signals and motion go in time.
+    spans : dict
+        First mode of each body and the one after its last, by the body's name.
+    blend : ndarray, shape (joined, joined)
+        How the first coordinates make those of joined bodies, whose residual shapes connections hold; empty without.
+    turning : tuple of TurningModes
+        The bodies that turn, or round which contacts move.
+    """
+
+    angular_frequency: Array
+    damping_rate: Array
+    massless: Array
+    stiffness: Array
+    dissipation: Array
+    contacts: list[ContactRows]
+    motion: Signal
+    loads: Array
+    signals: list[Signal]
+    position: Array
+    velocity: Array
+    friction_state: Array
+    probes: list[ProbeRows]
+    prescribed: Prescribed
+    spans: dict[str, tuple[int, int]]
+    blend: Array
+    turning: tuple[TurningModes, ...]
+
+    @property
+    def all_stiffness(self) -> Array:
+        """Stiffness matrix of all modes [1/s²], shape (modes, modes)."""
+        matrix = np.diag(np.where(self.massless, 1.0, self.angular_frequency) ** 2)
+        matrix[: self.coupled, : self.coupled] = self.stiffness
+        return matrix
+
+    @property
+    def firsts(self) -> Array:
+        """Which pairs of rows are the first of their contact, shape (pairs,)."""
+        return np.array([not one.is_second for one in self.contacts])
+
+    @property
+    def contact_numbers(self) -> Array:
+        """Number of the contact that each pair of rows belongs to, shape (pairs,)."""
+        return np.cumsum(self.firsts) - 1
+
+    @property
+    def mode_count(self) -> int:
+        """Number of modes in all."""
+        return int(self.angular_frequency.size)
+
+    @property
+    def coupled(self) -> int:
+        """Number of coupled modes."""
+        return len(self.stiffness)
+
+
+@of_ordinary_size("system")
+def assemble(system: System, probes: Sequence[Probe] = ()) -> Assembly:
+    """Turn a system and its probes into flat arrays; those of the system are made once, and not to be changed."""
+    if "assembly" not in system.kept:
+        system.kept["assembly"] = _assembled(system)
+    flat, coordinates, loads = system.kept["assembly"]
+    return replace(flat, probes=[probe_rows(probe, coordinates, loads) for probe in probes]) if probes else flat
+
+
+def _assembled(system: System) -> tuple[Assembly, Coordinates, list[Load]]:
+    """Return a system as flat arrays without probes, and what these are made of."""
+    coordinates = Coordinates(system)
+    stiffness, dissipation = coordinates.matrices
+    modes = [coordinates.modes(body) for body in coordinates.order]
+    angular = np.concatenate([one.angular_frequency for one in modes])
+    rate = np.concatenate([one.damping_rate for one in modes])
+    massless, size = coordinates.massless, len(stiffness)
+    if size and are_uncoupled(stiffness, dissipation):
+        angular[:size] = np.where(massless[:size], np.inf, np.sqrt(np.diag(stiffness)))
+        rate[:size] = np.diag(dissipation)
+        size = 0
+    # Coupled modes march by matrices; alone they would not.
+    angular[:size] = rate[:size] = 0.0
+    loads, signals, histories = loads_of(system, coordinates)
+    position, velocity = _start(system, coordinates)
+    turning = turning_modes(coordinates)
+    flat = Assembly(
+        angular_frequency=angular,
+        damping_rate=rate,
+        massless=massless,
+        stiffness=stiffness[:size, :size],
+        dissipation=dissipation[:size, :size],
+        contacts=[pair for contact in system.contacts for pair in contact_rows(contact, coordinates, turning)],
+        motion=motion_of(system, signals[-3]),
+        loads=np.array([load.modal for load in loads]).reshape(len(loads), coordinates.size),
+        signals=signals,
+        position=position,
+        velocity=velocity,
+        friction_state=np.array(
+            [state for one in system.contacts for state in one.friction.states_at_start[: pairs_of(one)]]
+        ),
+        probes=[],
+        prescribed=prescribed_of(system, histories),
+        spans={system.body_name(body): coordinates.spans[body] for body in system.bodies},
+        blend=coordinates.blend,
+        turning=turning,
+    )
+    return flat, coordinates, loads
+
+
+def with_travel(arrays: Assembly, system: System, travel: float) -> Assembly:
+    """Return a system whose root has already been moved by a distance [m] beyond what its imposed velocity says."""
+    described = arrays.signals[-3]
+
+    def displacement(time: Array, step: float) -> Array:
+        return described(time, step) + travel
+
+    signals = [*arrays.signals[:-3], displacement, *arrays.signals[-2:]]
+    return replace(arrays, signals=signals, motion=motion_of(system, displacement))
+
+
+def going_on(arrays: Assembly, offset: Array, start: float, before: Array | None = None) -> Assembly:
+    """Return a system whose contacts have already been moved beyond what is imposed on them.
+
+    Parameters
+    ----------
+    arrays : Assembly
+        The system.
+    offset : ndarray, shape (contacts, 3)
+        By how much [m].
+    start : float
+        Time from which that holds [s].
+    before : ndarray, shape (contacts, 3), optional
+        Where they were before [m], if that was other motion.
+    """
+    described = arrays.motion
+
+    def motion(time: Array, step: float) -> Array:
+        values = described(time, step) + offset
+        if before is not None:
+            values[time < start - step / 2.0] = before
+        return values
+
+    return replace(arrays, motion=motion, prescribed=replace(arrays.prescribed, turns=before is not None))
+
+
+def _start(system: System, coordinates: Coordinates) -> tuple[Array, Array]:
+    """Return modal positions and velocities at the start."""
+    position, velocity = np.zeros(coordinates.size), np.zeros(coordinates.size)
+    for drive in system.drives:
+        if drive.uniform_velocity is not None:
+            # Residual shapes follow forces alone.
+            modes = coordinates.modes(drive.acted_on)
+            speeds = drive.uniform_velocity[: len(modes.translation)]
+            moved = np.where(modes.massless, 0.0, speeds @ modes.translation)
+            velocity += coordinates.full(drive.acted_on, moved)
+        for name, given in drive.vectors.items():
+            values = {"displacement": position, "velocity": velocity}[name]
+            values += coordinates.full(drive.acted_on, drive.acted_on.modal_coordinates(given))
+    return position, velocity

@@ -1,0 +1,110 @@
+"""Contacts as rows on the modes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+from ..contact import PointContact
+from .coordinates import Coordinates
+from .turning_modes import TurningModes
+
+
+@dataclass(frozen=True)
+class ContactRows:
+    """One contact as rows on the modes; in space two pairs of rows in a row.
+
+    Attributes
+    ----------
+    contact : PointContact
+        The contact.
+    fixed : ndarray, shape (2, modes)
+        Displacement of the tip, less that of a frozen track, along normal and tangent.
+    bending, axial : tuple of int
+        First mode and the one after the last of each kind of a track that the tip moves along.
+    is_second : bool
+        Whether the tangent is the second of a contact in space; the normal is zero then.
+    circle : TurningModes or None
+        The modes of the body round which the tip moves; its rows in `fixed` are those where the tip is at the start.
+    """
+
+    contact: PointContact
+    fixed: Array
+    bending: tuple[int, int] = (0, 0)
+    axial: tuple[int, int] = (0, 0)
+    is_second: bool = False
+    circle: TurningModes | None = None
+
+    @property
+    def travel(self) -> Array:
+        """Row of what moves the contact point along the tangent, shape (modes,): on a circle that of the tip alone."""
+        if self.circle is None:
+            return self.fixed[1]
+        row = self.fixed[1].copy()
+        row[slice(*self.circle.span)] = 0.0
+        return row
+
+    def round_at(self, place: float) -> Array:
+        """Return the rows where the tip is at an abscissa [m] of its circle."""
+        assert self.circle is not None
+        angle = (place - self.contact.at) * self.rate
+        return self.fixed + [self.circle.turned(row, angle * self.circle.orders) for row in self.fixed]
+
+    def slopes_round_at(self, place: float) -> Array:
+        """Return the derivatives of these rows along the circle [1/m], shape (2, modes)."""
+        assert self.circle is not None
+        rows, (first, second) = self.round_at(place), self.circle.pairs.T
+        slopes = np.zeros_like(rows)
+        slopes[:, first] = -self.rate * self.circle.orders * rows[:, second]
+        slopes[:, second] = self.rate * self.circle.orders * rows[:, first]
+        return slopes
+
+    @property
+    def rate(self) -> float:
+        """Angle about the axis for a distance along the circle [rad/m]."""
+        assert self.contact.circle is not None
+        return 1.0 / self.contact.circle.radius
+
+    @property
+    def at(self) -> float:
+        """Abscissa along the tangent at the start [m]."""
+        return 0.0 if self.is_second else self.contact.at
+
+    @property
+    def gap(self) -> float:
+        """Gap at the start [m]."""
+        return 0.0 if self.is_second else self.contact.gap
+
+
+def contact_rows(
+    contact: PointContact, coordinates: Coordinates, turning: tuple[TurningModes, ...]
+) -> list[ContactRows]:
+    frame = contact.frame
+    fixed = frame @ coordinates.trace(contact.tip)[: len(frame)]
+    if contact.touched_point is not None:
+        fixed = fixed - frame @ coordinates.trace(contact.touched_point)[: len(frame)]
+    if contact.friction.depends_on_speed:
+        # Without mass nothing holds the slip against friction that falls with its speed.
+        fixed[1:, coordinates.massless] = 0.0
+    if contact.is_spatial:
+        second = np.stack([np.zeros_like(fixed[0]), fixed[2]])
+        circle = None
+        if contact.circle is not None:
+            span = coordinates.spans[contact.track_body]
+            circle = next(one for one in turning if one.span == span)
+        return [
+            ContactRows(contact, fixed[:2], *_path_spans(contact, coordinates), circle=circle),
+            ContactRows(contact, second, is_second=True, circle=circle),
+        ]
+    return [ContactRows(contact, fixed, *_path_spans(contact, coordinates))]
+
+
+def _path_spans(contact: PointContact, coordinates: Coordinates) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Return the spans of modes that move a path along its normal and along its tangent, none without a path."""
+    if contact.path_body is None:
+        return (0, 0), (0, 0)
+    first, end = coordinates.spans[contact.path_body]
+    axial = first + len(contact.path_body.path().normal.multiples)
+    return (first, axial), (axial, end)

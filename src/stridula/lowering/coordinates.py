@@ -1,0 +1,185 @@
+"""The place of the modes of each body among those of all, and the coupling of joined bodies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..bodies import BodyPoint
+from ..bodies.modes import Modes
+from ..bodies.ordinary import check_coupled_count
+from ..connections import ends, unit
+from ..contact import PointContact
+from ..system import System
+
+# Off-diagonal terms, relative to the diagonal ones, below which modes are not coupled.
+UNCOUPLED = 1e-13
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """The place of the modes of each body, and full-width rows of its points.
+
+    Attributes
+    ----------
+    system : System
+        The system.
+    known : dict
+        Modes of each body asked for so far, by its identity.
+    """
+
+    system: System
+    # By the body itself: comparing bodies takes longer than anything that is asked of them here.
+    known: dict[int, Modes] = field(default_factory=dict)
+
+    @cached_property
+    def joined(self) -> tuple[Any, ...]:
+        """The bodies whose modes may be coupled: by connections, or by a damping matrix of their own."""
+        named = [point.body for connection in self.system.connections for point in ends(connection)]
+        bodies = self.system.bodies
+        return tuple(body for body in bodies if body in named or self.modes(body).damping_matrix is not None)
+
+    @cached_property
+    def order(self) -> tuple[Any, ...]:
+        """The bodies, joined ones first."""
+        return (*self.joined, *(body for body in self.system.bodies if body not in self.joined))
+
+    @cached_property
+    def spans(self) -> dict[Any, tuple[int, int]]:
+        """First mode of each body, and the one after its last."""
+        found, start = {}, 0
+        for body in self.order:
+            found[body] = (start, start + self.modes(body).count)
+            start = found[body][1]
+        return found
+
+    @cached_property
+    def size(self) -> int:
+        """Number of modes."""
+        return max(end for _, end in self.spans.values())
+
+    @cached_property
+    def pairs(self) -> int:
+        """Number of pairs of rows of all contacts."""
+        return sum(map(pairs_of, self.system.contacts))
+
+    def modes(self, body: Any) -> Modes:
+        """Return the modes of a body."""
+        if id(body) not in self.known:
+            self.known[id(body)] = body.modes(self.system.is_held(body))
+        return self.known[id(body)]
+
+    def full(self, body: Any, numbers: Array) -> Array:
+        """Return numbers of a body's modes among those of all."""
+        first, end = self.spans[body]
+        out = np.zeros((*numbers.shape[:-1], self.size))
+        out[..., first:end] = numbers
+        return out
+
+    def body_trace(self, point: BodyPoint) -> Array:
+        """Return the rows of the world displacement at a point on the coordinates of the bodies, shape (3, modes).
+
+        A body in the plane is rigid along z.
+        """
+        body: Any = point.body
+        return _in_space(self.full(body, body.trace(point.position, self.system.is_held(body))))
+
+    def blended(self, rows: Array) -> Array:
+        """Return rows on the coordinates of the bodies as rows on those that march."""
+        size = len(self.blend)
+        rows[..., :size] = rows[..., :size] @ self.blend
+        return rows
+
+    def trace(self, point: BodyPoint) -> Array:
+        """Return the rows of the world displacement at a point, shape (3, modes)."""
+        return self.blended(self.body_trace(point))
+
+    def translation(self, body: Any) -> Array:
+        """Return what a uniform acceleration of a body along x, y and z drives, shape (3, modes)."""
+        return self.blended(_in_space(self.full(body, self.modes(body).translation)))
+
+    @cached_property
+    def massless(self) -> Array:
+        """Which modes are residual shapes."""
+        return np.concatenate([self.modes(body).massless for body in self.order])
+
+    @property
+    def matrices(self) -> tuple[Array, Array]:
+        """Stiffness and damping matrix of the modes of joined bodies, which come first."""
+        return self._coupling[0], self._coupling[1]
+
+    @property
+    def blend(self) -> Array:
+        """How the coordinates that march make those of joined bodies."""
+        return self._coupling[2]
+
+    @cached_property
+    def _coupling(self) -> tuple[Array, Array, Array]:
+        stiffness, dissipation = _matrices(self)
+        return without_massless_coupling(stiffness, dissipation, self.massless[: len(stiffness)])
+
+
+def _matrices(coordinates: Coordinates) -> tuple[Array, Array]:
+    """Return the stiffness and the damping matrix of the modes of joined bodies."""
+    size = sum(coordinates.modes(body).count for body in coordinates.joined)
+    check_coupled_count(size)
+    stiffness, dissipation = np.zeros((size, size)), np.zeros((size, size))
+    for body in coordinates.joined:
+        modes, span = coordinates.modes(body), slice(*coordinates.spans[body])
+        stiffness[span, span] = np.diag(modes.stiffness)
+        own = np.diag(modes.damping_rate)
+        dissipation[span, span] = own if modes.damping_matrix is None else modes.damping_matrix
+    for connection in coordinates.system.connections:
+        row = unit(connection) @ coordinates.body_trace(connection.first)[:, :size]
+        if connection.second is not None:
+            row = row - unit(connection) @ coordinates.body_trace(connection.second)[:, :size]
+        for matrix, rate in zip((stiffness, dissipation), connection.rates, strict=True):
+            if rate:
+                matrix += rate * np.outer(row, row)
+    return stiffness, dissipation
+
+
+def without_massless_coupling(stiffness: Array, dissipation: Array, massless: Array) -> tuple[Array, Array, Array]:
+    """Return stiffness and damping matrix in coordinates in which residual shapes stand alone, and their blend.
+
+    Connections hold residual shapes, too: what follows the modes statically becomes part of these, what is left has
+    unit stiffness. Damping acts on the modes and on what follows them.
+    """
+    if not massless.any():
+        return stiffness, dissipation, np.eye(0)
+    blend = np.eye(len(stiffness))
+    moving = ~massless
+    own, across = stiffness[np.ix_(massless, massless)], stiffness[np.ix_(massless, moving)]
+    root = np.linalg.cholesky(own)
+    blend[np.ix_(massless, moving)] = -np.linalg.solve(own, across)
+    blend[np.ix_(massless, massless)] = np.linalg.inv(root).T
+    stiffness, dissipation = blend.T @ stiffness @ blend, blend.T @ dissipation @ blend
+    stiffness[massless] = dissipation[massless] = 0.0
+    stiffness[:, massless] = dissipation[:, massless] = 0.0
+    stiffness[massless, massless] = 1.0
+    return 0.5 * (stiffness + stiffness.T), 0.5 * (dissipation + dissipation.T), blend
+
+
+def are_uncoupled(stiffness: Array, dissipation: Array) -> bool:
+    """Return whether the modes are oscillators on their own after all."""
+    return _is_diagonal(stiffness) and _is_diagonal(dissipation)
+
+
+def _is_diagonal(matrix: Array) -> bool:
+    diagonal = np.diag(matrix)
+    scale = np.sqrt(np.outer(diagonal, diagonal))
+    return bool(np.all(np.abs(matrix - np.diag(diagonal)) <= UNCOUPLED * scale))
+
+
+def _in_space(rows: Array) -> Array:
+    """Return rows along x, y and z of a body, which is rigid along z in the plane."""
+    return rows if len(rows) == 3 else np.concatenate([rows, np.zeros((1, rows.shape[1]))])
+
+
+def pairs_of(contact: PointContact) -> int:
+    """Return how many pairs of rows a contact has."""
+    return len(contact.frame) - 1

@@ -1,0 +1,115 @@
+"""Motions imposed on contacts, and the descriptions that decide how they vary in time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..bodies.turning import Turning
+from ..contact import PointContact
+from ..histories import Constant, History
+from ..system import System
+from .coordinates import pairs_of
+
+Signal = Callable[[Array, float], Array]
+
+
+@dataclass(frozen=True)
+class Prescribed:
+    """Descriptions that decide how signals and motions vary in time: systems that share them have the same.
+
+    Attributes
+    ----------
+    histories : tuple of History
+        Histories of the loads.
+    velocity : tuple of float and History, or None
+        The imposed velocity.
+    contacts : tuple
+        For each contact its frame, whether its tip and its track are held, its rigid track, and velocities of the
+        surface that it touches.
+    turning : tuple of Turning
+        How bodies turn.
+    turns : bool
+        Whether it goes on from other motions.
+    """
+
+    histories: tuple[History, ...]
+    velocity: tuple[float, History] | None
+    contacts: tuple[Any, ...]
+    turning: tuple[Turning, ...] = ()
+    turns: bool = False
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether nothing varies in time."""
+        still = all((track is None or track.is_still) and not any(moved) for *_, track, moved in self.contacts)
+        return (
+            still
+            and not self.turns
+            and self.velocity is None
+            and all(type(one.history) is Constant for one in self.turning)
+            and all(type(history) is Constant for history in self.histories)
+        )
+
+
+def prescribed_of(system: System, histories: tuple[History, ...]) -> Prescribed:
+    """Return the descriptions that decide how signals and motions of a system vary in time."""
+    contacts = []
+    for contact in system.contacts:
+        held = system.is_held(contact.tip.body), touches_held(contact, system)
+        passing = [speed for turning, speeds in contact.turning_velocities for speed in (turning.history, *speeds)]
+        if contact.circle is not None and contact.circle.velocity:
+            passing += [contact.circle.history, contact.circle.velocity]
+        moved = (*contact.surface_velocities, *passing)
+        contacts.append((contact.frame.tobytes(), *held, contact.rigid_track, moved))
+    imposed = system.imposed_velocity
+    bodies = [body.modes().turning for body in system.bodies if not system.is_held(body)]
+    turning = tuple(one for one in bodies if one is not None)
+    return Prescribed(histories, (imposed.velocity, imposed.history) if imposed else None, tuple(contacts), turning)
+
+
+def touches_held(contact: PointContact, system: System) -> bool:
+    """Return whether a contact is against a point of a body whose root follows an imposed velocity."""
+    return contact.touched_point is not None and system.is_held(contact.touched_point.body)
+
+
+def motion_of(system: System, imposed: Signal) -> Signal:
+    """Return the motions imposed on every contact: by a body under an imposed velocity, by a moving rigid track."""
+
+    alongs = [contact.frame[:, 0].tolist() for contact in system.contacts]
+    pairs = [pairs_of(contact) for contact in system.contacts]
+    firsts = (np.cumsum(pairs) - pairs).tolist()
+    # Asked for once: where a point is on a body takes long to find.
+    turnings = [contact.turning_velocities for contact in system.contacts]
+
+    def motion(time: Array, step: float) -> Array:
+        values = np.zeros((time.size, sum(pairs), 3))
+        each = zip(firsts, system.contacts, alongs, turnings, strict=True)
+        for number, contact, (normal_x, *tangents_x), passing in each:
+            held = [(0, 1.0)] if system.is_held(contact.tip.body) else []
+            held += [(1, -1.0)] if touches_held(contact, system) else []
+            for side, sign in held:
+                moved = imposed(time, step)
+                for pair, tangent_x in enumerate(tangents_x):
+                    values[:, number + pair, side] += tangent_x * moved
+                values[:, number, 2] += sign * normal_x * moved
+            for pair, speed in enumerate(contact.surface_velocities):
+                if speed:
+                    values[:, number + pair, 1] += speed * time
+            if contact.circle is not None:
+                values[:, number, 0] += contact.circle.travel(time)
+            for turning, speeds in passing:
+                for pair, speed in enumerate(speeds):
+                    values[:, number + pair, 1] += speed * turning.history.integral(time)
+            if contact.rigid_track is not None:
+                values[:, number, 1] += contact.rigid_track.travel(time)
+                values[:, number, 2] -= contact.rigid_track.normal_travel(time)
+                if contact.is_spatial:
+                    values[:, number + 1, 1] += contact.rigid_track.lateral_travel(time)
+        return values
+
+    return motion

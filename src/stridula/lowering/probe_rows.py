@@ -1,0 +1,96 @@
+"""Probes as rows on modal motion, on signals and on contact forces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import singledispatch
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..checks import ArgumentError, brief
+from ..connections import ends
+from ..records.probes import Probe, Reaction, SupportForce
+from .coordinates import Coordinates
+from .loads import Load
+
+
+@dataclass(frozen=True)
+class ProbeRows:
+    """What gives one probe: rows on modal motion, and shares of the signals and of the contact forces.
+
+    Attributes
+    ----------
+    rows : ndarray, shape (3, modes)
+        Rows on q, q' and q''.
+    direct : ndarray, shape (signals,)
+        Shares of the signals.
+    contact : ndarray, shape (contacts, 2)
+        Shares of the normal and of the tangential force of each contact.
+    """
+
+    rows: Array
+    direct: Array
+    contact: Array
+
+
+def probe_rows(probe: Probe, coordinates: Coordinates, loads: list[Load]) -> ProbeRows:
+    """Return the rows of a probe, checked against the system."""
+    if not isinstance(probe, Reaction) and probe.body not in coordinates.system.bodies:
+        raise ArgumentError("probe", "be on a body of this system", probe, got=f"one on {brief(probe.body)}")
+    return _rows_of(probe, coordinates, loads, np.zeros(len(loads) + 3), np.zeros((coordinates.pairs, 2)))
+
+
+@singledispatch
+def _rows_of(probe: Any, coordinates: Coordinates, loads: list[Load], direct: Array, contact: Array) -> ProbeRows:
+    system, matrix = coordinates.system, np.zeros((3, coordinates.size))
+    if hasattr(probe, "mode"):
+        modes = coordinates.modes(probe.body).count
+        if probe.mode >= modes:
+            raise ArgumentError("probe", f"be of a mode below {modes}", probe, got=probe.mode)
+        matrix[probe.derivative] = coordinates.blended(coordinates.full(probe.body, np.eye(1, modes, probe.mode)[0]))
+        return ProbeRows(matrix, direct, contact)
+    matrix[probe.derivative] = probe.along @ coordinates.trace(probe.point)
+    if system.is_held(probe.point.body):
+        direct[len(loads) + probe.derivative] = probe.along[0]
+    return ProbeRows(matrix, direct, contact)
+
+
+@_rows_of.register
+def _support_rows(
+    probe: SupportForce, coordinates: Coordinates, loads: list[Load], direct: Array, contact: Array
+) -> ProbeRows:
+    matrix = np.zeros((3, coordinates.size))
+    matrix[0] = coordinates.blended(coordinates.full(probe.body, probe.body.support_force(probe.end)))
+    return ProbeRows(matrix, direct, contact)
+
+
+@_rows_of.register
+def _reaction_rows(
+    probe: Reaction, coordinates: Coordinates, loads: list[Load], direct: Array, contact: Array
+) -> ProbeRows:
+    system, beam = coordinates.system, probe.body
+    component = ("x", "y", "moment").index(probe.component)
+    if beam != system.slider:
+        raise ArgumentError("probe", "be on the slider of this system", probe, got=f"one on {brief(beam)}")
+    if beam.tip_support != "free":
+        raise ArgumentError("tip_support", "be free where a Reaction is recorded", beam.tip_support)
+    if any(point.body == beam for connection in system.connections for point in ends(connection)):
+        raise ArgumentError("connections", "leave a body whose Reaction is recorded", got=f"one on {brief(beam)}")
+    if system.is_spatial:
+        raise ArgumentError("probe", "be another than a Reaction in a system with bodies in space", probe)
+    reaction = beam.root_reaction(system.is_held(beam))
+    matrix = np.zeros((3, coordinates.size))
+    matrix[2] = coordinates.blended(coordinates.full(beam, reaction.mass[component]))
+    direct[: len(loads)] = [-reaction.held[component] * load.root[component] for load in loads]
+    for number, point in enumerate(system.contacts):
+        # The contact pushes the tip with the normal force along the normal, less the tangential along the tangent.
+        signs = np.array([-1.0, 1.0])
+        if point.tip.body == beam:
+            lever = beam.root_lever(point.tip.position)[component]  # type: ignore[arg-type]
+            contact[number] += reaction.held[component] * signs * (point.frame @ lever)
+        if point.touched_point is not None and point.touched_point.body == beam:
+            lever = beam.root_lever(point.touched_point.position)[component]  # type: ignore[arg-type]
+            contact[number] -= reaction.held[component] * signs * (point.frame @ lever)
+    return ProbeRows(matrix, direct, contact)

@@ -1,0 +1,257 @@
+"""A system in space before its run: bodies in perspective, contacts, drives and what joins bodies."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from ..arrays import Array
+from ..bodies import BodyPoint
+from ..cards import eye_of, spoken
+from ..connections import ends, unit
+from ..system import System
+from .colours import LINES
+from .moved_bodies import check_surfaces, surfaces_of
+from .plane_drawings import (
+    ALONE,
+    CLOSED,
+    CONTACT,
+    FORCE,
+    JOINT,
+    NEAR,
+    SLIDING,
+    VELOCITY,
+    Cluster,
+    Placed,
+    clustered,
+    connection_value,
+    handle,
+    in_time,
+    run_of,
+    spoken_small,
+)
+from .reels import DPI, HEIGHT, WIDTH
+from .rigid_surfaces import centres_of
+from .scenes import Stage
+from .slidings import sliding_of
+
+ROOM = (0.02, 0.15, 0.96, 0.72)
+# Lengths as shares of the extent: arrows, springs, the scale.
+ARROW, LENGTH, SCALE = 0.18, 0.1, 0.25
+# How much of their colour bodies have, and most contacts whose normals are drawn, and whose speeds are written.
+TINT, MOST_NORMALS, MOST_WORDS = 0.35, 8, 3
+# Angle through which an arrow goes round a body that turns [rad].
+ARC = 0.35 * np.pi
+MOST_LINES = 6
+
+
+class SpaceDrawing:
+    """A system in space as it is before its run.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    view : tuple of float
+        Elevation and azimuth of the eye [rad].
+    title : str
+        Title.
+
+    Attributes
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    """
+
+    def __init__(self, system: System, view: tuple[float, float], title: str) -> None:
+        check_surfaces(system)
+        self.system, self.figure = system, Figure(figsize=(WIDTH / DPI, HEIGHT / DPI), dpi=DPI)
+        self._shown = surfaces_of(system, eye_of(view), moving=False)
+        self._stage = Stage(self.figure, ROOM, self._shown, view)
+        self.axes: Any = self._stage.axes
+        places = np.concatenate([one.surface.place for one in self._shown])
+        self.low, self.middle = places.min(axis=0), 0.5 * (places.min(axis=0) + places.max(axis=0))
+        self.extent = float(np.ptp(places, axis=0).max()) or ALONE
+        self._centres = centres_of(system)
+        self._seen, self.caption, self._handles = [places], list[str](), dict[str, Any]()
+        self._draw_bodies()
+        self._draw_connections()
+        self._draw_contacts()
+        self._draw_drives()
+        self._draw_scale()
+        self._stage.fill_with(np.concatenate(self._seen))
+        lines = self.caption[:MOST_LINES]
+        lines += [f"and {len(self.caption) - MOST_LINES} more"] if len(self.caption) > MOST_LINES else []
+        self.figure.text(0.01, 0.985, "\n".join(lines), fontsize=8, verticalalignment="top")
+        handles = list(self._handles.values())
+        self.figure.legend(handles=handles, loc="lower center", ncols=3, fontsize=8, frameon=False)
+        self.figure.suptitle(title, fontsize=11)
+
+    def _place(self, point: BodyPoint) -> Array | None:
+        """Return where a point is, as far as it is known [m]."""
+        body: Any = point.body
+        return self._centres[body] + body.offset(point.position) if body in self._centres else point.place
+
+    def _draw_bodies(self) -> None:
+        colours = []
+        bodies = {self.system.body_name(body): body for body in self.system.bodies}
+        for number, one in enumerate(self._shown):
+            tint = 1.0 - TINT * (1.0 - np.array(to_rgb(LINES[number % len(LINES)])))
+            colours.append(np.tile(tint, (int(one.seen.sum()), 1)))
+            turns = getattr(bodies[one.name], "turning", 0.0)
+            is_turned = isinstance(turns, float) and turns != 0.0
+            words = f"{one.name}, turns at {spoken(turns, 'rad/s')}" if is_turned else one.name
+            self._handles[f"body {number}"] = Patch(facecolor=tuple(tint.tolist()), edgecolor="0.4", label=words)
+            if is_turned:
+                self._draw_turn(bodies[one.name], one.surface.place)
+        shades = np.concatenate(colours) * self._stage.shade[:, None]
+        places = [one.surface.place for one in self._shown]
+        self._stage.drawn(self._stage.polygons(places), facecolors=shades, linewidths=0.15, edgecolors="0.55")
+        drawn = {one.name for one in self._shown}
+        left = [name for name in bodies if name not in drawn]
+        if left:
+            self.caption.append(f"not drawn, as their places are not known: {', '.join(left)}")
+
+    def _draw_turn(self, body: Any, places: Array) -> None:
+        """Draw the sense in which a body turns as an arc round its axis."""
+        first, second, axis = body.frame
+        away = places - np.array(body.origin)
+        radius = 1.06 * float(np.linalg.norm(away - np.outer(away @ axis, axis), axis=1).max())
+        height = float((away @ axis).max())
+        angles = np.sign(body.turning) * np.linspace(0.0, ARC, 40)
+        ring = np.outer(np.cos(angles), first) + np.outer(np.sin(angles), second)
+        arc = np.array(body.origin) + height * axis + radius * ring
+        self._line(arc, VELOCITY, 1.8)
+        self._head(arc[-1], arc[-1] - arc[-2], VELOCITY)
+        self._legend("velocity that is prescribed", VELOCITY)
+
+    def _draw_connections(self) -> None:
+        found: list[Placed] = []
+        for connection in self.system.connections:
+            place = self._place(connection.first)
+            words = f"{connection.kind} {connection_value(connection)}"
+            if place is None:
+                self.caption.append(f"{words}, not drawn")
+                continue
+            way = unit(connection)
+            others = [self._place(point) for point in ends(connection)[1:]]
+            if others and others[0] is not None:
+                found.append((others[0] - place, (connection.kind, "joint"), words, place))
+            else:
+                away = way if way @ (place - self.middle) > 0.0 else -way
+                found.append((LENGTH * self.extent * away, (connection.kind, np.abs(way).tobytes()), words, place))
+        counts: dict[str, int] = {}
+        for one in clustered(found, 0.0):
+            end = one.place + one.things[0]
+            self._line(np.array([one.place, end]), JOINT, 1.3, linestyle=":" if "dashpot" in one.words else "-")
+            self._dots(end[None], "s", JOINT, 3.0)
+            counts[one.words] = counts.get(one.words, 0) + len(one.things)
+        for words, count in counts.items():
+            label = words if count == 1 else f"{words}, each of {count}"
+            style = ":" if "dashpot" in words else "-"
+            self._handles[words] = handle(label, JOINT, linestyle=style, marker="s", markersize=3)
+
+    def _draw_contacts(self) -> None:
+        found, laws, places = [], dict[str, list[str]](), []
+        for name, contact in zip(self.system.contact_names, self.system.contacts, strict=True):
+            known = [self._place(end) for end in (contact.tip, contact.touched_point) if end is not None]
+            place = next((one for one in known if one is not None), None)
+            gap = f", gap {spoken_small(contact.gap)}" if abs(contact.gap) > CLOSED else ""
+            laws.setdefault(f"friction {contact.friction}{gap}", []).append(name)
+            if place is not None:
+                places.append(place)
+                sliding = sliding_of(contact, self.system)
+                towards = None if sliding is None else sliding.way.round(1).tobytes()
+                kind = (contact.surface, contact.frame[0].round(1).tobytes(), towards)
+                found.append(((contact, sliding), kind, "", place))
+        for words, names in laws.items():
+            self.caption.append(f"{run_of(names)}: {words}")
+        if not places:
+            return
+        self._dots(np.array(places), "o", CONTACT, 4.0, markeredgecolor="black", markeredgewidth=0.5)
+        self._handles["contact"] = handle("contact", CONTACT, marker="o", markeredgecolor="black", linestyle="none")
+        words, shown = "direction in which a tip slides", spread(clustered(found, NEAR * self.extent), MOST_NORMALS)
+        speeds = [sliding.words for (_, sliding), *_ in found if sliding is not None and sliding.words]
+        if len(shown) > MOST_WORDS and speeds:
+            words = f"{words}, at {run_of(dict.fromkeys(sorted(speeds, key=lambda one: float(one.split()[0]))))}"
+        for one in shown:
+            contact, sliding = one.things[0]
+            normal = np.resize(contact.frame[0], 3) if len(contact.frame) == 3 else np.append(contact.frame[0], 0.0)
+            self._arrow(
+                one.place, one.place + 0.4 * ARROW * self.extent * normal, "black", "normal of a contact", "", 1.0
+            )
+            if sliding is not None:
+                way = np.append(sliding.way, 0.0)[:3]
+                start = one.place + 0.04 * self.extent * normal
+                label = sliding.words if len(shown) <= MOST_WORDS else ""
+                self._arrow(start, start + 0.7 * ARROW * self.extent * way, SLIDING, words, label)
+
+    def _draw_drives(self) -> None:
+        forces = []
+        for drive in self.system.drives:
+            name = "" if drive.acted_on is None else f"{self.system.body_name(drive.acted_on)}: "
+            if drive.push is None:
+                self.caption.append(f"{name}{drive}")
+                continue
+            history, point, components = drive.push
+            place, size = self._place(point), float(np.linalg.norm(components))
+            if place is None or not size:
+                self.caption.append(f"{name}{drive}, not drawn")
+            else:
+                way = components / size
+                forces.append((way, way.round(9).tobytes(), f"{spoken(size, 'N')}{in_time(history)}", place))
+        for one in clustered(forces, NEAR * self.extent):
+            tail = one.place - ARROW * self.extent * one.things[0]
+            self._arrow(tail, one.place, FORCE, "force", one.label, at_tail=True)
+
+    def _draw_scale(self) -> None:
+        """Draw the directions of the world, each as long as a round length."""
+        length = 10.0 ** np.floor(np.log10(SCALE * self.extent))
+        length *= max(step for step in (1.0, 2.0, 5.0) if step * length <= SCALE * self.extent)
+        corner = self.low - 0.25 * length
+        for way, name in zip(np.eye(3), "xyz", strict=True):
+            self._arrow(corner, corner + length * way, "0.35", "", name, 1.2)
+        self._handles["scale"] = handle(f"x, y and z: {spoken_small(length)} each", "0.35")
+
+    def _arrow(
+        self, tail: Array, head: Array, colour: str, words: str, label: str, width: float = 1.8, at_tail: bool = False
+    ) -> None:
+        self._line(np.array([tail, head]), colour, width)
+        self._head(head, head - tail, colour)
+        if label:
+            where = tail + (1.08 if not at_tail else -0.08) * (head - tail)
+            box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.5}
+            self.axes.text(*where, label, color=colour, fontsize=8, ha="center", va="center", zorder=9, bbox=box)
+        if words:
+            self._legend(words, colour)
+
+    def _head(self, place: Array, way: Array, colour: str) -> None:
+        """Draw the head of an arrow as two strokes in the plane that the eye sees best."""
+        way = way / np.linalg.norm(way)
+        elevation, azimuth = np.radians(self.axes.elev), np.radians(self.axes.azim)
+        side = np.cross(way, eye_of((elevation, azimuth)))
+        size = float(np.linalg.norm(side))
+        if size > 1e-3:
+            reach = 0.025 * self.extent
+            wings = [place - reach * (way + sign * 0.45 * side / size) for sign in (1.0, -1.0)]
+            self._line(np.array([wings[0], place, wings[1]]), colour, 1.8)
+
+    def _line(self, places: Array, colour: str, width: float, **look: Any) -> None:
+        self.axes.plot(*places.T, color=colour, linewidth=width, clip_on=False, zorder=4, **look)
+        self._seen.append(places)
+
+    def _dots(self, places: Array, marker: str, colour: str, size: float, **look: Any) -> None:
+        style = {"linestyle": "none", "clip_on": False, "zorder": 5}
+        self.axes.plot(*places.T, marker=marker, color=colour, markersize=size, **style, **look)
+
+    def _legend(self, words: str, colour: str) -> None:
+        self._handles.setdefault(words, handle(words, colour, marker=">", markersize=5, linewidth=1.8))
+
+
+def spread(things: list[Cluster], most: int) -> list[Cluster]:
+    """Return at most so many of things, evenly taken."""
+    return things if len(things) <= most else [things[k] for k in np.linspace(0, len(things) - 1, most).astype(int)]
