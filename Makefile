@@ -1,26 +1,39 @@
 # Everything runs in .venv, made on first use; nothing but Python 3.11 or later, its venv module and make is needed.
+ifeq ($(OS),Windows_NT)
+PYTHON ?= python
+PROGRAMS := Scripts
+else
 PYTHON ?= python3
-BIN := .venv/bin
+PROGRAMS := bin
+endif
+BIN := .venv/$(PROGRAMS)
+OLDEST := .venv-oldest/$(PROGRAMS)
+# A part of the tests that goes through the package and takes neither a browser nor what Debian has.
+SMOKE := tests/unit/test_simulate.py tests/unit/test_scenarios.py tests/unit/test_files.py tests/unit/test_extras.py \
+	tests/unit/test_plot.py tests/hearing/test_wav.py tests/kernels/test_plain_python.py tests/physics/test_natural_frequencies.py
 
-.PHONY: help paper verify peers test lint docs bench convergence clean
+.PHONY: help paper verify peers test smoke oldest lint docs dist bench convergence clean
 
 help:
 	@echo "make paper        run every case of the paper into results/paper (sets itself up)"
 	@echo "make verify       run every case whose answer is known into results/verify; fails if one falls short"
 	@echo "make peers        the same systems in Siconos and here; needs Debian's python3-siconos, skipped without"
 	@echo "make test         lint, types, layers and tests (sets itself up)"
+	@echo "make smoke        a part of the tests, for other systems and Pythons"
+	@echo "make oldest       the same with the oldest dependencies that pyproject.toml allows, on Python 3.11 or 3.12"
 	@echo "make docs         build the documentation into docs/_build/html, warnings are errors"
+	@echo "make dist         wheel and sdist into dist, both checked, the wheel run on its own; minutes"
 	@echo "make bench        speed as a table of ratios, each measured in one run: C, Siconos, real time, scaling, start-up; minutes"
 	@echo "make convergence  the tables of docs/convergence.rst and the figures there and in docs/trust.rst, in a quarter of an hour"
 	@echo "make clean        remove .venv and everything built"
 
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[all]"
 	@touch $@
 
 .venv/installed-%: .venv/installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .[$*]
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[$*]"
 	@touch $@
 
 paper: .venv/installed
@@ -42,8 +55,24 @@ lint: .venv/installed-dev
 test: lint
 	$(BIN)/python -m pytest --numprocesses 2
 
+smoke: .venv/installed-test
+	$(BIN)/python -m pytest --numprocesses 2 $(SMOKE)
+
+.venv-oldest/installed: pyproject.toml packaging/oldest.py
+	$(PYTHON) -m venv .venv-oldest
+	$(PYTHON) packaging/oldest.py > .venv-oldest/oldest.txt
+	$(OLDEST)/python -m pip install --quiet --disable-pip-version-check --constraint .venv-oldest/oldest.txt --editable ".[test]"
+	@touch $@
+
+# Compiled code of another numba goes elsewhere: beside the sources it would take the place of ours.
+oldest: .venv-oldest/installed
+	NUMBA_CACHE_DIR=$(CURDIR)/.venv-oldest/compiled $(OLDEST)/python -m pytest -W default --numprocesses 2 $(SMOKE)
+
 docs: .venv/installed-docs
 	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
+
+dist: .venv/installed-dev
+	$(BIN)/python packaging/check_distributions.py
 
 bench: .venv/installed
 	$(BIN)/python benchmarks/suite.py
@@ -55,4 +84,4 @@ convergence: .venv/installed
 	$(BIN)/python examples/papers/laulagnet_2011/step_of_the_exact_scheme.py
 
 clean:
-	rm -rf .venv docs/_build results .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf .venv .venv-oldest dist docs/_build results .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
+from .extras import named_extras, on_first_use
 from .version import __version__
 
 _HOME = {
@@ -130,10 +131,9 @@ __all__ = ["__version__", *_MODULE]
 def __getattr__(name: str) -> Any:
     """Import a public module, or a public name from its module, on first use, so that `import stridula` is fast."""
     if name in _PUBLIC:
-        return import_module(f".{name}", __name__)
-    if name not in _MODULE:
-        raise AttributeError(f"module 'stridula' has no attribute {name!r}")
-    return getattr(import_module(f".{_MODULE[name]}", __name__), name)
+        with named_extras():
+            return import_module(f".{name}", __name__)
+    return on_first_use(__name__, _MODULE, name)
 
 
 def __dir__() -> list[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -100,6 +102,9 @@ def test_fields_are_named():
 
 
 def test_a_missing_package_is_said_with_its_extra(monkeypatch):
-    monkeypatch.setattr(sensation, "is_available", lambda: False)
-    with pytest.raises(ValueError, match=r"got none: pip install \.\[psycho\] in the sources"):
+    monkeypatch.setitem(sys.modules, "mosqito.sq_metrics", None)
+    monkeypatch.setitem(sys.modules, "mosqito", None)
+    with pytest.raises(
+        ImportError, match=r"need mosqito, which is not installed: pip install \"\.\[psycho\]\" in the so"
+    ):
         st.loudness(tone())

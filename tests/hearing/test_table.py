@@ -92,4 +92,6 @@ def test_the_louder_ear_is_named_as_far_as_the_sound_is_enough():
 def test_what_takes_a_package_says_so(capsys, monkeypatch):
     monkeypatch.setattr(hearing, "is_available", lambda: False)
     print_levels(tone())
-    assert "they need mosqito (pip install .[psycho] in the sources)" in capsys.readouterr().out
+    assert (
+        "loudness, sharpness and roughness need mosqito, which is not installed: pip install" in capsys.readouterr().out
+    )

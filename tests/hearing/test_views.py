@@ -139,6 +139,6 @@ def test_bad_input_is_one_line(rig, call, message):
 def test_without_pyvista_one_line_says_so(rig, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyvista", None)
     with pytest.raises(
-        ValueError, match=r"^view must have the package pyvista, got none: pip install \.\[view\] in the"
+        ImportError, match=r'^views need pyvista, which is not installed: pip install "\.\[view\]" in the sources$'
     ):
         plot.view(rig.system)

@@ -58,7 +58,7 @@ def test_a_run_that_leaves_its_track_leaves_the_others_alone(comparisons):
 def test_without_numba_cuda_the_package_to_install_is_named(monkeypatch):
     monkeypatch.setattr(cuda_march, "find_spec", lambda name: None)
     with pytest.raises(
-        RuntimeError, match=r'device="cuda" needs numba-cuda, .*: pip install \.\[cuda\] in the sources$'
+        RuntimeError, match=r'device="cuda" needs numba-cuda, .*: pip install "\.\[cuda\]" in the sources$'
     ):
         cuda_march.require_cuda()
 

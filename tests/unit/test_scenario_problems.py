@@ -154,7 +154,7 @@ def test_what_is_no_scenario_file_is_refused(tmp_path):
     (tmp_path / "binary.toml").write_bytes(b"\xff\x00\x80")
     (tmp_path / "cut.nc").write_bytes(b"\x89HDF\r\n\x1a\nrest")
     for name, message in [
-        ("binary.toml", "text file in UTF-8"),
+        ("binary.toml", "text in UTF-8"),
         ("cut.nc", "damaged"),
         ("", "a directory"),
         ("none.toml", "must be a file or one of"),

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
+from ..extras import on_first_use
 from .air import Air
 from .bridges import Bridge
 from .radiate import radiate
@@ -29,9 +29,7 @@ __all__ = ["Air", "Bridge", "radiate", "radiation_damping", "radiation_efficienc
 
 def __getattr__(name: str) -> Any:
     """Import a name from its home on first use: levels and sensation need filters, which are slow to import."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'stridula.acoustics' has no attribute {name!r}")
-    return getattr(import_module(f".{_HOME[name]}", __name__), name)
+    return on_first_use(__name__, _HOME, name)
 
 
 def __dir__() -> list[str]:

@@ -12,7 +12,8 @@ import numpy as np
 import xarray as xr
 
 from ..arrays import Array
-from ..checks import ArgumentError, choice
+from ..checks import choice
+from ..extras import named_extras
 from .pressures import channels, check_length, check_rate, of_listeners, over_time
 from .sample_rates import resampled
 
@@ -53,7 +54,9 @@ def loudness(pressure: xr.DataArray, field: str = "free") -> xr.DataArray:
     Raises
     ------
     ValueError
-        If the sound is too short or sampled too slowly, an argument is out of its range, or MoSQITo is missing.
+        If the sound is too short or sampled too slowly, or an argument is out of its range.
+    ImportError
+        If the extra ``psycho`` is not installed.
     """
     choice("field", field, FIELDS)
     metrics = _metrics()
@@ -83,7 +86,9 @@ def loudness_over_time(pressure: xr.DataArray, field: str = "free") -> xr.DataAr
     Raises
     ------
     ValueError
-        If the sound is too short or sampled too slowly, an argument is out of its range, or MoSQITo is missing.
+        If the sound is too short or sampled too slowly, or an argument is out of its range.
+    ImportError
+        If the extra ``psycho`` is not installed.
     """
     choice("field", field, FIELDS)
     metrics = _metrics()
@@ -112,7 +117,9 @@ def sharpness(pressure: xr.DataArray, field: str = "free") -> xr.DataArray:
     Raises
     ------
     ValueError
-        If the sound is too short or sampled too slowly, an argument is out of its range, or MoSQITo is missing.
+        If the sound is too short or sampled too slowly, or an argument is out of its range.
+    ImportError
+        If the extra ``psycho`` is not installed.
     """
     choice("field", field, FIELDS)
     metrics = _metrics()
@@ -145,7 +152,9 @@ def roughness(pressure: xr.DataArray) -> xr.DataArray:
     Raises
     ------
     ValueError
-        If the sound is too short or sampled too slowly, or MoSQITo is missing.
+        If the sound is too short or sampled too slowly.
+    ImportError
+        If the extra ``psycho`` is not installed.
     """
     metrics = _metrics()
     sounds = _sounds(pressure, FRAME, "roughness")
@@ -155,9 +164,7 @@ def roughness(pressure: xr.DataArray) -> xr.DataArray:
 
 
 def _metrics() -> Any:
-    if not is_available():
-        raise ArgumentError("sensation", "have the package mosqito", got="none: pip install .[psycho] in the sources")
-    with _quiet():
+    with _quiet(), named_extras():
         import mosqito.sq_metrics
     return mosqito.sq_metrics
 

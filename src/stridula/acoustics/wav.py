@@ -13,6 +13,7 @@ import xarray as xr
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, choice, positive
 from ..disk import check_writable, read, write
+from ..extras import named_extras
 from .pressures import channels
 from .sample_rates import resampled
 
@@ -171,7 +172,8 @@ def scale_comment(scale: float, start: float) -> str:
 
 def encoded(samples: Array, rate: int, subtype: str, comment: str) -> memoryview:
     """Return samples over full scale, shape (samples, channels), as a WAV file with a comment."""
-    import soundfile
+    with named_extras():
+        import soundfile
 
     content = io.BytesIO()
     options = {"samplerate": rate, "channels": samples.shape[1], "format": "WAV", "subtype": subtype}
@@ -205,7 +207,8 @@ def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
     OSError
         If the file cannot be read.
     """
-    import soundfile
+    with named_extras():
+        import soundfile
 
     content = read(path)
     try:

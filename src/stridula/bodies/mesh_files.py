@@ -13,6 +13,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, choice, in_one_line
 from ..disk import check_path, named, one_line
+from ..extras import named_extras
 from .profile_mesh import BODY
 
 PLANES = {"xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
@@ -63,7 +64,8 @@ def numbers_of(numbers: dict[int, Array], sets: dict[int, Array]) -> Array:
 
 
 def _read(path: str | os.PathLike[str]) -> Any:
-    import meshio
+    with named_extras():
+        import meshio
 
     check_path("path", path)
     with one_line(f"cannot read {named(path)}"), open(path, "rb"):

@@ -14,6 +14,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import ArgumentError, at_least, in_one_line, listed
 from ..disk import one_line
+from ..extras import named_extras
 from .cut_elements import can_be_cut, cut_into_tetrahedra, triangles_of
 from .solid_kinds import KINDS, ElementKind, outer_faces
 
@@ -66,8 +67,9 @@ def read_mesh(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 def _read(path: str | os.PathLike[str], form: str, prefix: str) -> Any:
     """Return the mesh from meshio, which reports some errors by printing and exiting the program."""
-    import meshio
-    from meshio._mesh import topological_dimension
+    with named_extras():
+        import meshio
+        from meshio._mesh import topological_dimension
 
     # meshio reads these kinds, but does not list their dimension.
     for kind in ("wedge15", "pyramid13"):

@@ -6,10 +6,10 @@ import atexit
 import gc
 import sys
 
-from .commands import app
+from ..extras import MissingPackage, named_extras
 from .consoles import print_anything
 from .doings import doings_shown
-from .exits import GOOD, INTERRUPTED, failed, say, terminated_as_interrupted
+from .exits import BAD_INPUT, GOOD, INTERRUPTED, failed, say, terminated_as_interrupted
 
 
 def main() -> None:
@@ -29,13 +29,17 @@ def main() -> None:
 
 def _run() -> int:
     try:
-        with doings_shown():
+        with doings_shown(), named_extras():
+            from .commands import app
+
             result = app(standalone_mode=False)
     except SystemExit as stop:
         # Rich leaves this way when its output is closed.
         return GOOD if stop.code == 1 else int(stop.code or GOOD)
     except KeyboardInterrupt:
         result = INTERRUPTED
+    except MissingPackage as error:
+        return say(str(error), BAD_INPUT)
     except Exception as error:
         return failed(error)
     return say("interrupted; nothing was kept", INTERRUPTED) if result == INTERRUPTED else int(result or GOOD)

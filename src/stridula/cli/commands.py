@@ -16,11 +16,25 @@ from .exits import FAILED, GOOD, INTERRUPTED, Stopped
 
 app = typer.Typer(
     help="Friction noise in the time domain: squeal, squeak and judder of elastic bodies in exact contact.",
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
 
-NameOrFile = Annotated[str, typer.Argument(metavar="NAME-OR-FILE", help="A shipped scenario, a TOML file or a record.")]
+
+def _shipped(beginning: str) -> list[str]:
+    """Return what the shell completes to a shipped scenario; files it finds itself."""
+    from ..scenarios.shipped import shipped
+
+    return [name for name in shipped("cases") if name.startswith(beginning)]
+
+
+NameOrFile = Annotated[
+    str,
+    typer.Argument(
+        metavar="NAME-OR-FILE",
+        help="A shipped scenario, a TOML file, a record, or - for standard input.",
+        autocompletion=_shipped,
+    ),
+]
 
 TextFile = Annotated[
     str | None, typer.Option("--out", metavar="FILE", help="Write to a file, in UTF-8, instead of printing.")

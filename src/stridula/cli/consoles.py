@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import io
 import sys
-
-from rich.console import Console
+from typing import TYPE_CHECKING
 
 from ..disk import write
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 # Columns in a file or a pipe; a terminal has its own width.
 WIDTH = 150
@@ -15,6 +17,8 @@ WIDTH = 150
 
 def wide_console() -> Console:
     """Return a console on standard output, wide enough for tables if it is not a terminal."""
+    from rich.console import Console
+
     console = Console()
     return console if console.is_terminal else Console(width=WIDTH)
 

@@ -17,6 +17,7 @@ from ..acoustics.levels import equivalent_level, sound_level
 from ..acoustics.pressures import channels, is_enough, positions
 from ..acoustics.sensation import is_available, loudness_over_time, roughness, sharpness
 from ..checks import at_least, at_most
+from ..extras import missing
 from .consoles import wide_console
 
 
@@ -105,8 +106,7 @@ def print_levels(pressure: xr.DataArray) -> None:
     if left_out:
         console.print(_too_little(left_out, lasts, rate), markup=False, highlight=False, soft_wrap=True)
     if not is_available():
-        words = "no loudness, sharpness and roughness: they need mosqito (pip install .[psycho] in the sources)"
-        console.print(words, markup=False, highlight=False, soft_wrap=True)
+        console.print(str(missing("mosqito")), markup=False, highlight=False, soft_wrap=True)
 
 
 def _too_little(left_out: Sequence[Column], lasts: float, rate: float) -> str:

@@ -13,6 +13,7 @@ from ..acoustics.listeners import FARTHEST
 from ..acoustics.radiate import radiate
 from ..acoustics.wav import NORMALISED, RATES, SUBTYPES, write_wav
 from ..checks import ArgumentError, at_most, listed, suggestion
+from ..extras import require
 from ..records.changes import check_one_system, played
 from ..records.files import load
 from ..scenarios.load import Scenario, load_scenario, scenario_of_tables
@@ -94,7 +95,8 @@ def write_sound(record: xr.Dataset, system: System, wav: str) -> tuple[str, str,
 
 
 def check_ending(wav: str) -> None:
-    """Raise ValueError unless the name of a sound file ends in .wav."""
+    """Raise ValueError unless the name of a sound file ends in .wav, ImportError if sound files cannot be written."""
+    require("soundfile")
     if not wav.lower().endswith(".wav"):
         raise ArgumentError("--wav", "end in .wav", wav)
 

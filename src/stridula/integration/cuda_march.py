@@ -11,6 +11,7 @@ from numba.core import config
 
 from .._kernels.parts import Imposed, Parts, Records
 from ..arrays import Array
+from ..extras import how_to_install
 from ..lowering.blocks import Blocks
 from ..records.state import State
 from .contact_solve import GaussSeidel
@@ -30,7 +31,7 @@ def require_cuda() -> None:
 def _missing() -> str:
     """Return the missing part in words; empty if a GPU can be used."""
     if find_spec("numba_cuda") is None:
-        return "numba-cuda, which is not installed: pip install .[cuda] in the sources"
+        return f"numba-cuda, which is not installed: {how_to_install('cuda')}"
     from numba import cuda
 
     if cuda.is_available() and len(cuda.gpus):

@@ -9,7 +9,7 @@ from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from functools import partial
-from typing import Any
+from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
 import xarray as xr
 
@@ -39,6 +39,73 @@ FEWEST_RUNS = 4
 # Most runs at a time on a card, limited by the memory for their records.
 MOST_ON_A_CARD = 16_384
 DEVICES: dict[str, type[March]] = {"cpu": March, "cuda": CudaMarch}
+T = TypeVar("T")
+
+
+class Options(TypedDict, total=False):
+    """Arguments of `simulate_many` that do not change the kind of what it returns."""
+
+    scheme: Scheme | None
+    step: float | None
+    sample_rate: float
+    probes: Sequence[Probe] | None
+    contact_solve: GaussSeidel | None
+    surface_rate: float | str | None
+    device: str
+    workers: int | None
+    watchers: Sequence[Watcher]
+    progress: bool
+    title: str
+    provenance: bool
+    variables: Sequence[str] | None
+
+
+@overload
+def simulate_many(
+    systems: Sequence[System],
+    duration: float,
+    reduce: None = None,
+    *,
+    errors: Literal["raise"] = "raise",
+    labelled: Literal[True] = True,
+    **options: Unpack[Options],
+) -> list[xr.Dataset]: ...
+
+
+@overload
+def simulate_many(
+    systems: Sequence[System],
+    duration: float,
+    reduce: None = None,
+    *,
+    errors: Literal["raise"] = "raise",
+    labelled: Literal[False],
+    **options: Unpack[Options],
+) -> list[PlainRecord]: ...
+
+
+@overload
+def simulate_many(
+    systems: Sequence[System],
+    duration: float,
+    reduce: Callable[[Any], T],
+    *,
+    errors: Literal["raise"] = "raise",
+    labelled: bool = True,
+    **options: Unpack[Options],
+) -> list[T]: ...
+
+
+@overload
+def simulate_many(
+    systems: Sequence[System],
+    duration: float,
+    reduce: Callable[[Any], Any] | None = None,
+    *,
+    errors: str,
+    labelled: bool = True,
+    **options: Unpack[Options],
+) -> list[Any]: ...
 
 
 def simulate_many(

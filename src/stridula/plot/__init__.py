@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
+
+from ..extras import on_first_use
 
 _HOME = {
     "LINE": "colours",
@@ -38,9 +39,7 @@ __all__ = list(_HOME)
 
 def __getattr__(name: str) -> Any:
     """Import a figure from its module on first use: films and spectra are slow to import."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'stridula.plot' has no attribute {name!r}")
-    return getattr(import_module(f".{_HOME[name]}", __name__), name)
+    return on_first_use(__name__, _HOME, name)
 
 
 def __dir__() -> list[str]:

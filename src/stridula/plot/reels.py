@@ -19,6 +19,7 @@ from matplotlib.figure import Figure
 
 from ..checks import ArgumentError
 from ..disk import check_writable, read, write
+from ..extras import how_to_install
 
 FRAMES_PER_SECOND = 25
 FEWEST_FRAMES, MOST_FRAMES = 2, 5000
@@ -135,7 +136,7 @@ def _writer(out: str | Path) -> AbstractMovieWriter:
     encoder = _encoder()
     if encoder is None:
         raise ArgumentError(
-            "out", "end in .gif without an encoder (pip install .[video] in the sources)", str(out), got=f"{str(out)!r}"
+            "out", f"end in .gif without an encoder ({how_to_install('video')})", str(out), got=f"{str(out)!r}"
         )
     return FFMpegWriter(
         fps=FRAMES_PER_SECOND, codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-crf", "20", "-threads", "1"]

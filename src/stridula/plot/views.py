@@ -10,7 +10,8 @@ import xarray as xr
 
 from ..arrays import Array
 from ..cards import VIEW, eye_of
-from ..checks import STATUS_WORDS, ArgumentError, positive
+from ..checks import STATUS_WORDS, positive
+from ..extras import named_extras
 from ..lowering.schemes import Scheme
 from ..system import System
 from .colours import STATUS_COLOURS
@@ -75,8 +76,9 @@ def view(
     Raises
     ------
     ValueError
-        If an argument is out of its range, no body has a surface, the run ends before the window, or pyvista
-        is not installed: ``pip install .[view]`` in the sources.
+        If an argument is out of its range, no body has a surface, or the run ends before the window.
+    ImportError
+        If the extra ``view`` is not installed.
     """
     check_surfaces(system)
     seen = checked_view(view)
@@ -125,8 +127,10 @@ def view_mode(system: System, theory: xr.Dataset, number: int, *, view: tuple[fl
     Raises
     ------
     ValueError
-        If an argument is out of its range, the mode does not oscillate, no body has a surface, the system is not that
-        of the theory, or pyvista is not installed: ``pip install .[view]`` in the sources.
+        If an argument is out of its range, the mode does not oscillate, no body has a surface, or the system is not
+        that of the theory.
+    ImportError
+        If the extra ``view`` is not installed.
     """
     check_surfaces(system)
     shapes, seen = shapes_of_mode(system, theory, number), checked_view(view)
@@ -220,12 +224,8 @@ def _looked_at(plotter: Any, seen: tuple[float, float]) -> Any:
 
 
 def _plotter() -> Any:
-    try:
+    with named_extras():
         import pyvista
-    except ModuleNotFoundError:
-        raise ArgumentError(
-            "view", "have the package pyvista", got="none: pip install .[view] in the sources"
-        ) from None
     return pyvista.Plotter()
 
 

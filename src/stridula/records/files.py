@@ -8,13 +8,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 import xarray as xr
-from h5netcdf.utils import CompatibilityError
 
 from ..checks import ArgumentError, in_one_line, instance
 from ..disk import check_writable, named, read, write
+from ..extras import named_extras, require
 
 MAGIC = b"\x89HDF\r\n\x1a\n"
 
@@ -33,8 +32,13 @@ def save(run: xr.Dataset, path: str | Path) -> None:
     ------
     OSError
         If the file cannot be written; no partial file is left.
+    ImportError
+        If the extra ``files`` is not installed.
     """
     instance("run", run, xr.Dataset)
+    require("h5py")
+    with named_extras():
+        from h5netcdf.utils import CompatibilityError
     check_writable(path)
     plain = run.drop_encoding()
     numbers = [name for name, values in plain.variables.items() if values.dtype.kind in "fi" and values.size]
@@ -69,6 +73,8 @@ def load(path: str | Path) -> xr.Dataset:
         If the file cannot be read.
     ValueError
         If it is not a record.
+    ImportError
+        If the extra ``files`` is not installed.
     """
     origin_of(path)
     with _readable(path):
@@ -100,6 +106,9 @@ def origin_of(path: str | Path) -> dict[str, str]:
     ValueError
         If it is not a record.
     """
+    require("h5netcdf")
+    with named_extras():
+        import h5py
     found: dict[str, Any] = {}
     if is_record(path):
         with _readable(path), h5py.File(path, "r") as file:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
+
+from ..extras import on_first_use
 
 _HOME = {
     "Case": "shipped",
@@ -19,6 +20,4 @@ __all__ = [*_HOME]
 
 def __getattr__(name: str) -> Any:
     """Import a name from its module on first use, so that a list of cases needs no compiler."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'stridula.scenarios' has no attribute {name!r}")
-    return getattr(import_module(f".{_HOME[name]}", __name__), name)
+    return on_first_use(__name__, _HOME, name)

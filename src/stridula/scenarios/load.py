@@ -93,7 +93,8 @@ def load_scenario(name_or_path: str | Path | xr.Dataset, overrides: Mapping[str,
     Parameters
     ----------
     name_or_path : str, Path or xarray.Dataset
-        Name of a shipped case, a TOML file, or a record to run again, as a dataset or as the file written by `save`.
+        Name of a shipped case, a TOML file, or a record to run again, as a dataset or as the file written by `save`;
+        ``-`` for TOML from standard input.
     overrides : mapping, optional
         Values to set by key: a full path such as ``contact.friction.coefficient``, or any unique ending of one.
 

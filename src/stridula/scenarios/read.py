@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 import tomllib
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +24,8 @@ FILES = ("file", "mass", "stiffness", "damping", "labels", "mesh")
 # Tables of a body that may also name a file.
 MESHES = ("profile", "mesh")
 
+# Name of the scenario that another program writes into a pipe.
+PIPED = "-"
 # Scenarios need 5; functions that recurse over tables allow far more.
 DEEPEST = 50
 
@@ -40,6 +44,8 @@ def read_tables(name_or_path: str | Path | xr.Dataset) -> dict[str, Any]:
         return _record_tables(name_or_path)
     if not isinstance(name_or_path, (str, Path)):
         raise ScenarioError([f"scenario must be a name, a path or a record, got {shown(name_or_path)}"])
+    if str(name_or_path) == PIPED:
+        return _with_base(_tables_of(_standard_input(), "standard input", Path()), Path(), ())
     cases = shipped("cases")
     if str(name_or_path) in cases:
         return _with_base(_parsed(cases[str(name_or_path)], str(name_or_path)), Path(), ())
@@ -102,19 +108,28 @@ def _file_tables(path: Path) -> dict[str, Any]:
     if content.startswith(MAGIC):
         title, text = scenario_of(path)
         return {"title": title} | _parsed(text, str(path))
+    return _tables_of(content, str(path), path.parent)
+
+
+@cache
+def _standard_input() -> bytes:
+    """Return all that comes in, which is read once: what takes a scenario by its name may ask again."""
+    return sys.stdin.buffer.read()
+
+
+def _tables_of(content: bytes, name: str, folder: Path) -> dict[str, Any]:
+    """Return the tables of a text, with the files of bodies found from a folder."""
     try:
         # PowerShell writes UTF-16, marked by the first two bytes.
         text = content.decode("utf-16" if content.startswith((BOM_UTF16_LE, BOM_UTF16_BE)) else "utf-8-sig")
     except UnicodeDecodeError:
         raise ScenarioError(
-            [f"scenario must be a text file in UTF-8 or, with a byte order mark, UTF-16, got {str(path)!r}"]
+            [f"scenario must be text in UTF-8 or, with a byte order mark, UTF-16, got {name!r}"]
         ) from None
-    tables = _parsed(text, str(path))
+    tables = _parsed(text, name)
     if not tables:
-        raise ScenarioError(
-            [f"scenario must not be empty, got {str(path)!r}: `stridula show squeal` prints one to edit"]
-        )
-    return _with_files(tables, path.parent)
+        raise ScenarioError([f"scenario must not be empty, got {name!r}: `stridula show squeal` prints one to edit"])
+    return _with_files(tables, folder)
 
 
 def _with_files(tables: dict[str, Any], folder: Path) -> dict[str, Any]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
+
+from ..extras import on_first_use
 
 _HOME = {
     "CalibrationProgress": "calibration",
@@ -29,6 +30,4 @@ __all__ = [*_HOME]
 
 def __getattr__(name: str) -> Any:
     """Import a name from its module on first use, since an ensemble needs no scenarios."""
-    if name not in _HOME:
-        raise AttributeError(f"module 'stridula.studies' has no attribute {name!r}")
-    return getattr(import_module(f".{_HOME[name]}", __name__), name)
+    return on_first_use(__name__, _HOME, name)

@@ -7,6 +7,7 @@ from contextlib import suppress
 from typing import Any
 
 from ..checks import ArgumentError
+from ..extras import named_extras
 from ..version import __version__
 from .measures import message_of
 from .task import Outcome, Work, use_one_thread
@@ -22,15 +23,12 @@ def client_of(address: str) -> Any:
     Raises
     ------
     ValueError
-        If dask.distributed is not installed, or no scheduler answers.
+        If no scheduler answers.
+    ImportError
+        If dask.distributed is not installed.
     """
-    try:
+    with named_extras():
         from distributed import Client
-    except ImportError:
-        raise ValueError(
-            "scheduler needs dask.distributed, which is not installed: pip install .[distributed] in the sources, or "
-            "leave it out"
-        ) from None
     try:
         # Not the default client of this process: one that cannot connect would remain the default.
         return Client(address, timeout=PATIENCE, set_as_default=False)

@@ -11,10 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..checks import ArgumentError, brief, count, finite, listed
 from ..scenarios.quantities import parts
 
 POINT = "point"
+# Of one key.
+Values = Sequence[Any] | Array
 MOST_POINTS = 1_000_000
 
 
@@ -100,7 +103,7 @@ class Grid:
         If a key has no values, or a value is not finite.
     """
 
-    values: Mapping[str, Sequence[Any]]
+    values: Mapping[str, Values]
 
     def __post_init__(self) -> None:
         if not isinstance(self.values, Mapping) or not self.values:
@@ -240,7 +243,7 @@ class Layout:
     asked: dict[str, Any]
 
 
-def laid_out(points: Grid | LatinHypercube | Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]]) -> Layout:
+def laid_out(points: Grid | LatinHypercube | Mapping[str, Values] | Sequence[Mapping[str, Any]]) -> Layout:
     """Return points in sequence.
 
     Parameters
@@ -278,7 +281,7 @@ def _listed(points: Sequence[Mapping[str, Any]]) -> Layout:
     return Layout(keys, values, {POINT: len(values)}, False, asked)
 
 
-def _plain(key: str, given: Sequence[Any]) -> list[Any]:
+def _plain(key: str, given: Values) -> list[Any]:
     """Return values as Python objects, checking that numbers are finite."""
     if not isinstance(key, str) or not key.strip():
         raise ArgumentError("key", "be a text", key)

@@ -15,7 +15,7 @@ from ..scenarios.quantities import quantity
 from ..version import __version__
 from .computed import Plan, Watcher, check_options, computed
 from .fates import Options
-from .points import Grid, LatinHypercube, laid_out, plain_python
+from .points import Grid, LatinHypercube, Values, laid_out, plain_python
 from .sources import SystemOf, varying
 from .survey_task import SurveyTask
 from .surveyed import check_names, surveyed
@@ -27,7 +27,7 @@ POINTS_OF_A_PART = 1
 
 def squeal_survey(
     scenario: str | Path | xr.Dataset | SystemOf,
-    points: Grid | LatinHypercube | Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]],
+    points: Grid | LatinHypercube | Mapping[str, Values] | Sequence[Mapping[str, Any]],
     *,
     overrides: Mapping[str, Any] | None = None,
     duration: float | str | None = None,

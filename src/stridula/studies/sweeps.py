@@ -13,7 +13,7 @@ from ..checks import by_key
 from ..version import __version__
 from .computed import Plan, Watcher, check_options, computed
 from .measures import asked_for
-from .points import Grid, LatinHypercube, laid_out, plain_python
+from .points import Grid, LatinHypercube, Values, laid_out, plain_python
 from .sources import SystemOf, varying
 from .swept import check_names, swept
 from .task import Outcome, Task
@@ -24,7 +24,7 @@ POINTS_OF_A_PART = 64
 
 def sweep(
     scenario: str | Path | xr.Dataset | SystemOf,
-    points: Grid | LatinHypercube | Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]],
+    points: Grid | LatinHypercube | Mapping[str, Values] | Sequence[Mapping[str, Any]],
     measures: Any,
     *,
     overrides: Mapping[str, Any] | None = None,

@@ -7,6 +7,7 @@ import xarray as xr
 
 from ..acoustics.levels import REFERENCE
 from ..acoustics.sensation import is_available, loudness, loudness_over_time
+from ..extras import missing
 from .case import Case, Curve, Outcome, Row, Sketch
 
 RATE = 48000
@@ -44,7 +45,7 @@ def tones() -> Outcome:
         curves.append(Curve(np.array(STEADY), np.array(steady), "stationary method", marks=True))
         curves.append(Curve(np.array(VARYING), np.array(varying), "time-varying method", marks=True))
     else:
-        notes.append("Not run: it needs the package mosqito (pip install .[psycho] in the sources).")
+        notes.append(f"Not run: {missing('mosqito')}.")
     return Outcome(rows, Sketch("level of 1 kHz [dB]", "loudness [sone]", curves), notes)
 
 

@@ -1,0 +1,79 @@
+"""Packages that come with an extra: where one is missing, a line says what needs it and how it is installed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+# What needs a package, and the extra that brings it.
+NEEDED = {
+    "pydantic": ("scenarios need", "scenarios"),
+    "h5netcdf": ("records in files need", "files"),
+    "h5py": ("records in files need", "files"),
+    "meshio": ("meshes in files need", "files"),
+    "soundfile": ("sound files need", "sound"),
+    "matplotlib": ("figures need", "plot"),
+    "typer": ("the command line needs", "cli"),
+    "rich": ("the command line needs", "cli"),
+    "starlette": ("the page needs", "page"),
+    "uvicorn": ("the page needs", "page"),
+    "websockets": ("the page needs", "page"),
+    "mosqito": ("loudness, sharpness and roughness need", "psycho"),
+    "pyvista": ("views need", "view"),
+    "distributed": ("other machines need", "distributed"),
+}
+
+
+class MissingPackage(ModuleNotFoundError):
+    """A package that an extra brings is not installed."""
+
+
+def missing(package: str) -> MissingPackage:
+    """Return the error for a package that is not installed, in words for users."""
+    needs, extra = NEEDED[package]
+    return MissingPackage(f"{needs} {package}, which is not installed: {how_to_install(extra)}", name=package)
+
+
+def require(package: str) -> None:
+    """Raise `MissingPackage` unless a package is installed."""
+    if find_spec(package) is None:
+        raise missing(package)
+
+
+def how_to_install(extra: str) -> str:
+    """Return the command that installs an extra; there is no distribution of this name on the index."""
+    return f'pip install ".[{extra}]" in the sources'
+
+
+@contextmanager
+def named_extras() -> Iterator[None]:
+    """Import what an extra brings, or raise `MissingPackage`."""
+    try:
+        yield
+    except MissingPackage:
+        raise
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        if package not in NEEDED:
+            raise
+        raise missing(package) from None
+
+
+def on_first_use(package: str, homes: Mapping[str, str], name: str) -> Any:
+    """Return a public name of a package from the module that it lives in, which is imported now.
+
+    Raises
+    ------
+    AttributeError
+        If the package has no such name.
+    MissingPackage
+        If the module takes an extra that is not installed.
+    """
+    if name not in homes:
+        raise AttributeError(f"module {package!r} has no attribute {name!r}")
+    with named_extras():
+        module = import_module(f".{homes[name]}", package)
+    return getattr(module, name)

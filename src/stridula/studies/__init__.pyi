@@ -1,0 +1,19 @@
+"""Types of the public names, which `__init__.py` imports on first use."""
+
+from .calibration import CalibrationProgress as CalibrationProgress
+from .calibration import Target as Target
+from .calibration import calibrate as calibrate
+from .computed import SweepProgress as SweepProgress
+from .ensembles import ensemble as ensemble
+from .ensembles import mean_and_interval as mean_and_interval
+from .ensembles import share_of as share_of
+from .loci import critical_value as critical_value
+from .loci import root_loci as root_loci
+from .points import Grid as Grid
+from .points import LatinHypercube as LatinHypercube
+from .points import Range as Range
+from .sobol import sensitivity as sensitivity
+from .surveys import squeal_survey as squeal_survey
+from .sweeps import sweep as sweep
+from .tables import survey_table as survey_table
+from .verdicts import agreement as agreement

@@ -1,0 +1,144 @@
+"""Packages that an extra brings: without one, a line says what needs it and how it is installed."""
+
+from __future__ import annotations
+
+import pickle
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from stridula.extras import NEEDED, MissingPackage, how_to_install, missing, named_extras, on_first_use, require
+
+ROOT = Path(__file__).resolve().parents[2]
+EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+# An interpreter in which packages are as if they had never been installed.
+WITHOUT = """
+import sys
+from importlib.machinery import PathFinder
+found = PathFinder.find_spec
+PathFinder.find_spec = lambda name, *where: None if name.partition(".")[0] in {packages!r} else found(name, *where)
+"""
+# What a user does without any of them, and the line that answers, up to the package.
+IN_PYTHON = {
+    "st.load_scenario('squeal')": "scenarios need pydantic",
+    "st.sweep": "scenarios need pydantic",
+    "st.load('a.nc')": "records in files need h5netcdf",
+    "st.save(xr.Dataset(), 'b.nc')": "records in files need h5py",
+    "st.SolidMesh.read('a.msh')": "meshes in files need meshio",
+    "st.MeshProfile.read('a.msh')": "meshes in files need meshio",
+    "st.read_wav('a.wav')": "sound files need soundfile",
+    "st.write_wav('a.wav', heard)": "sound files need soundfile",
+    "st.loudness(heard)": "loudness, sharpness and roughness need mosqito",
+    "st.plot.overview": "figures need matplotlib",
+    "from stridula.plot import regime_map": "figures need matplotlib",
+    "st.verification.verify()": "figures need matplotlib",
+}
+GIVEN = """
+import numpy as np, stridula as st, xarray as xr
+for name in ("a.msh", "a.nc"):
+    open(name, "w").write("$MeshFormat")
+time = np.arange(48000) / 48000
+heard = xr.DataArray(np.sin(time), {"time": time}, "time", "pressure", {"units": "Pa"})
+"""
+EACH = """
+for code in CODES:
+    try:
+        exec(code)
+        print("nothing")
+    except Exception as error:
+        print(type(error).__name__ + ": " + str(error))
+"""
+# Verbs where the command line is there, and what it is for is not.
+VERBS = {
+    ("run", "squeal", "--plot", "a.png"): "figures need matplotlib",
+    ("run", "squeal", "--wav", "a.wav"): "sound files need soundfile",
+    ("verify",): "figures need matplotlib",
+    ("app", "--no-browser"): "the page needs uvicorn",
+}
+EACH_VERB = """
+from stridula.cli import main
+for words in VERBS:
+    sys.argv = ["stridula", *words]
+    try:
+        main()
+    except SystemExit as stop:
+        print(stop.code)
+"""
+
+
+def run_without(packages: set[str], code: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run code where packages are missing."""
+    command = [sys.executable, "-c", WITHOUT.format(packages=packages) + code]
+    return subprocess.run(command, capture_output=True, text=True, cwd=folder, timeout=300, check=False)
+
+
+def line(beginning: str) -> str:
+    """Return all that is to be said."""
+    package = beginning.rpartition(" ")[2]
+    return f'{beginning}, which is not installed: pip install ".[{NEEDED[package][1]}]" in the sources'
+
+
+def test_in_python_the_error_names_the_extra(tmp_path):
+    done = run_without({*NEEDED}, f"CODES = {[*IN_PYTHON]!r}\n{GIVEN}{EACH}", tmp_path)
+    said = dict(zip(IN_PYTHON, done.stdout.splitlines(), strict=True))
+    assert said == {code: f"MissingPackage: {line(beginning)}" for code, beginning in IN_PYTHON.items()}, done.stderr
+
+
+def test_the_command_line_says_so_in_one_line_before_it_runs(tmp_path):
+    packages = {"matplotlib", "soundfile", "starlette", "uvicorn"}
+    done = run_without(packages, f"VERBS = {[*VERBS]!r}\n{EACH_VERB}", tmp_path)
+    assert done.stderr.splitlines() == [f"stridula: {line(beginning)}" for beginning in VERBS.values()]
+    assert done.stdout.split() == ["2"] * len(VERBS)
+    assert not [*tmp_path.iterdir()]
+
+
+def test_without_a_command_line_the_command_says_so(tmp_path):
+    done = run_without({"typer"}, "sys.argv = ['stridula', 'list']\nfrom stridula.cli import main\nmain()", tmp_path)
+    assert (done.returncode, done.stderr) == (2, f"stridula: {line('the command line needs typer')}\n")
+
+
+def test_what_no_extra_brings_is_an_error_of_its_own():
+    with pytest.raises(ModuleNotFoundError, match="No module named 'nothing_of_ours'") as caught, named_extras():
+        import nothing_of_ours  # noqa: F401
+    assert not isinstance(caught.value, MissingPackage)
+
+
+def test_names_that_are_not_there_stay_attribute_errors():
+    with pytest.raises(AttributeError, match=r"module 'stridula\.plot' has no attribute 'overvew'"):
+        on_first_use("stridula.plot", {}, "overvew")
+
+
+def test_a_package_that_is_there_is_not_missed(monkeypatch):
+    require("pytest")
+    monkeypatch.setitem(sys.modules, "soundfile", None)
+    with pytest.raises(MissingPackage, match="soundfile"):
+        require("soundfile")
+
+
+def test_the_error_crosses_to_other_processes():
+    error = pickle.loads(pickle.dumps(missing("meshio")))
+    assert (str(error), error.name) == (str(missing("meshio")), "meshio")
+
+
+def brought(extra: str) -> set[str]:
+    """Return the packages of an extra and of those that it names."""
+    found = set()
+    for text in EXTRAS[extra]:
+        name, inner = re.match(r"([\w-]+)(?:\[(.*?)\])?", text).groups()
+        found |= {one for part in inner.split(",") for one in brought(part)} if name == "stridula" else {name}
+    return found
+
+
+@pytest.mark.parametrize("package", NEEDED)
+def test_the_extra_that_is_named_brings_the_package(package):
+    assert package in brought(NEEDED[package][1])
+
+
+def test_all_of_the_command_line_and_the_page_comes_with_all():
+    extras = ("cli", "files", "page", "plot", "scenarios", "sound")
+    assert brought("all") == {name for extra in extras for name in brought(extra)}
+    assert how_to_install("all") == 'pip install ".[all]" in the sources'

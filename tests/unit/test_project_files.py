@@ -1,0 +1,97 @@
+"""Files around the package: workflows, forms, recipe and container say what Makefile and pyproject.toml say."""
+
+from __future__ import annotations
+
+import json
+import re
+import runpy
+import tomllib
+from pathlib import Path
+
+import pytest
+import yaml
+
+from stridula.version import __version__
+
+ROOT = Path(__file__).resolve().parents[2]
+WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
+FORMS = sorted((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml"))
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+OLDEST = runpy.run_path(str(ROOT / "packaging" / "oldest.py"))
+TARGETS = set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
+# What conda calls otherwise.
+OF_CONDA = {"soundfile": "pysoundfile", "matplotlib": "matplotlib-base"}
+
+
+def read(path: Path) -> dict:
+    return yaml.safe_load(path.read_text(encoding="utf-8"))
+
+
+def refused(command: str) -> list[str]:
+    """Return the parts of a command that are neither the whole check nor make something that there is."""
+    parts = [part.split() for part in command.split("&&")]
+    good = [words == [".ci/run"] or (words[0] == "make" and words[1] in TARGETS) for words in parts]
+    return [" ".join(words) for words, is_good in zip(parts, good, strict=True) if not is_good]
+
+
+@pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.name)
+def test_workflows_call_targets_that_exist(path):
+    commands = [step["run"] for job in read(path)["jobs"].values() for step in job["steps"] if "run" in step]
+    assert commands
+    assert (ROOT / ".ci" / "run").is_file()
+    assert [part for command in commands for part in refused(command)] == []
+
+
+@pytest.mark.parametrize("command", ["make tset", "python -m pytest", "make dist && pip install ."])
+def test_the_rule_can_fail(command):
+    assert refused(command)
+
+
+def test_every_python_of_the_classifiers_is_tested():
+    said = [text.rpartition(" ")[2] for text in PROJECT["classifiers"] if re.search(r":: 3\.\d+$", text)]
+    matrix = read(ROOT / ".github" / "workflows" / "check.yml")["jobs"]["systems"]["strategy"]["matrix"]
+    assert matrix["python"] == said
+    assert PROJECT["requires-python"] == f">={said[0]}"
+
+
+@pytest.mark.parametrize("path", FORMS, ids=lambda path: path.name)
+def test_forms_ask_for_something(path):
+    form = read(path)
+    assert {"name", "description", "body"} <= set(form)
+    assert all(field["attributes"]["label"] and field["id"] for field in form["body"])
+
+
+def test_hooks_are_those_of_lint():
+    hooks = [hook for repo in read(ROOT / ".pre-commit-config.yaml")["repos"] for hook in repo["hooks"]]
+    assert [hook["entry"] for hook in hooks] == ["python -m ruff format", "python -m ruff check"]
+
+
+def test_versions_are_equal():
+    assert read(ROOT / "packaging" / "conda" / "recipe.yaml")["context"]["version"] == __version__
+    assert read(ROOT / "CITATION.cff")["version"] == __version__
+
+
+def test_the_recipe_requires_what_the_project_does():
+    extras = PROJECT["optional-dependencies"]
+    texts = [*PROJECT["dependencies"], *(text for extra in OLDEST["EXTRAS"] for text in extras[extra])]
+    needed = {tuple(line.split("==")) for line in OLDEST["oldest"](texts)}
+    recipe = read(ROOT / "packaging" / "conda" / "recipe.yaml")
+    found = {tuple(text.split(" >=")) for text in recipe["requirements"]["run"]} - {("python", "3.11")}
+    assert found == {(OF_CONDA.get(name, name), release) for name, release in needed}
+    assert recipe["about"]["license_file"] == PROJECT["license-files"]
+    assert recipe["about"]["license"] == PROJECT["license"]
+
+
+def test_oldest_releases_are_the_floors():
+    assert OLDEST["oldest"](["numpy>=2.0", "stridula[cli]", "tomli-w>=1.0"]) == ["numpy==2.0", "tomli-w==1.0"]
+    with pytest.raises(SystemExit, match="a dependency must be name>=release, got 'numpy<3'"):
+        OLDEST["oldest"](["numpy<3"])
+
+
+def test_the_container_starts_the_page(stridula, monkeypatch):
+    asked = []
+    monkeypatch.setattr("stridula.app.serve.serve", lambda *words: asked.append(words))
+    lines = dict(re.findall(r"^(ENTRYPOINT|CMD|EXPOSE) (.*)$", (ROOT / "Dockerfile").read_text("utf-8"), re.MULTILINE))
+    assert json.loads(lines["ENTRYPOINT"]) == ["stridula"]
+    assert stridula(*json.loads(lines["CMD"]))[0] == 0
+    assert asked == [("0.0.0.0", int(lines["EXPOSE"]), True, False)]
