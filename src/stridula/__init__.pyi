@@ -98,6 +98,7 @@ from .integration import simulate_many as simulate_many
 from .records import Acceleration as Acceleration
 from .records import Displacement as Displacement
 from .records import ModalDisplacement as ModalDisplacement
+from .records import ModalMotion as ModalMotion
 from .records import ModalVelocity as ModalVelocity
 from .records import Reaction as Reaction
 from .records import SupportForce as SupportForce

@@ -52,7 +52,7 @@ def test_keys_of_laws_that_are_not_there_hide_no_others():
     [
         (1.0, "damping must be below 1, got 1.0"),
         ("much", "damping must be a number, got 'much'"),
-        ({"form": "rise"}, "damping must be of a form that is one of rayleigh, rising, sampled, got {'form': 'rise'}"),
+        ({"form": "rise"}, "damping must have a form that is one of rayleigh, rising, sampled, got {'form': 'rise'}"),
         ({"form": "rising", "ratio": 0.1}, "damping must have, in the form rising, ratio and rise"),
         (RISING | {"mass": 1.0}, "damping must have, in the form rising, ratio and rise"),
         (RISING | {"ratio": 2}, "damping must have a ratio that must be below 1"),

@@ -68,7 +68,7 @@ def test_keys_set_by_hand_are_not_looked_at_for_ever():
         st.load_scenario("squeal", {f"key{k}": 1 for k in range(5000)})
     assert time.perf_counter() - began < 5.0
     assert len(caught.value.problems) == 20
-    assert caught.value.problems[-1] == "keys must be right before others are looked at, 4981 were not"
+    assert caught.value.problems[-1] == "keys must be valid before others are checked, 4981 were not checked"
 
 
 def test_a_scenario_holds_so_many_bodies_at_most(tmp_path):

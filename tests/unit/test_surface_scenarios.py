@@ -131,7 +131,7 @@ def test_a_body_of_another_kind_is_told(block):
 def test_something_must_touch(block):
     tables = read_tables(block)
     for given, message in (
-        ({}, "contacts must be given: where bodies touch, in place of contact"),
+        ({}, "contacts must be given: contacts of bodies at points, in place of contact"),
         ({"surfaces": []}, "surfaces must not be empty, got []"),
     ):
         without = {key: value for key, value in tables.items() if key != "surfaces"} | given

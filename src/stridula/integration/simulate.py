@@ -69,7 +69,8 @@ def simulate(
         of steps.
     probes : sequence of probes, optional
         Further quantities to record: Displacement, Velocity, Acceleration, Reaction, SupportForce, ModalDisplacement,
-        ModalVelocity or ModalMotion; the acceleration of the track's centre along y if left out and the track is a beam.
+        ModalVelocity or ModalMotion; the acceleration of the track's centre along y if left out and the track is a
+        beam.
     contact_solve : GaussSeidel, optional
         Settings of the simultaneous solution of several contacts; a single contact is solved exactly.
     start : xarray.Dataset, optional

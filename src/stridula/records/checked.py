@@ -9,9 +9,10 @@ import numpy as np
 import xarray as xr
 
 from ..checks import ArgumentError, brief, instance, listed
-from .variables import STATUS_SHARE, STATUS_WORDS
+from .variables import ENERGY, STATUS_SHARE, STATUS_WORDS
 
 NUMBERS = "fiu"
+ENERGIES = frozenset(variable.name for variable in ENERGY)
 # Upper bound of times of records [s].
 LATEST = 1e9
 
@@ -86,6 +87,9 @@ def _check_variable(name: str, word: str, variable: xr.DataArray) -> None:
     if variable.dims[:1] != ("time",) or variable.dtype.kind not in NUMBERS:
         dimensions = listed(map(str, variable.dims))
         raise ArgumentError(name, f"have a {word} of numbers over time", got=f"{variable.dtype} over {dimensions}")
+    if word in ENERGIES and variable.dims != ("time",):
+        dimensions = listed(map(str, variable.dims))
+        raise ArgumentError(name, f"have a {word} over time alone", got=f"one over {dimensions}")
     if word == STATUS_SHARE.name and variable.shape[1:][-1:] != (len(STATUS_WORDS),):
         wanted = ", ".join(STATUS_WORDS)
         raise ArgumentError(name, f"have a {word} of each of {wanted}", got=f"the shape {variable.shape}")
