@@ -167,7 +167,7 @@ def test_bad_records_of_several_contacts():
         analysis.regime(run.isel(contact=[]))
     with pytest.raises(ValueError, match="run must have a normal_force of each contact, got one over time"):
         analysis.regime(run.assign(normal_force=("time", SECOND)))
-    with pytest.raises(ValueError, match="run must have a damping_loss over time alone, got one over time and contact"):
+    with pytest.raises(ValueError, match="run must have a damping_loss over time alone, got one over time, contact"):
         analysis.regime(
             run.assign(damping_loss=run.damping_loss.expand_dims({"contact": run.sizes["contact"]}, axis=1))
         )
