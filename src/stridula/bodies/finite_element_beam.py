@@ -56,7 +56,7 @@ class FiniteElementBeam(HasCard):
     length : float
         Length [m], from tip to root.
     angle : float, optional
-        Angle a of its axis from the track's normal [rad], above zero where the root is ahead of the tip in x; strictly
+        Angle from the track's normal [rad], a of its axis, above zero where the root is ahead of the tip in x; strictly
         between -pi/2 and pi/2.
     elements : int, optional
         Number of finite elements; they are equal, at most 500.
