@@ -14,7 +14,7 @@ import stridula as st
 from stridula import studies
 
 from .checks import CHECKS, GIVEN, SCENARIOS, WRITTEN, pad
-from .pages import PAGES, ROOT, blocks, commands, few, shorter, smaller
+from .pages import PAGES, ROOT, blocks, commands, few, own, shorter, smaller
 
 
 @pytest.fixture
@@ -43,7 +43,11 @@ def test_rules_that_make_short_leave_the_rest():
     assert shorter("f(duration=60.0, step=60.0, duration=20.0)") == "f(duration=0.6, step=60.0, duration=20.0)"
     assert few({"a": [*range(12)], "b": ["x", "y", "z"]}) == {"a": [0, 11], "b": ["x", "y", "z"]}
     words = ["sweep", "--vary", "a=1deg:2deg:40", "--vary", "b=1:2:log", "--samples", "64", "--duration", "40"]
-    assert smaller(words) == ["sweep", "--vary", "a=1deg:2deg:3", *words[3:6], "4", *words[7:]]
+    assert smaller(words) == ["sweep", "--vary", "a=1deg:2deg:2", *words[3:6], "4", *words[7:]]
+    film = ["animate", "case", "--from", "1 s", "--out", "a.gif"]
+    assert smaller(film) == ["animate", "case", "--from", "1 ms", "--out", "a.gif", "--slowdown", "100"]
+    assert smaller(["run", "case", "--plot", "a.png"])[4:] == ["--duration", "20 ms"]
+    assert len(smaller(["run", "case", "--out", "a.nc"])) == 4
 
 
 @of_pages("python")
@@ -53,7 +57,7 @@ def test_code(page, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(studies, "Grid", lambda keys: grid(few(keys)))
     names: dict[str, Any] = {}
     printed = [""]
-    for language, text in blocks(page, "python", "text"):
+    for language, text in own(page):
         if language == "text":
             assert printed[-1].strip() == text.strip()
         else:
