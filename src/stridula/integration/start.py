@@ -245,7 +245,8 @@ class _Start:
     def _compliance(self, pushes: Array) -> Array:
         """Return the displacements of rows after the first step for constant unit forces on them."""
         still = np.zeros(self.arrays.mode_count)
-        increments = [self.stepping.first_increment(self.step, still, still, push) for push in pushes]
+        none = np.zeros_like(pushes)
+        increments = self.stepping.first_increment(self.step, none, none, pushes)
         answers = [
             self.modes.free(still, first) + self.modes.mobility(push)
             for push, first in zip(pushes, increments, strict=True)
