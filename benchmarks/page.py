@@ -132,7 +132,7 @@ def table(seen: dict[str, list[float]], words: str) -> list[str]:
         "",
         "| quantity | bar | median | 95 % | worst |",
         "|---|---|---:|---:|---:|",
-        f"| slider to ear [ms], {latency.size} changes, with {seen['output'][0]:.0f} ms of limiter and output | < 150 | "
+        f"| slider to ear [ms], {latency.size} changes, {seen['output'][0]:.0f} ms of it limiter and output | < 150 | "
         f"{np.median(latency):.0f} | {np.percentile(latency, 95):.0f} | {latency.max():.0f} |",
         f"| pictures per second | >= 30 | {np.median(fps):.0f} | {np.percentile(fps, 5):.0f} | {fps.min():.0f} |",
         f"| drop-outs in total | 0 | | | {seen['dropouts'][-1]:.0f} |",

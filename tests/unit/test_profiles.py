@@ -239,7 +239,7 @@ def body(**changes):
         (body(held=[3]), "held.0. must be a Held"),
         (lambda: st.Held("inner", "x"), "directions.0. must be one of r, theta, z"),
         (lambda: st.Held((0, 1)), "place must be the name of a place or a box"),
-        (lambda: st.Held(((1, 0), (0, 1))), "place must have ranges that do not fall"),
+        (lambda: st.Held(((1, 0), (0, 1))), "place must have ranges whose first number is not above the second"),
         (body(material={"disc": STEEL}), "material must be given for all regions, disc, hat, got none for hat"),
         (body(material={"disc": STEEL, "hub": STEEL}), "material must be one of disc, hat"),
         (body(material=7800.0), "material must be a Material"),
