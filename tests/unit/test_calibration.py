@@ -192,7 +192,7 @@ def call(ranges=None, targets=None, source=valley, **options):
         (call(source=lambda points: []), "source must return the measures of each of 32 points, got []"),
         (call(source=lambda points: [{"far": None, "stiff": 1.0}] * len(points)), "got a NoneType"),
         (call(source=lambda points: [{"far": 1.0, "stiff": 1.0, "length": 1.0}] * len(points)), "got 'length'"),
-        (call(source="nope"), "targets must be of "),
+        (call(source="nope"), "targets must be among "),
         (call(source="squeal", targets={"trvel": (0.0, 1.0)}), "did you mean 'travel'?"),
         (call(source="squeal", targets={"travel": "squeal"}), "target of travel must be bounds, got 'squeal'"),
         (call(source="squeal", targets={"regime": "sqeal"}), "did you mean 'squeal'?"),

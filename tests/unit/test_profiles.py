@@ -162,7 +162,7 @@ def test_cells_of_higher_degree_and_mixed_ones_are_read(tmp_path):
     assert len(profile.nodes) == 6
     assert profile.region_names == ("body",)
     assert profile.mesh(lambda thickness, region: 1.0).volumes.sum() == pytest.approx(math.pi * 4.0)
-    with pytest.raises(st.ArgumentError, match="plane must be the plane of the mesh"):
+    with pytest.raises(st.ArgumentError, match="plane must be the plane in which the mesh"):
         st.MeshProfile.read(path)
 
 
