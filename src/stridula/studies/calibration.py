@@ -342,7 +342,9 @@ def _check_target(name: str, target: Target | str, functions: Sequence[str]) -> 
     """Raise ValueError if a target is of an unknown measure, or a word for a number or the reverse."""
     known = [*functions, *COLUMNS]
     if name not in COLUMNS:
-        raise ArgumentError("targets", f"be among {', '.join(known)}", name, got=f"{brief(name)}{suggestion(name, known)}")
+        raise ArgumentError(
+            "targets", f"be among {', '.join(known)}", name, got=f"{brief(name)}{suggestion(name, known)}"
+        )
     if isinstance(target, str) and name in WORDS:
         choice(f"target of {name}", target, WORDS[name])
     elif COLUMNS[name].is_text != isinstance(target, str):
