@@ -73,7 +73,7 @@ def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
     ("name", "asked", "message"),
     [
         ("brake", ("--set", "surface_rate=1 kHz"), "surface_rate must be left out, or all, for sound, got 1000.0"),
-        ("squeal", ("--duration", "10 us"), "duration must be at least 2e-05 s, two samples, to be heard, got 1e-05"),
+        ("squeal", ("--duration", "10 us"), "duration must be at least 2e-05 s, two samples, for its sound, got 1e-05"),
     ],
 )
 def test_what_cannot_be_heard_is_refused_before_the_run(stridula, monkeypatch, tmp_path, name, asked, message):
