@@ -271,7 +271,7 @@ BAD = [
     (("sound", "none.nc", *WAV), "cannot read 'none.nc'"),
     (("sound", "none.toml", *WAV), "must be a record"),
     (("sound", "belt.nc", *WAV), "system must have a body with a surface, which radiates sound, got none of block"),
-    (("sound", "failed.nc", *WAV), "one that can be believed, got one that ended 'not finite'"),
+    (("sound", "failed.nc", *WAV), "run must be reliable, got one that ended 'not finite'"),
     (("sound", *WAV), "Missing argument"),
     (("run", "squeal", "--wav", "none/a.wav"), "there is no folder 'none'"),
     (("run", "squeal", "--wav", "."), "it is a directory"),

@@ -288,7 +288,7 @@ TEXTS = {
     "row zero": ("0 1 5.0\n", "rows and columns must be numbered from 1, got 0"),
     "bad dof": ("1,-2,1,-2,5.0\n", "degrees of freedom of a node must be numbered from 0 to 1048575"),
     "twice": ("1 1 5.0\n2 2 5.0\n1 1 5.0\n", r"each entry must occur once (assembled matrices), got two at 1, 1"),
-    "twice labels": ("1,2,1,2,5.0\n1,2,1,2,6.0\n", r"each entry must stand once .*, got two at (1, 2), (1, 2)"),
+    "twice labels": ("1,2,1,2,5.0\n1,2,1,2,6.0\n", r"each entry must occur once .*, got two at (1, 2), (1, 2)"),
     "market header": ("%%MatrixMarket tensor\n1 1 1\n", ""),
     "market cut": (MARKET + "3 3 3\n1 1 1.0\n", "it must hold 3 entries, as its header says, it holds 1"),
     "market cut to its header": (MARKET + "3 3 3\n", "it must hold 3 entries, as its header says, it holds none"),

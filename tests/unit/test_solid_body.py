@@ -83,7 +83,7 @@ def test_nodes_in_the_middle_of_an_edge_are_shared():
     shared = np.intersect1d(elements[0, 8:], elements[1, 8:])[0]
     elements[1, elements[1] == shared] = len(PAIR.nodes)
     nodes = np.vstack([PAIR.nodes, PAIR.nodes[shared]])
-    refused(lambda: parts(PAIR, nodes=nodes, elements=elements, faces={}), "share the nodes in the middle")
+    refused(lambda: parts(PAIR, nodes=nodes, elements=elements, faces={}), "share the middle node")
 
 
 @pytest.mark.parametrize("density", [7.8e-9, 7.8e-6])

@@ -174,7 +174,7 @@ def _check_shared(kind: ElementKind, elements: Array) -> None:
             raise ArgumentError(
                 "elements",
                 "share the middle node of an edge or a face if they share its corners",
-                got=f"{apart} pairs of an edge or a face and its middle for {len(np.unique(corners, axis=0))} of them",
+                got=f"{apart} middle nodes for {len(np.unique(corners, axis=0))} edges or faces",
             )
 
 
