@@ -5,8 +5,8 @@ Pin on disc
 A pin rubs on a disc and squeals: one unstable mode, its growth, and the limit cycle in which it ends.
 :doc:`../pin-on-disc` explains it.
 
-The rig of Allgaier, Gaul, Keiper and Willner (1999), as Ansys' verification VM275 has it: a disc of aluminium, 25 mm
-thick, held at its shaft, and a pin of 10 mm x 10 mm x 149 mm that leans by 4 degrees, its far end held, with five
+The rig of Allgaier, Gaul, Keiper and Willner (1999), as in verification case VM275 of Ansys: a disc of aluminium, 25 mm
+thick, held at its shaft, and a pin of 10 mm x 10 mm x 149 mm that leans by 4 degrees, held at its far end, with five
 nodes of one edge on the disc. The rig and Ansys have one unstable mode, at 2215 Hz.
 """
 

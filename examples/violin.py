@@ -5,7 +5,7 @@ Violin
 The G string of a violin under a bow: Helmholtz motion, and Schelleng's diagram of the bow forces that keep it up.
 :doc:`../violin` explains it.
 
-The shipped scenario ``violin`` has a bow 8 mm wide; the diagram is that of a narrow one, for which theory is.
+The shipped scenario ``violin`` has a bow 8 mm wide; the diagram is that of a narrow one, to which the theory applies.
 """
 
 import matplotlib.pyplot as plt
@@ -43,7 +43,7 @@ print(f"through a top of spruce {float(st.equivalent_level(heard, 'A').max()):.0
 st.listen(heard)
 
 # %%
-# Schelleng's diagram: the bow force goes slowly from that of a note to another one, and stays there.
+# Schelleng's diagram: the bow force changes slowly from that of a note to another value, and stays there.
 
 
 def most(place: float) -> float:

@@ -2,11 +2,11 @@
 Wine glass
 ==========
 
-A wet finger on the rim of a wine glass: the mode that grows, its limit cycle, and the beats that you hear.
-:doc:`../glass` explains it.
+A wet finger on the rim of a wine glass: the growing mode, its limit cycle, and the beats that you hear. :doc:`../glass`
+explains it.
 
-The shipped scenario ``glass``. The glass turns below a finger that stays where it is, as in Franklin's armonica; seen
-from a glass that stands, the finger goes round.
+This is the shipped scenario ``glass``. The glass turns below a finger at rest, as in Franklin's armonica; seen from the
+glass, the finger goes round.
 """
 
 import matplotlib.pyplot as plt

@@ -72,8 +72,8 @@ def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
 @pytest.mark.parametrize(
     ("name", "asked", "message"),
     [
-        ("brake", ("--set", "surface_rate=1 kHz"), "surface_rate must be left out, or all, to be heard, got 1000.0"),
-        ("squeal", ("--duration", "10 us"), "duration must be at least 2e-05 s, two samples, to be heard, got 1e-05"),
+        ("brake", ("--set", "surface_rate=1 kHz"), "surface_rate must be left out, or all, for sound, got 1000.0"),
+        ("squeal", ("--duration", "10 us"), "duration must be at least 2e-05 s, two samples, for its sound, got 1e-05"),
     ],
 )
 def test_what_cannot_be_heard_is_refused_before_the_run(stridula, monkeypatch, tmp_path, name, asked, message):
@@ -192,10 +192,10 @@ def with_another_track_on_the_way(records):
 
 def test_a_record_whose_track_was_changed_is_sounded_in_parts_only(stridula, records, tmp_path):
     run, systems, half = with_another_track_on_the_way(records)
-    message = rf"run must have the same track all the time to be heard, got another one from {half:.6g} s on"
+    message = rf"run must have the same track at all times for sound, got another one from {half:.6g} s on"
     with pytest.raises(ValueError, match=f"^{message}"):
         st.radiate(run, systems[1].track)
-    with pytest.raises(ValueError, match=r"^run must have the same bodies and drives all the time to be heard"):
+    with pytest.raises(ValueError, match=r"^run must have the same bodies and drives at all times for sound"):
         st.radiate(run, systems[1], bodies=[systems[1].slider])
     st.save(run, tmp_path / "changed.nc")
     code, out, err = stridula("sound", "changed.nc")
@@ -231,7 +231,7 @@ def test_a_plate_that_was_changed_is_another_track():
     scenarios = [st.load_scenario("squeal-on-plate", {"bodies.plate.thickness": t}) for t in (0.004, 0.008)]
     runs = [one.simulate(duration=2e-3) for one in scenarios]
     changes = [{"time": t, "scenario": run.attrs["scenario"]} for t, run in zip((0.0, 1e-3), runs, strict=True)]
-    with pytest.raises(ValueError, match="run must have the same track all the time to be heard"):
+    with pytest.raises(ValueError, match="run must have the same track at all times for sound"):
         st.radiate(runs[0].assign_attrs(changes=json.dumps(changes)), scenarios[0].system.track)
 
 
@@ -251,7 +251,7 @@ BAD = [
     ((*IN, "--listener", "nan,0,1"), "--listener must be X,Y,Z in m"),
     ((*IN, "--listener", "0,0,1e9"), "within 1000 m, got '0,0,1e9'"),
     ((*IN, "--unbaffled", "--listener", "0.3,0,0"), "from the beam's axis"),
-    ((*IN, "--body", "trak"), "--body must be one that can be heard: track, slider, got 'trak'"),
+    ((*IN, "--body", "trak"), "--body must be a body that radiates sound: track, slider, got 'trak'"),
     ((*IN, "--wav", "none/a.wav"), "there is no folder 'none'"),
     ((*IN, "--wav", "."), "it is a directory"),
     ((*IN, "--wav", "run.nc"), "--wav must be another file than the record"),
@@ -270,15 +270,15 @@ BAD = [
     ((*IN, *WAV, "--subtype", "PCM_16"), "did you mean 'PCM_24'?"),
     (("sound", "none.nc", *WAV), "cannot read 'none.nc'"),
     (("sound", "none.toml", *WAV), "must be a record"),
-    (("sound", "belt.nc", *WAV), "system must have a body with a surface to be heard, got none of block"),
-    (("sound", "failed.nc", *WAV), "one that can be believed, got one that ended 'not finite'"),
+    (("sound", "belt.nc", *WAV), "system must have a body with a surface, which radiates sound, got none of block"),
+    (("sound", "failed.nc", *WAV), "run must be reliable, got one that ended 'not finite'"),
     (("sound", *WAV), "Missing argument"),
     (("run", "squeal", "--wav", "none/a.wav"), "there is no folder 'none'"),
     (("run", "squeal", "--wav", "."), "it is a directory"),
     (("run", "squeal", "--wav", "a.nc", "--out", "a.nc"), "--wav must be another file than --out"),
     (("run", "squeal", "--wav", "a.png", "--plot", "a.png"), "--wav must be another file than --plot"),
     (("run", "run.nc", "--wav", "run.nc"), "--wav must be another file than the scenario"),
-    (("run", "belt", "--wav", "a.wav"), "system must have a body with a surface to be heard"),
+    (("run", "belt", "--wav", "a.wav"), "system must have a body with a surface, which radiates sound"),
     (("run", "round.toml", "--wav", "a.wav"), "track must have a Rectangle as section"),
     (("sound", "open.nc", "--body", "track", "--bands", "a.png"), "--bands must hold a sound, got silence"),
 ]

@@ -77,7 +77,9 @@ def test_bodies_out_of_range_are_named(tmp_path):
     reduced = 'kind = "reduced"\nmass = [[1e-300]]\nstiffness = [[1e10]]\npoints = {a = {x = 0}}'
     text = BELT.replace('kind = "point mass"\nmass = 1.0', reduced)
     (found,) = problems(text, tmp_path)
-    assert found.startswith("bodies.m.stiffness must be of a size that mass can carry, got up to 1e+10 N/m on masses")
+    assert found.startswith(
+        "bodies.m.stiffness must be of an ordinary size relative to mass, got up to 1e+10 N/m on masses"
+    )
     with pytest.raises(st.ScenarioError, match=r"must hold numbers of ordinary size: its modes overflow"):
         st.load_scenario("squeal", {"density": 1e-320})
 
@@ -257,4 +259,4 @@ def test_a_bad_file_of_bodies_says_what_is_wrong(text, message, tmp_path):
 def test_a_damaged_packed_matrix_is_told(tmp_path):
     text = MASS_ON_FLOOR.replace("mass = 1", 'stiffness = [[1]]\npoints = {p = {x = 0}}\nmass = "float64 1x1 eJx"')
     found = problems(text.replace("point mass", "reduced"), tmp_path)
-    assert found == ("bodies.a.mass must be a whole packed array, as records have them, got 'float64 1x1 eJx'",)
+    assert found == ("bodies.a.mass must be a complete packed array, as stored in records, got 'float64 1x1 eJx'",)

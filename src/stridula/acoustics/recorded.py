@@ -78,7 +78,7 @@ def sampled(run: xr.Dataset, *names: str) -> tuple[float, float, int, list[Array
     run = record("run", run).transpose("time", ...)
     record("run", run, *names, least=2)
     if run.attrs.get("ended") in DIVERGED:
-        raise ArgumentError("run", "be one that can be believed", run, got=f"one that ended {run.attrs['ended']!r}")
+        raise ArgumentError("run", "be reliable", run, got=f"one that ended {run.attrs['ended']!r}")
     time = run["time"].values
     interval = float((time[-1] - time[0]) / (time.size - 1))
     if not (interval > 0.0 and np.allclose(np.diff(time), interval, rtol=1e-3, atol=0.0)):
@@ -107,6 +107,6 @@ def _check_on_track(position: Array, panel: Panel) -> None:
         worst = low if low < panel.ends[0] - slack else high
         raise ArgumentError(
             "track",
-            f"be the one the run presses on, here from {at_least(panel.ends[0])} to {at_most(panel.ends[1])} m",
+            f"be the track of the recorded contact, here from {at_least(panel.ends[0])} to {at_most(panel.ends[1])} m",
             got=f"a contact_position of {worst:.6g} m",
         )

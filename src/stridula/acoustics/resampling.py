@@ -40,7 +40,9 @@ def ratio_of(sample_rate: float | None, recorded: float, samples: int) -> Fracti
     found = Fraction(wanted / recorded).limit_denominator(LARGEST)
     if found == 0 or abs(float(found) * recorded / wanted - 1.0) * samples > DRIFT:
         raise ArgumentError(
-            "sample_rate", f"be to the record's {recorded:.8g} Hz as whole numbers up to {LARGEST}", sample_rate
+            "sample_rate",
+            f"have a ratio to the record's {recorded:.8g} Hz of whole numbers up to {LARGEST}",
+            sample_rate,
         )
     return found
 

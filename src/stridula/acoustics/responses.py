@@ -17,37 +17,37 @@ from .surfaces import surface_of
 
 
 class Way(Protocol):
-    """How a track is heard."""
+    """Radiation of a track: flush with a baffle, or as a slim beam in free air."""
 
     @property
     def panel(self) -> Panel:
         """Its surface and the modes that bend it."""
 
     def check(self, listeners: Array) -> None:
-        """Raise ValueError if a listener is where it cannot be heard."""
+        """Raise ValueError if a listener is at a place without sound, inside a body or behind the baffle."""
 
     def responses(
         self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float
     ) -> list[Response]:
-        """Return what modes, by their numbers in the panel, send to every listener, `shift` samples later."""
+        """Return the responses of modes, by number in the panel, at every listener, `shift` samples later."""
 
     def notes(self, air: Air) -> list[str]:
         """Return what is to be said of it, in words."""
 
 
 def way_of(track: Any, baffled: bool) -> Way:
-    """Return how a track is heard: in a baffle, or as a slim beam in free air.
+    """Return how a track radiates: in a baffle, or as a slim beam in free air.
 
     Raises
     ------
     ValueError
-        If it cannot be heard so.
+        If the track cannot radiate in this way.
     """
     return Baffled(panel_of(track)) if baffled else SlimLine(track, line_of(track))
 
 
 class Baffled:
-    """A track that is flush with a rigid endless wall."""
+    """A track that is flush with a rigid infinite wall."""
 
     def __init__(self, panel: Panel) -> None:
         self.panel = panel

@@ -84,7 +84,7 @@ def _reaction_rows(
     if beam.tip_support != "free":
         raise ArgumentError("tip_support", "be free where a Reaction is recorded", beam.tip_support)
     if any(point.body == beam for connection in system.connections for point in ends(connection)):
-        raise ArgumentError("connections", "leave a body whose Reaction is recorded", got=f"one on {brief(beam)}")
+        raise ArgumentError("connections", "not act on a body whose Reaction is recorded", got=f"one on {brief(beam)}")
     if system.is_spatial:
         raise ArgumentError("probe", "be another than a Reaction in a system with bodies in space", probe)
     reaction = beam.root_reaction(system.is_held(beam))

@@ -56,7 +56,7 @@ def _check_same(run: xr.Dataset, what: str, part: Callable[[dict[str, Any]], Any
         if other != first:
             raise ArgumentError(
                 "run",
-                f"have the same {what} all the time to be heard",
+                f"have the same {what} at all times for sound",
                 run,
                 got=(
                     f"another one from {time:.6g} s on: choose the times of one with run.sel(time=slice(START, "

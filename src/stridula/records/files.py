@@ -49,7 +49,7 @@ def save(run: xr.Dataset, path: str | Path) -> None:
             content = plain.to_netcdf(engine="h5netcdf", encoding=encoding)
         except (TypeError, ValueError, NotImplementedError, CompatibilityError) as error:
             raise ArgumentError(
-                "run", "hold what NetCDF can keep", run, got=f"other things: {in_one_line(error)}"
+                "run", "contain only data that NetCDF can store", run, got=f"other data: {in_one_line(error)}"
             ) from error
     write(path, content)
 
