@@ -346,7 +346,7 @@ def test_a_start_in_motion_is_said_to_be_left_out():
     plate = disc(0.0, cutoff=800.0)
     apart = st.RigidBody(1.0, points={"tip": (0.0, 0.0, 0.0)})
     contact = st.PointContact(apart.at("tip"), plate.at(HERE), gap=1.0, normal=(0.0, 0.0, 1.0))
-    left_out = "the vibration that it starts with is not included"
+    left_out = "vibration at the start is not included"
     for start in (st.InitialVelocity(plate, z=0.1), st.InitialState(apart, velocity=[0.0, 0.0, 1.0])):
         system = st.System(contact, [start])
         heard = st.radiate(st.simulate(system, 2e-3, sample_rate=1e4), system, (0.3, 0.3, 0.5))

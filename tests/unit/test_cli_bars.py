@@ -11,7 +11,7 @@ import pytest
 from rich.progress import Progress
 
 import stridula as st
-from stridula.cli.doings import doings_shown
+from stridula.cli.long_tasks import tasks_shown
 from stridula.integration import bars, rich_bars
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
@@ -91,9 +91,9 @@ def test_the_search_for_the_modes_of_a_large_body_is_told(block, caplog, name):
     begin, end = caplog.records
     words = f"modes of {name or 'the solid body'} ({3 * len(body.mesh.nodes):,} degrees of freedom)".replace(",", " ")
     assert begin.getMessage() == f"{words} ..."
-    assert begin.doing == words
+    assert begin.task == words
     assert end.getMessage().startswith(f"{words}: ")
-    assert end.doing is None
+    assert end.task is None
 
 
 def test_other_large_bodies_tell_of_it(caplog):
@@ -108,7 +108,7 @@ def test_other_large_bodies_tell_of_it(caplog):
         small = st.SolidBody.block((0.1, 0.02, 0.03), (2, 1, 1), STEEL, cutoff=9000.0)
         for body in (reduced, disc, small):
             body.modes()
-    begun = [record.doing for record in caplog.records if record.doing]
+    begun = [record.task for record in caplog.records if record.task]
     assert [words.split("(")[0] for words in begun] == ["modes of chain ", "modes of disc "]
 
 
@@ -125,7 +125,7 @@ def test_commands_without_a_bar_say_that_modes_are_found_and_leave_nothing(is_te
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("TTY_COMPATIBLE", "1" if is_terminal else "0")
     monkeypatch.setattr(sys.stderr, "isatty", lambda: is_terminal, raising=False)
-    with doings_shown():
+    with tasks_shown():
         dataclasses.replace(block, cutoff=2030.0 + is_terminal).modes()
     shown = capsys.readouterr().err
     if is_terminal:

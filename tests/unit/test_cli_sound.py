@@ -271,7 +271,7 @@ BAD = [
     (("sound", "none.nc", *WAV), "cannot read 'none.nc'"),
     (("sound", "none.toml", *WAV), "must be a record"),
     (("sound", "belt.nc", *WAV), "system must have a body with a surface to be heard, got none of block"),
-    (("sound", "failed.nc", *WAV), "one that can be believed, got one that ended 'not finite'"),
+    (("sound", "failed.nc", *WAV), "one that did not diverge, got one that ended 'not finite'"),
     (("sound", *WAV), "Missing argument"),
     (("run", "squeal", "--wav", "none/a.wav"), "there is no folder 'none'"),
     (("run", "squeal", "--wav", "."), "it is a directory"),
@@ -353,7 +353,7 @@ def test_what_has_not_arrived_is_silence(stridula):
 def test_a_coarse_record_says_up_to_where_its_sound_is_whole(stridula):
     code, out, _ = stridula("sound", "coarse.nc")
     assert code == 0
-    assert "whole up to 833.3 Hz only" in out
+    assert "complete only up to 833.3 Hz" in out
 
 
 @pytest.mark.usefixtures("kept")
