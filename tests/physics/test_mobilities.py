@@ -160,7 +160,7 @@ def test_frequencies_left_out_show_every_peak():
         ({"frequency": "low"}, "frequency must be numbers, got 'low'"),
         ({"frequency": []}, "frequency must be a list of numbers"),
         ({"direction": "sideways"}, "direction must be one of"),
-        ({"excitation_direction": "z"}, "excitation_direction must be another than z"),
+        ({"excitation_direction": "z"}, "excitation_direction must not be z"),
         ({"excitation": 0.1}, "excitation must be a BodyPoint"),
     ],
 )

@@ -580,7 +580,7 @@ BAD = {
     "centre": (lambda: st.RigidBody(1.0, points={"centre": (1.0, 2.0, 3.0)}), "points must have names that are text"),
     "z force": (lambda: st.Force(FLAT.centre, z=1.0), "z must be 0 on a body in the plane, got 1"),
     "z velocity": (lambda: st.InitialVelocity(FLAT, z=1.0), "z must be 0 on a body in the plane, got 1"),
-    "z probe": (lambda: st.Displacement(FLAT.centre, "z"), "direction must be another than z on a body in the plane"),
+    "z probe": (lambda: st.Displacement(FLAT.centre, "z"), "direction must not be z on a body in the plane"),
     "normal in the plane": (
         lambda: st.PointContact(FLAT.centre, st.RigidTrack(), normal=(0.0, 1.0, 0.0)),
         "normal must be left out between bodies in the plane",

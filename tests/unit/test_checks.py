@@ -209,7 +209,7 @@ def test_lists_of_what_a_record_holds_are_short():
             lambda: st.simulate(st.System(contacts), 1e-3, start=stateless),
             "start must be a record of simulate with ",
         ),
-        (lambda: st.compare(run, run.drop_vars([*run.data_vars])), "b must have a variable of a, got none"),
+        (lambda: st.compare(run, run.drop_vars([*run.data_vars])), "b must have a variable in common with a, got none"),
     ):
         with pytest.raises(ValueError) as caught:
             check()

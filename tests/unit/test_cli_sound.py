@@ -192,10 +192,10 @@ def with_another_track_on_the_way(records):
 
 def test_a_record_whose_track_was_changed_is_sounded_in_parts_only(stridula, records, tmp_path):
     run, systems, half = with_another_track_on_the_way(records)
-    message = rf"run must have the same track all the time to be heard, got another one from {half:.6g} s on"
+    message = rf"run must have the same track throughout to be heard, got another one from {half:.6g} s on"
     with pytest.raises(ValueError, match=f"^{message}"):
         st.radiate(run, systems[1].track)
-    with pytest.raises(ValueError, match=r"^run must have the same bodies and drives all the time to be heard"):
+    with pytest.raises(ValueError, match=r"^run must have the same bodies and drives throughout to be heard"):
         st.radiate(run, systems[1], bodies=[systems[1].slider])
     st.save(run, tmp_path / "changed.nc")
     code, out, err = stridula("sound", "changed.nc")
@@ -231,7 +231,7 @@ def test_a_plate_that_was_changed_is_another_track():
     scenarios = [st.load_scenario("squeal-on-plate", {"bodies.plate.thickness": t}) for t in (0.004, 0.008)]
     runs = [one.simulate(duration=2e-3) for one in scenarios]
     changes = [{"time": t, "scenario": run.attrs["scenario"]} for t, run in zip((0.0, 1e-3), runs, strict=True)]
-    with pytest.raises(ValueError, match="run must have the same track all the time to be heard"):
+    with pytest.raises(ValueError, match="run must have the same track throughout to be heard"):
         st.radiate(runs[0].assign_attrs(changes=json.dumps(changes)), scenarios[0].system.track)
 
 

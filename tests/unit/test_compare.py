@@ -146,7 +146,7 @@ def test_what_cannot_be_compared_is_told(record):
             st.load_scenario("squeal", {"duration": "5 ms", "sample_rate": 5e4}).simulate(),
             "b must have the sample inter",
         ),
-        (record.assign_coords(time=record["time"] + 1.0), "b must have a time of a"),
+        (record.assign_coords(time=record["time"] + 1.0), "b must overlap a in time"),
         (record.isel(time=slice(0, 0)), "b must have samples to compare, got a record without any"),
         (xr.Dataset(), "b must be a record of simulate"),
         ("run.nc", "b must be a Dataset"),

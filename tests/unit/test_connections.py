@@ -124,7 +124,7 @@ def test_a_spring_along_a_prescribed_motion_is_refused():
 def test_a_reaction_needs_a_body_without_connections():
     system = pair(lambda rod: [st.Force(rod.root, y=-1.0)], 0.5)
     joined = st.System(system.contact, system.drives, [st.Spring(system.slider.root, stiffness=1.0)])
-    with pytest.raises(ValueError, match=r"^connections must leave a body whose Reaction is recorded"):
+    with pytest.raises(ValueError, match=r"^connections must not join a body whose Reaction is recorded"):
         st.simulate(joined, 1e-3, probes=[st.Reaction(system.slider)])
 
 

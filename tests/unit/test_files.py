@@ -102,7 +102,7 @@ def test_what_is_no_record_is_refused(record, tmp_path):
     for name, message in [
         ("text.nc", "must be a record that stridula wrote"),
         ("other.nc", "must be a record that stridula wrote"),
-        ("cut.nc", "must be a whole record"),
+        ("cut.nc", "must be a complete record"),
     ]:
         with pytest.raises(ValueError, match=message):
             st.load(tmp_path / name)

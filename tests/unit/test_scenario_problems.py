@@ -257,4 +257,4 @@ def test_a_bad_file_of_bodies_says_what_is_wrong(text, message, tmp_path):
 def test_a_damaged_packed_matrix_is_told(tmp_path):
     text = MASS_ON_FLOOR.replace("mass = 1", 'stiffness = [[1]]\npoints = {p = {x = 0}}\nmass = "float64 1x1 eJx"')
     found = problems(text.replace("point mass", "reduced"), tmp_path)
-    assert found == ("bodies.a.mass must be a whole packed array, as records have them, got 'float64 1x1 eJx'",)
+    assert found == ("bodies.a.mass must be a complete packed array, as in records, got 'float64 1x1 eJx'",)

@@ -28,7 +28,7 @@ class _Motion:
         instance("point", self.point, BodyPoint)
         check_declared(self)
         if self.along[2] and not self.point.body.is_spatial:
-            words = "be another than z" if self.direction == "z" else "have nothing along z"
+            words = "not be z" if self.direction == "z" else "have no component along z"
             raise ArgumentError("direction", f"{words} on a body in the plane", self.direction)
 
     @property
@@ -200,7 +200,7 @@ class _OfMode:
 
 
 class ModalDisplacement(_OfMode):
-    """Displacement of a mode of a body [kg^(1/2) m]; times the mode shape it is its share in all displacements.
+    """Displacement of a mode of a body [kg^(1/2) m]; times the mode shape it is the part of the mode in displacements.
 
     Parameters
     ----------
@@ -231,7 +231,7 @@ class ModalVelocity(_OfMode):
 
 @dataclass(frozen=True)
 class ModalMotion:
-    """Velocities of all modes of a body [kg^(1/2) m/s], in single precision: what `radiate` makes its sound of.
+    """Velocities of all modes of a body [kg^(1/2) m/s], in single precision, from which `radiate` computes sound.
 
     Centred differences over two steps.
 
@@ -250,11 +250,11 @@ class ModalMotion:
 
     @property
     def keys(self) -> dict[str, Any]:
-        """What a scenario says of it, beside quantity and body."""
+        """Keys of it in a scenario, besides quantity and body."""
         return {}
 
     def of_each(self, modes: int) -> list[ModalVelocity]:
-        """Return a probe of each of its body's modes."""
+        """Return a probe for each mode of its body."""
         return [ModalVelocity(self.body, mode) for mode in range(modes)]
 
 
