@@ -2,11 +2,11 @@
 A mass on a belt
 ================
 
-Stick-slip of a mass on a moving belt, held by a spring, under four laws of friction: who swings, how far, and why.
+Stick-slip of a mass on a moving belt, held by a spring, under four laws of friction: its amplitude and its cause.
 
-Where friction falls with the slip velocity, the mass sticks to the belt until its spring tears it off, slides back and
-sticks again. With equal static and kinetic friction it swings by belt velocity over frequency each way, as any start
-would leave it without damping, and hardly sticks.
+Where friction falls with the slip velocity, the mass sticks to the belt until its spring pulls it off, slides back and
+sticks again. With equal static and kinetic friction it keeps the undamped oscillation of its start, with the amplitude
+belt velocity over angular frequency, and hardly sticks.
 """
 
 import stridula as st

@@ -11,8 +11,8 @@ face. The mesh is small, so that this page takes seconds.
 # -------
 # :meth:`stridula.SolidMesh.read` takes files of gmsh, Abaqus, Nastran and VTK. To keep this page without files, the
 # mesh is made in place: a sector of a ring, two elements across and four along. Groups of the file, or the sides of
-# the sector, are the names of faces. Modes up to the cutoff are found from sparse matrices; the points of the contact
-# face yield statically for all modes above it.
+# the sector, are the names of faces. Modes up to the cutoff are computed from sparse matrices; the points of the
+# contact face yield statically for all modes above it.
 
 import stridula as st
 from stridula import analysis, plot
@@ -44,7 +44,7 @@ disc = st.AxisymmetricBody(
 # %%
 # Contact, load, springs
 # ----------------------
-# A ``SurfaceContact`` finds the points of the face, what lies before them, the velocity of the disc there, and the
+# A ``SurfaceContact`` finds the points of the face, the points of the disc below them, its velocity there, and the
 # area of each. Its ``stiffness`` is that of the rough surface, for a unit of area. 2 kN press on the back of the pad;
 # springs hold its corners.
 

@@ -48,13 +48,13 @@ for friction, word, hertz in zip(cut.friction.values, cut.regime.values, cut.fre
 # Nothing grows on this map: linear theory of the held contact is blind to motion that needs a landing to begin.
 
 counts = st.agreement(found)
-print(f"{counts.agree.item()} of {counts.compared.item()} runs do as linear theory says")
+print(f"{counts.agree.item()} of {counts.compared.item()} runs agree with linear theory")
 
 # %%
 # Where does it begin?
 # --------------------
 # Under an imposed velocity, as in the case ``weak-pressure``, the tip slides nearly everywhere, and linear theory
-# applies. :func:`stridula.root_loci` follows the modes over one key without any run, and
+# applies. :func:`stridula.root_loci` tracks the modes over one key without any run, and
 # :func:`stridula.critical_value` finds the onset.
 
 loci = st.root_loci("weak-pressure", "friction", np.linspace(0.0, 1.6, 33), highest=4e3)
@@ -65,7 +65,7 @@ plot.root_loci(loci, [onset])
 # %%
 # Your own measure, your own system
 # ---------------------------------
-# A measure may be a function of a record. In place of a scenario, a sweep takes a function that makes a system of
+# A measure may be a function of a record. In place of a scenario, a sweep takes a function that makes a system from
 # values.
 
 

@@ -10,8 +10,8 @@ them. This page also shows how to find out what a measurement does not determine
 # A rig
 # -----
 # A block of 0.5 kg on a belt at 5 cm/s, held by a spring and pressed by 10 N. It sticks and slips. A function makes
-# the system of the unknown parameters, here the kinetic coefficient of friction and the drop from the static one to
-# it; with it come arguments of ``simulate``.
+# the system from the unknown parameters, here the kinetic coefficient of friction and the drop from the static one to
+# it; it also returns arguments of ``simulate``.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -76,7 +76,7 @@ alone = [search(pitch, seed) for seed in range(3)]
 #
 # A second target
 # ---------------
-# The mean drag determines the rest. It is no measure of the package, so it is given as a function of the record
+# The mean drag determines the rest. It is not a measure of the package, so it is given as a function of the record
 # (``measures`` above).
 
 both = [search(pitch | {"drag": (0.99 * drag, 1.01 * drag)}, seed) for seed in range(3)]

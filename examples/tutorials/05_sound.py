@@ -48,7 +48,7 @@ print(f"LAFmax {float(fast.max()):.1f} dB")
 # %%
 # Which body is it?
 # -----------------
-# ``bodies`` chooses what is heard.
+# ``bodies`` selects the bodies that are heard.
 
 for name, body in (("slider", system.slider), ("track", system.track)):
     alone = st.radiate(run, system, bodies=[body])
