@@ -23,7 +23,7 @@ SIDES = {
 }
 
 
-def test_sixteen_pages_at_most_until_one_goes(own):
+def test_at_most_sixteen_pages_until_one_closes(own):
     with contextlib.ExitStack() as stack:
         pages = [stack.enter_context(conversation(own)) for _ in range(MOST_PAGES)]
         for page in pages:
@@ -45,7 +45,7 @@ def test_sixteen_pages_at_most_until_one_goes(own):
         eventually(has_room, "room for another page")
 
 
-def test_sessions_that_are_dropped_leave_nothing(own):
+def test_dropped_sessions_leave_nothing_behind(own):
     process = psutil.Process(own.process.pid)
 
     def drop(number: int) -> None:
@@ -82,7 +82,7 @@ def test_sessions_that_are_dropped_leave_nothing(own):
     assert not process.children()
 
 
-def test_rows_that_nobody_waits_for_begin_no_process(own):
+def test_unwanted_rows_start_no_process(own):
     process = psutil.Process(own.process.pid)
     with contextlib.ExitStack() as stack:
         pages = [stack.enter_context(conversation(own)) for _ in range(4)]
@@ -102,7 +102,7 @@ def test_rows_that_nobody_waits_for_begin_no_process(own):
         assert not process.children()
 
 
-def test_no_page_plays_faster_than_time_goes_by_more_than_half(own):
+def test_no_page_runs_faster_than_real_time_by_more_than_half(own):
     seconds = 3
     with conversation(own) as talk:
         began = time.monotonic()

@@ -108,7 +108,7 @@ def test_it_is_muted_until_sound_is_turned_on(browsing):
     plays_on(page)
 
 
-def test_the_level_follows_what_is_heard_and_says_what_full_scale_is(browsing):
+def test_the_level_follows_the_sound_and_states_its_full_scale(browsing):
     page = browsing.open("#case=strong-pressure")
     words = page.locator("#level-out")
     assert words.text_content() == "muted"
@@ -148,7 +148,7 @@ def test_more_friction_changes_the_ribbon_within_a_second_of_time_played(browsin
     until(page, "document.getElementById('shares').textContent.includes('sticking')")
 
 
-def test_every_control_says_its_unit_and_what_it_does(browsing):
+def test_every_control_has_its_unit_and_a_description(browsing):
     page = browsing.open()
     rows = page.locator("#controls .control:not([hidden])")
     assert rows.count() > 8
@@ -165,7 +165,7 @@ def test_every_control_says_its_unit_and_what_it_does(browsing):
     plays_on(page)
 
 
-def test_a_bad_file_is_told_and_all_plays_on(browsing, tmp_path):
+def test_a_bad_file_is_reported_and_playing_continues(browsing, tmp_path):
     page = browsing.open()
     told(page, "coefficient = 1.5")
     page.locator("#scenario summary").click()
@@ -185,7 +185,7 @@ def test_a_bad_file_is_told_and_all_plays_on(browsing, tmp_path):
     told(page, "length = 0.45")
 
 
-def test_a_file_of_ones_own_plays_and_its_link_plays_the_same(browsing):
+def test_a_user_file_plays_and_its_link_plays_the_same(browsing):
     page = browsing.open()
     upload(page, GOOD)
     told(page, "length = 0.45")
@@ -222,7 +222,7 @@ def test_a_link_holds_case_and_changes(browsing):
     told(other, "coefficient = 0.5")
 
 
-def test_a_link_that_is_none_is_told(browsing):
+def test_an_invalid_link_is_reported(browsing):
     page = browsing.open("#text=%21%21%21")
     assert page.locator("#problem").is_visible()
     assert "link cannot be read" in page.locator("#problem").text_content()
@@ -319,7 +319,7 @@ def test_other_sources_are_heard(browsing):
     assert soundfile.info(saved.value.path()).samplerate == RATE
 
 
-def test_the_map_comes_and_leads(browsing):
+def test_the_map_appears_and_sets_values(browsing):
     page = browsing.open(map=True)
     until(page, "document.getElementById('map-words').textContent.includes('computed')")
     box = page.locator("#map").bounding_box()

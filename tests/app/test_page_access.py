@@ -34,7 +34,7 @@ def shown(request, chromium, server):
         yield browsing
 
 
-def test_axe_finds_nothing_grave(shown):
+def test_axe_finds_no_serious_problem(shown):
     page = shown.open()
     page.locator("#scenario summary").click()
     assert grave(page) == []
@@ -46,7 +46,7 @@ def test_axe_finds_nothing_grave(shown):
     assert grave(page) == []
 
 
-def test_axe_finds_nothing_grave_in_a_system_on_tour_and_among_instruments(shown):
+def test_axe_finds_no_serious_problem_in_a_system_on_tour_and_among_instruments(shown):
     page = shown.open("#case=violin")
     assert grave(page) == []
     page.locator("#record").click()
@@ -61,13 +61,13 @@ def test_axe_finds_nothing_grave_in_a_system_on_tour_and_among_instruments(shown
     assert grave(page) == []
 
 
-def test_axe_finds_nothing_grave_in_the_introduction(shown):
+def test_axe_finds_no_serious_problem_in_the_introduction(shown):
     page = shown.open(intro=True)
     assert page.locator("#intro").is_visible()
     assert grave(page) == []
 
 
-def test_axe_would_find_what_is_grave(chromium, server):
+def test_axe_finds_a_serious_problem(chromium, server):
     with Browsing(chromium, server, bypass_csp=True) as browsing:
         page = browsing.open()
         page.evaluate("document.getElementById('play').textContent = ''")
@@ -75,7 +75,7 @@ def test_axe_would_find_what_is_grave(chromium, server):
         assert {line.partition(":")[0] for line in grave(page)} >= {"button-name", "color-contrast"}
 
 
-def test_the_theme_follows_the_system_until_one_chooses(chromium, server):
+def test_the_theme_follows_the_system_until_it_is_chosen(chromium, server):
     with Browsing(chromium, server, color_scheme="dark") as browsing:
         page = browsing.open()
         theme = "document.documentElement.dataset.theme"
@@ -196,7 +196,7 @@ def test_arrow_keys_move_the_cross_hair(browsing):
     plays_on(page)
 
 
-def test_changes_are_said_to_who_does_not_see(browsing):
+def test_changes_are_announced_to_screen_readers(browsing):
     page = browsing.open()
     assert page.locator("#said").get_attribute("aria-live") == "polite"
     page.locator("#link").click()

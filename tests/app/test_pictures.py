@@ -59,7 +59,7 @@ WORD, TIP, WIDTH = 60.0, 200.0, 700.0
 
 
 @pytest.mark.parametrize("pictures", [15, 30])
-def test_the_axis_of_the_force_comes_down_within_two_seconds_after_a_loud_case(tmp_path, pictures):
+def test_the_axis_of_the_force_shrinks_within_two_seconds_after_a_loud_case(tmp_path, pictures):
     times = [1000.0 * k / pictures for k in range(6 * pictures)]
     # What is seen is the last second.
     seen = [79.0 if now < 3000.0 else 10.0 for now in times]
@@ -100,7 +100,7 @@ def test_lines_travel_to_scale_and_depart_exaggerated(tmp_path):
     assert second == first
 
 
-def test_what_vibrates_less_is_drawn_larger_only_slowly(tmp_path):
+def test_the_scale_of_smaller_vibrations_grows_slowly(tmp_path):
     beam = {"places": [[0.0, 0.0], [1.0, 0.0]], "count": 2}
     values = [[0, 0, 0, 0, 0, size] for size in (1e-4, 1e-5, 1e-3)]
     loud, quiet, louder = (
@@ -110,14 +110,14 @@ def test_what_vibrates_less_is_drawn_larger_only_slowly(tmp_path):
     assert louder == pytest.approx(0.06 / 1e-3)
 
 
-def test_a_spectrogram_keeps_a_while_and_nothing_of_what_was_heard_before(tmp_path):
+def test_a_spectrogram_keeps_a_while_and_drops_earlier_sound(tmp_path):
     found = result_of(tmp_path, ANEW)
     assert 2000 <= found["kept"] <= 4000
     assert found["tone"] == pytest.approx(48_000.0 / math.tau, abs=1.0)
     assert found["after"] == [0, None, 1e-9]
 
 
-def test_a_server_that_began_anew_begins_the_history(tmp_path):
+def test_a_restarted_server_restarts_the_history(tmp_path):
     assert result_of(tmp_path, TIMES, [50.0, 50.2, 0.2, 0.4]) == [[2, 2], [4, 4], [2, 2], [4, 4]]
 
 

@@ -33,7 +33,7 @@ def listening(talk: Conversation, source: str, case: str = "squeal", **overrides
     return talk
 
 
-def test_the_greeting_names_cases_controls_and_what_can_be_heard(hello):
+def test_the_greeting_names_cases_controls_and_sources(hello):
     assert (hello["version"], hello["rate"]) == (st.__version__, RATE)
     assert {"squeal", "judder", "stable-sliding"} <= {one["name"] for one in hello["presets"]}
     assert all(one["title"] and one["description"] for one in hello["presets"])
@@ -49,7 +49,7 @@ def test_the_greeting_names_cases_controls_and_what_can_be_heard(hello):
         assert one["group"] in hello["groups"]
 
 
-def test_a_scene_says_what_can_be_heard_of_it(talk):
+def test_a_scene_lists_its_sources(talk):
     sources = talk.scene("squeal")["sources"]
     units = {name: source["unit"] for name, source in sources.items()}
     assert units == {"pressure": "Pa", "force": "N", "friction": "N", "acceleration": "m/s²"}
@@ -57,7 +57,7 @@ def test_a_scene_says_what_can_be_heard_of_it(talk):
     assert talk.asks("listen", "problem", source="loudness")["problems"]
 
 
-def test_every_control_turns_something_of_some_case(hello, talk):
+def test_every_control_changes_something_in_some_case(hello, talk):
     seen: dict[str, object] = {}
     for preset in PRESETS:
         seen |= talk.scene(preset)["values"]
@@ -111,7 +111,7 @@ def test_the_pressure_is_what_the_forces_radiate(talk, run):
 
 
 @pytest.mark.parametrize("source", ["pressure", "force", "acceleration"])
-def test_a_part_does_not_depend_on_how_much_is_asked_for(server, source):
+def test_a_part_does_not_depend_on_the_requested_length(server, source):
     heard = []
     for sizes in ((1920,), (1, 7, 479, 2, 3, 480, 468, 480)):
         with conversation(server) as talk:
@@ -157,7 +157,7 @@ def test_a_change_keeps_the_motion_and_comes_back_with_its_number(talk):
 
 
 @pytest.mark.parametrize(("key", "value"), [(ANGLE, 0.6), (LENGTH, 0.6), ("section.height", 0.007), ("damping", 0.02)])
-def test_bodies_change_on_the_way(talk, key, value):
+def test_bodies_change_during_a_run(talk, key, value):
     talk.scene("stable-sliding")
     before = talk.play(4800)
     answer = talk.scene("stable-sliding", {key: value})
@@ -194,7 +194,7 @@ def test_more_friction_turns_sliding_into_stick_slip_and_jumps_within_a_second(t
     assert after[2] < before[2] - 0.3
 
 
-def test_without_repeating_a_stroke_ends_off_the_track_and_says_so(talk):
+def test_without_repeating_a_stroke_ends_off_the_track_and_reports_it(talk):
     talk.say("repeat", on=False)
     track = talk.scene("stable-sliding")["track"]["length"]
     near = {AT: track - 0.005}
@@ -234,7 +234,7 @@ def test_a_tip_at_rest_begins_another_stroke(talk):
     assert set(still.stroke) == {played.stroke[-1]}
 
 
-def test_linear_theory_says_what_grows(talk):
+def test_linear_theory_lists_growing_modes(talk):
     talk.scene("stable-sliding")
     theory = talk.until("theory")
     found = st.sliding_stability(st.load_scenario("stable-sliding").system)

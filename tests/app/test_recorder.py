@@ -52,14 +52,14 @@ def test_a_recording_holds_what_was_heard_1_db_below_full_scale(tmp_path):
 
 
 @pytest.mark.parametrize("other", [(0.05, "Pa"), (10.0, "N")], ids=["scale", "unit"])
-def test_of_several_sources_there_is_no_one_full_scale(tmp_path, other):
+def test_several_sources_have_no_common_full_scale(tmp_path, other):
     noise = np.random.default_rng(2).normal(size=480)
     recorded(tmp_path, [(noise, 10.0, "Pa"), (noise, *other)])
     with soundfile.SoundFile(tmp_path / "found.wav") as file:
         assert file.comment == "stridula: recorded on the page, several sources"
 
 
-def test_silence_is_a_file_and_nothing_is_none(tmp_path):
+def test_silence_is_a_file_and_an_empty_recording_is_not(tmp_path):
     recorded(tmp_path, [(np.zeros(480), 10.0, "Pa")])
     assert not soundfile.read(tmp_path / "found.wav")[0].any()
     assert recorded(tmp_path, [])["bytes"] is None

@@ -53,7 +53,7 @@ def test_the_sound_of_the_pressure_is_in_pascals(talk, tmp_path):
 
 
 @pytest.mark.parametrize(("source", "unit"), [("force", "N"), ("acceleration", "m/s²")])
-def test_the_sound_of_others_says_what_full_scale_is(talk, source, unit):
+def test_other_sounds_state_their_full_scale(talk, source, unit):
     sound = heard(talk, source, 0.2)
     with soundfile.SoundFile(io.BytesIO(talk.save("wav"))) as file:
         comment, samples = file.comment, file.read()
@@ -65,7 +65,7 @@ def test_the_sound_of_others_says_what_full_scale_is(talk, source, unit):
     assert np.abs(samples).max() == pytest.approx(10 ** (-1 / 20), abs=1e-3)
 
 
-def test_only_what_is_heard_now_is_in_the_sound(talk):
+def test_only_the_present_source_is_in_the_sound(talk):
     heard(talk, "force", 0.1)
     talk.say("listen", source="acceleration")
     talk.play(4800)
@@ -73,7 +73,7 @@ def test_only_what_is_heard_now_is_in_the_sound(talk):
     assert len(samples) == 4800
 
 
-def test_the_record_opens_as_any_and_is_that_of_the_run(talk, tmp_path):
+def test_the_record_opens_and_equals_that_of_the_run(talk, tmp_path):
     heard(talk, "pressure", 0.2)
     file = tmp_path / "played.nc"
     file.write_bytes(talk.save("nc"))
@@ -102,7 +102,7 @@ def changed_on_the_way(talk: Conversation, folder: Path) -> Path:
     return file
 
 
-def test_the_record_runs_again_as_what_was_played_last(talk, tmp_path):
+def test_the_record_reruns_the_last_scenario(talk, tmp_path):
     file = changed_on_the_way(talk, tmp_path)
     again = st.load_scenario(file)
     assert again.system == st.load_scenario("stable-sliding", {FRICTION: 0.7}).system
@@ -133,7 +133,7 @@ def test_the_regime_shown_is_that_of_the_record(case, tmp_path):
         assert shown["frequency"] == pytest.approx(saved.frequency.item(), rel=1e-3)
 
 
-def test_the_record_says_what_was_changed_when(talk, tmp_path):
+def test_the_record_lists_changes_with_their_times(talk, tmp_path):
     file = changed_on_the_way(talk, tmp_path)
     changes = json.loads(st.load(file).attrs["changes"])
     assert [change["time"] for change in changes] == pytest.approx([0.0, 0.1])
@@ -143,7 +143,7 @@ def test_the_record_says_what_was_changed_when(talk, tmp_path):
         assert found == st.load_scenario("stable-sliding", {FRICTION: friction}).system
 
 
-def test_changes_without_sound_are_one_and_old_ones_go(talk, tmp_path):
+def test_changes_without_sound_merge_and_old_ones_are_dropped(talk, tmp_path):
     talk.scene("stable-sliding")
     for friction in (0.5, 0.6, 0.7):
         talk.scene("stable-sliding", {FRICTION: friction})

@@ -47,7 +47,7 @@ def problems_of(name, overrides=None):
     ],
     ids=str,
 )
-def test_values_are_refused_as_anywhere(plays, overrides):
+def test_values_are_refused_as_in_scenarios(plays, overrides):
     answer = plays.scene("stable-sliding", overrides)
     assert answer["type"] == "refused"
     assert answer["problems"] == problems_of("stable-sliding", overrides)
@@ -123,7 +123,7 @@ def test_a_link_reads_no_file(talk, path):
     assert not any(word in line for line in told(answer) for word in ("no such file", "deduce", "cannot read"))
 
 
-def test_steps_without_end_are_refused(talk):
+def test_too_many_steps_are_refused(talk):
     answer = talk.scene(text="base = 'squeal'\n[simulation]\nstep = '0.0001 us'\n")
     assert told(answer) == ["simulation.step must be at least 1e-07 s to be played, got 1e-10"]
     answer = talk.scene("belt", {"simulation.step": 1e-10})
@@ -178,7 +178,7 @@ TOO_MUCH = {
 
 
 @pytest.mark.parametrize(("text", "begins"), TOO_MUCH.values(), ids=TOO_MUCH)
-def test_what_cannot_be_played_in_time_is_refused(plays, text, begins):
+def test_systems_too_slow_to_play_are_refused(plays, text, begins):
     (problem,) = plays.scene(text=text)["problems"]
     assert problem.startswith(begins)
 
@@ -217,7 +217,7 @@ def test_a_kind_is_played_though_a_value_beside_it_is_refused(talk):
     ],
     ids=str,
 )
-def test_a_link_plays_what_is_right_of_it(talk, case, overrides, refused, kept):
+def test_a_link_plays_its_valid_part(talk, case, overrides, refused, kept):
     answer = talk.scene(case, overrides)
     assert (answer["type"], set(answer["refused"])) == ("scene", {refused})
     assert answer["kept"] == {"case": "judder" if refused else "squeal", "text": None, "overrides": kept}
@@ -229,7 +229,7 @@ def test_a_text_nested_too_deep_is_refused_in_one_line(plays):
     assert "\n" not in problem
 
 
-def test_what_is_played_runs_elsewhere_as_it_is(talk, tmp_path):
+def test_the_played_scenario_runs_unchanged_elsewhere(talk, tmp_path):
     overrides = {"contact.friction.coefficient": 0.7, "slider.angle": 0.6, "section.height": 0.009}
     answer = talk.scene("squeal", overrides)
     file = tmp_path / "played.toml"

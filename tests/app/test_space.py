@@ -72,7 +72,7 @@ def test_every_system_in_space_is_played_and_drawn(talk, case):
     assert len(str(scene)) < 3_000_000
 
 
-def test_bodies_that_are_drawn_already_are_not_said_again(talk):
+def test_bodies_already_drawn_are_not_sent_again(talk):
     first = talk.scene("glass")
     again = talk.scene("glass", {"contacts.0.friction.kinetic": 0.31})
     assert again["drawn"] == first["drawn"]
@@ -103,7 +103,7 @@ def test_the_scenario_of_the_page_runs_the_same(tmp_path):
 
 
 @pytest.mark.parametrize("case", ["glass", "pin-on-disc"])
-def test_what_is_heard_is_what_a_run_has(case):
+def test_the_sound_is_that_of_a_run(case):
     instrument = Instrument(playable(case, None, {}), "probe 1")
     parts = [part for part in instrument.play(480) if isinstance(part, Part)]
     sound = np.concatenate([part.sound for part in parts])
@@ -115,7 +115,7 @@ def test_what_is_heard_is_what_a_run_has(case):
 
 
 @pytest.mark.parametrize("case", ["glass", "pin-on-disc", "brake"])
-def test_controls_turn_what_acts_and_rubs_first_and_no_mesh(case):
+def test_controls_change_loads_and_friction_first_and_no_mesh(case):
     before = playable(case, None, {})
     controls = before.turned.controls
     assert controls[0].group == "Friction"
@@ -131,7 +131,7 @@ def test_controls_turn_what_acts_and_rubs_first_and_no_mesh(case):
         assert after.system != before.system
 
 
-def test_how_fast_a_glass_turns_is_among_what_drives_it(talk):
+def test_the_turning_speed_of_a_glass_is_among_its_drives(talk):
     scene = talk.scene("glass")
     keys = [control["key"] for control in scene["turned"]["controls"]]
     assert keys.index("bodies.glass.turning") < keys.index("bodies.glass.material.young")
@@ -141,7 +141,7 @@ def test_how_fast_a_glass_turns_is_among_what_drives_it(talk):
     assert set(talk.play(480).stroke) == {1}
 
 
-def test_what_is_too_large_is_refused_before_its_modes_are_found():
+def test_too_large_bodies_are_refused_before_modes_are_computed():
     with pytest.raises(
         ScenarioError, match=r"block.mesh.divisions must make at most 4000 elements to be played"
     ) as told:
@@ -149,7 +149,7 @@ def test_what_is_too_large_is_refused_before_its_modes_are_found():
     assert "got [30, 30, 30]" in str(told.value)
 
 
-def test_what_takes_long_comes_in_pieces(talk):
+def test_slow_systems_are_sent_in_pieces(talk):
     """No pull holds up the other pages for long: of what is slow there is as much as is computed soon."""
     assert talk.scene("brake")["speed"] < 0.5
     talk.say("pull", parts=20, samples=480)
@@ -158,7 +158,7 @@ def test_what_takes_long_comes_in_pieces(talk):
     assert all(len(part.sound) <= 480 for part in parts)
 
 
-def test_a_record_in_space_opens_as_any(talk, tmp_path):
+def test_a_record_in_space_opens_like_any_other(talk, tmp_path):
     talk.scene("pin-on-disc")
     talk.play(2400)
     file = tmp_path / "played.nc"
@@ -173,7 +173,7 @@ def test_a_record_in_space_opens_as_any(talk, tmp_path):
     assert np.allclose(record.tangential_force, run.tangential_force, rtol=1e-6)
 
 
-def test_points_of_surfaces_are_one_contact_for_what_goes_on(talk, tmp_path):
+def test_points_of_a_surface_count_as_one_contact_in_the_last_seconds(talk, tmp_path):
     instrument = Instrument(playable("brake", None, {}))
     list(instrument.play(24))
     variables, _ = instrument.last_seconds.moment(1.0)
@@ -262,7 +262,7 @@ def test_outlines_with_fewer_corners_keep_their_shape():
     assert thinned.with_fewer_corners(glass, 10_000).place.shape == glass.place.shape
 
 
-def test_of_many_modes_those_are_kept_that_are_seen(monkeypatch):
+def test_only_visible_modes_are_kept_of_many(monkeypatch):
     block = st.SolidBody.block((0.1, 0.02, 0.05), (6, 2, 3), st.Material(2e11, 7800.0, 0.3), cutoff=4e4)
     whole = drawing_space._Body("block", block.drawn)
     monkeypatch.setattr(drawing_space, "MOST_NUMBERS", 8 * block.drawn.shapes[..., 0].size)
@@ -275,7 +275,7 @@ def test_of_many_modes_those_are_kept_that_are_seen(monkeypatch):
     assert np.linalg.norm(missed) > 0.0
 
 
-def test_what_the_page_is_told_of_a_surface_is_all_of_it():
+def test_the_page_receives_the_whole_surface():
     drawn = DrawnSurface(np.eye(3), np.array([[0, 1, 2]]), np.ones((3, 3, 2)))
     told = drawing_space._Body("plate", drawn).described
     assert {name: heard(told[name]).tolist() for name in drawn_table(drawn)} == {

@@ -83,7 +83,7 @@ def test_the_tip_separates():
     assert values(BY_TITLE["Separate"])["slider.angle"] < 0.0 < values(BY_TITLE["Separate"])["drives.0.velocity"]
 
 
-def test_it_squeals_near_the_tone_that_is_named():
+def test_it_squeals_near_the_stated_tone():
     held = values(BY_TITLE["Squeal"])
     assert held["contact.friction.coefficient"] == number("Squeal", r"Friction is ([\d.]+)")
     assert math.degrees(held["slider.angle"]) == pytest.approx(number("Squeal", r"by (\d+) degrees"))
@@ -97,7 +97,7 @@ def test_it_squeals_near_the_tone_that_is_named():
     assert stripes(np.random.default_rng(1).normal(size=RATE)) < 0.3
 
 
-def test_it_judders_as_often_as_is_said():
+def test_it_judders_at_the_stated_rate():
     assert values(BY_TITLE["Judder"])["contact.friction.coefficient"] == number("Judder", r"friction of ([\d.]+),")
     assert seen("Judder").all("regime") == ["judder"] * SECONDS
     assert seen("Judder").all("impact_rate") == pytest.approx([number("Judder", r"some (\d+)")] * SECONDS, rel=0.1)
@@ -116,7 +116,7 @@ def test_pressure_raises_the_pitch():
     assert least("Pressure", STICKING, compared=True) > 0.9
 
 
-def test_what_stops_point_at_is_on_the_page():
+def test_targets_of_stops_are_on_the_page():
     page = files("stridula.app").joinpath("page", "index.html").read_text(encoding="utf-8")
     assert [stop.title for stop in STOPS] == ["Stick", "Slip", "Separate", "Squeal", "Judder", "Pressure"]
     for stop in STOPS:

@@ -10,7 +10,7 @@ from .kinds import asked_kinds, counts
 MOST = 30
 
 
-def test_kinds_are_not_asked_more_often():
+def test_type_checks_do_not_become_more():
     assert counts().total() <= MOST, counts().most_common(12)
 
 
@@ -24,7 +24,7 @@ def test_kinds_are_not_asked_more_often():
         "from ..contact import Coulomb\nmatch law:\n    case Coulomb(): pass",
     ],
 )
-def test_the_count_sees_a_kind_that_is_asked(source):
+def test_the_count_finds_a_type_check(source):
     assert len(asked_kinds(source)) == 1
 
 
@@ -36,5 +36,5 @@ def test_the_count_sees_a_kind_that_is_asked(source):
         "from ..contact import Coulomb\nx == Coulomb",
     ],
 )
-def test_the_count_leaves_the_rest(source):
+def test_the_count_ignores_other_code(source):
     assert not asked_kinds(source)

@@ -75,13 +75,13 @@ READS_MESSAGES = {"scenarios.read"}
 
 
 @pytest.mark.parametrize("path", FILES, ids=[module_of(path) or "stridula" for path in FILES])
-def test_nothing_reads_a_message(path):
+def test_no_code_parses_messages(path):
     if module_of(path) not in READS_MESSAGES:
         assert not messages_read(path.read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("use", ["str(error).replace('a', 'b')", "'got None' in str(error)", "str(error)[0]"])
-def test_message_harness_sees_one_that_is_read(use):
+def test_message_harness_finds_parsing_of_a_message(use):
     """Negative control."""
     assert messages_read(f"try:\n    f()\nexcept ValueError as error:\n    g({use})")
     assert not messages_read("try:\n    f()\nexcept ValueError as error:\n    g(str(error), error.argument)")
@@ -168,7 +168,7 @@ def test_descriptions_need_no_compiler_and_no_records():
     assert not loaded_after(code) & {"numba", "xarray", "matplotlib", *OWNED}
 
 
-def test_a_body_of_revolution_takes_its_elements_when_it_is_asked_for_modes():
+def test_a_body_of_revolution_loads_its_elements_when_modes_are_requested():
     code = (
         "import stridula as st; b = st.AxisymmetricBody("
         "st.RectangleProfile({'disc': ((0.1, 0.2), (0.0, 0.01))}), st.Material(2e11, 7800.0), 2e3, 'inner')"
@@ -213,12 +213,12 @@ def modules_that_docs_name() -> set[str]:
 
 
 @pytest.mark.parametrize("name", sorted(modules_that_docs_name()))
-def test_modules_that_docs_name_are_there_in_a_fresh_interpreter(name):
+def test_modules_named_in_the_docs_exist_in_a_fresh_interpreter(name):
     code = f"import stridula as st; st.{name}; assert {name.partition('.')[0]!r} in dir(st)"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
-def test_what_the_api_page_names_is_there_after_a_plain_import():
+def test_names_of_the_api_page_exist_after_a_plain_import():
     """Folders and modules that names come from are attributes, and have these names, too."""
     code = "import stridula as st; print(*(f'{name}:{hasattr(st, name)}' for name in dir(st)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -34,6 +34,6 @@ def test_no_function_is_too_large(path):
 
 
 @pytest.mark.parametrize("text", [f"def f({', '.join('abcdefghijklm')}): pass", "def f():\n" + "    g()\n" * 91])
-def test_harness_sees_one_that_is(text):
+def test_harness_finds_a_function_that_is_too_large(text):
     """Negative control."""
     assert too_large(text)

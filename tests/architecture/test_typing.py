@@ -70,7 +70,7 @@ def test_stubs_name_what_is_imported_on_first_use(package):
     assert homes_in_stub(stub.read_text(encoding="utf-8")) == homes_at_run_time(package)
 
 
-def test_kinds_of_results_are_told_for_every_argument():
+def test_types_of_results_are_known_for_every_argument():
     """Options that do not change the kind are listed once more, for those that do are told one by one."""
     given = inspect.signature(stridula.simulate_many).parameters.values()
     named = {one.name for one in given if one.kind is inspect.Parameter.KEYWORD_ONLY} - {"errors", "labelled"}
@@ -88,7 +88,7 @@ def test_every_package_that_imports_on_first_use_has_a_stub():
     assert len(lazy) == len(LAZY)
 
 
-def test_type_checkers_are_told_that_there_are_types():
+def test_the_package_is_marked_as_typed():
     assert (ROOT / "py.typed").is_file()
 
 

@@ -39,7 +39,7 @@ def test_no_code_is_missed(page):
     assert len(blocks(page, "python")) == len(written)
 
 
-def test_rules_that_make_short_leave_the_rest():
+def test_shortening_rules_leave_the_rest():
     assert shorter("f(duration=60.0, step=60.0, duration=20.0)") == "f(duration=0.6, step=60.0, duration=20.0)"
     assert few({"a": [*range(12)], "b": ["x", "y", "z"]}) == {"a": [0, 11], "b": ["x", "y", "z"]}
     words = ["sweep", "--vary", "a=1deg:2deg:40", "--vary", "b=1:2:log", "--samples", "64", "--duration", "40"]

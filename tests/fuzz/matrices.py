@@ -16,7 +16,7 @@ import stridula as st
 
 from . import formats
 from .numbers import flipped, number
-from .verdicts import folder, verdict
+from .outcomes import folder, outcome
 
 Array = Any
 Given = tuple[dict[str, bytes], dict[str, Any]]
@@ -50,7 +50,7 @@ def check(given: Given) -> str:
             for point in body.points:
                 body.trace(point)
 
-        return verdict(read)
+        return outcome(read)
 
 
 def _matrix(dice: random.Random, stiff: float) -> Array:

@@ -10,8 +10,8 @@ from stridula.scenarios.load import _checked
 from stridula.scenarios.read import read_tables
 from stridula.scenarios.show import text_of
 
+from .outcomes import folder, outcome
 from .scenarios import Given, wrong
-from .verdicts import folder, verdict
 
 
 def inputs(seed: int, count: int) -> Iterator[Given]:
@@ -30,4 +30,4 @@ def check(given: Given) -> str:
             text_of(tables)
             _checked(tables, problems)
 
-        return verdict(run)
+        return outcome(run)

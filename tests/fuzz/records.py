@@ -15,7 +15,7 @@ import stridula as st
 from stridula import analysis, plot
 
 from .numbers import flipped, number, plain
-from .verdicts import folder, verdict
+from .outcomes import folder, outcome
 
 Given = tuple[str, str, int]
 CASES = ("squeal", "belt")
@@ -41,7 +41,7 @@ def check(given: Given) -> str:
             run = _from_bytes(dice, whole) if damage == "bytes" else _altered(dice, whole.copy(), damage)
             USES[use](run, case)
 
-        return verdict(done)
+        return outcome(done)
 
 
 @cache

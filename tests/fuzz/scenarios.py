@@ -15,7 +15,7 @@ import stridula as st
 from stridula.scenarios.read import read_tables
 
 from .numbers import ODD, flipped, number, plain
-from .verdicts import folder, verdict, watcher
+from .outcomes import folder, outcome, watcher
 
 KEYS = (
     "length",
@@ -66,7 +66,7 @@ def check(given: Given) -> str:
             str(scenario.system)
             scenario.simulate(duration=1e-3, watchers=[watcher()])
 
-        return verdict(run)
+        return outcome(run)
 
 
 @cache

@@ -14,7 +14,7 @@ SEED, COUNT = 7, 300
 GROWTH = 60e6
 
 
-def test_whatever_a_page_says_its_session_answers_and_lives_on(capfd):
+def test_a_session_answers_any_message_and_continues(capfd):
     process, found = psutil.Process(), Counter()
     for number, given in enumerate(messages.inputs(SEED, COUNT)):
         found[messages.check(given)] += 1
@@ -26,7 +26,7 @@ def test_whatever_a_page_says_its_session_answers_and_lives_on(capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_the_same_seed_says_the_same():
+def test_equal_seeds_give_equal_messages():
     assert list(messages.inputs(3, 20)) == list(messages.inputs(3, 20))
     assert list(messages.inputs(3, 20)) != list(messages.inputs(4, 20))
 

@@ -103,7 +103,7 @@ def test_a_square_face_is_drawn_along_the_world():
     assert [np.ptp(triangles.x), np.ptp(triangles.y)] == pytest.approx([0.04, 0.04])
 
 
-def test_colours_do_not_bridge_what_is_no_part_of_the_face():
+def test_colours_do_not_bridge_gaps_in_the_face():
     """Two strips far apart."""
     places = np.concatenate([grid(8, 2), grid(8, 2) + np.array([0.0, 0.0, 0.06])])
     triangles, _ = drawn(plot.surface(face(places, np.ones(32))).axes[0])

@@ -154,6 +154,6 @@ def test_a_tone_stands_in_its_band():
         (lambda: plot.directivity(0.0 * circle()), "pressure must hold a sound, got silence"),
     ],
 )
-def test_what_cannot_be_drawn_is_said_in_one_line(call, message):
+def test_bad_arguments_are_refused_in_one_line(call, message):
     with pytest.raises(ValueError, match=message):
         call()

@@ -179,6 +179,6 @@ def test_bands_of_white_noise_rise_by_one_decibel_and_add_up():
         ),
     ],
 )
-def test_what_cannot_be_measured_is_said_in_one_line(call, message):
+def test_unmeasurable_sounds_are_refused_in_one_line(call, message):
     with pytest.raises(ValueError, match=message):
         call()

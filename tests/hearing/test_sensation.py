@@ -70,7 +70,7 @@ def test_roughness_needs_modulation():
 
 
 @pytest.mark.parametrize("function", [st.loudness, st.loudness_over_time, st.sharpness, st.roughness])
-def test_each_listener_has_his_own(function):
+def test_each_listener_has_its_own_value(function):
     one = modulated(0.6)
     two = xr.concat([one, 0.0 * one], "listener").transpose("time", "listener").assign_coords(listener=["ear", "wall"])
     found = function(two)
@@ -101,7 +101,7 @@ def test_fields_are_named():
         st.loudness(tone(), "frontal")
 
 
-def test_a_missing_package_is_said_with_its_extra(monkeypatch):
+def test_a_missing_package_is_reported_with_its_extra(monkeypatch):
     monkeypatch.setitem(sys.modules, "mosqito.sq_metrics", None)
     monkeypatch.setitem(sys.modules, "mosqito", None)
     with pytest.raises(

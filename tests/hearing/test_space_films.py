@@ -138,7 +138,7 @@ def test_departures_from_the_mean_are_exaggerated():
     assert 0.5 * (first + second)[..., 1].min() == pytest.approx(0.15e-3)
 
 
-def test_what_looks_away_is_not_drawn():
+def test_hidden_faces_are_not_drawn():
     (body,) = still_scene(block(), (0.0, 0.0, 0.0)).bodies
     seen = body.surface.normals[body.seen]
     assert seen[:, 1].min() > -0.5
@@ -146,7 +146,7 @@ def test_what_looks_away_is_not_drawn():
     assert 0 < np.count_nonzero(body.seen) < len(body.seen)
 
 
-def test_the_picture_says_time_scales_and_status(rig, motion):
+def test_the_picture_shows_time_scales_and_status(rig, motion):
     picture = SpacePicture(rig.system, motion, 50.0, 1000.0, "Pin on disc", VIEW)
     assert set(np.unique(motion.run.status)) == {0, 1, 2}
     rest = np.array([contact.tip.body.place(contact.tip.position) for contact in rig.system.contacts])

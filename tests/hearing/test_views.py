@@ -136,7 +136,7 @@ def test_bad_input_is_one_line(rig, call, message):
     assert "\n" not in str(caught.value)
 
 
-def test_without_pyvista_one_line_says_so(rig, monkeypatch):
+def test_without_pyvista_one_line_reports_it(rig, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyvista", None)
     with pytest.raises(
         ImportError, match=r'^views need pyvista, which is not installed: pip install "\.\[view\]" in the sources$'

@@ -141,6 +141,6 @@ def test_root_loci_and_records_go_together():
         (xr.DataArray(np.zeros((3, 99)), dims=("case", "time")), {}, "signals must have numbers along case"),
     ],
 )
-def test_what_cannot_be_drawn_is_refused(signals, options, message):
+def test_bad_arguments_are_refused(signals, options, message):
     with pytest.raises(ValueError, match=message):
         plot.waterfall(signals, **options)

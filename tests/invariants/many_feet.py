@@ -65,7 +65,7 @@ def drawn(seed: int, number: int) -> Recipe:
     return Recipe("block", feet, (mass,), springs, dashpots, load, speed, 0.0)
 
 
-def verdict(seed: int, number: int) -> tuple[str, set[str]]:
+def solution_and_faults(seed: int, number: int) -> tuple[str, set[str]]:
     """Return whether a drawn system is solved, and the laws that its run breaks."""
     recipe = drawn(seed, number)
     try:
@@ -87,7 +87,7 @@ def main() -> None:
     numbers = range(asked.count) if asked.number is None else [asked.number]
     counts: dict[str, int] = {}
     for number in numbers:
-        how, broken = verdict(asked.seed, number)
+        how, broken = solution_and_faults(asked.seed, number)
         counts[how] = counts.get(how, 0) + 1
         if how != "solved" or broken:
             print(f"number {number}, {1 + number % MOST} contacts: {how} {', '.join(sorted(broken))}", flush=True)

@@ -1,7 +1,7 @@
 """Laws, mirror image and units on random systems: masses, blocks, sliders, springs, dashpots, 1 to 3 contacts.
 
 A step is a sample, so that means are values. Steps in which several contacts have no common solution stop the run or
-are counted; such runs are left out here, see `test_stops`.
+are counted; such runs are left out here, see `test_stopped_runs`.
 """
 
 from __future__ import annotations

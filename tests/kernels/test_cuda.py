@@ -39,7 +39,7 @@ def test_a_thread_marches_a_run_as_it_marches_alone(comparisons, case):
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_runs_side_by_side_are_told_apart(comparisons, case):
+def test_neighbouring_runs_are_distinguished(comparisons, case):
     """Negative control: a run that were its neighbour's would be seen."""
     assert comparisons[case]["beside"] > 1e-3
 

@@ -164,7 +164,7 @@ def test_comparison_rejects_a_wrong_twin(change, name):
 
 
 @pytest.mark.parametrize("wrong", ["polarisations", "slopes"])
-def test_comparison_tells_motion_in_the_plane(wrong, monkeypatch):
+def test_comparison_detects_wrong_motion_in_the_plane(wrong, monkeypatch):
     """Negative control: shear modes that move the other way across; slopes of the plane left out of the ledger."""
     make, step = SYSTEMS["sprung plate soft in its plane"]
     run, trail = both(make(), SCHEMES[1], twin.exact, step)
@@ -185,7 +185,7 @@ def test_comparison_tells_motion_in_the_plane(wrong, monkeypatch):
     assert (wrong == "slopes") == (len(found) == 1)
 
 
-def test_comparison_tells_an_exact_damping_matrix_from_its_diagonal():
+def test_comparison_distinguishes_an_exact_damping_matrix_from_its_diagonal():
     """Negative control: the block's damping, which couples its modes, projected on the diagonal."""
     make, step = SYSTEMS["thrown block"]
     system = make()
@@ -207,7 +207,7 @@ def test_comparison_tells_an_exact_damping_matrix_from_its_diagonal():
     assert disagreements(run, twin.march(system, twin.exact, step, STEPS))
 
 
-def test_comparison_tells_the_mean_of_the_state_from_its_last_value(monkeypatch):
+def test_comparison_distinguishes_the_mean_of_the_state_from_its_last_value(monkeypatch):
     """Negative control: bristles whose force takes the deflection at the start of the step, explicit Euler's."""
 
     def at_start(law, state, v, h):

@@ -79,7 +79,7 @@ def test_the_violin_is_heard_through_a_plate():
     assert float(st.equivalent_level(heard).max()) == pytest.approx(LEVEL, abs=1.0)
 
 
-def test_a_force_that_was_there_before_does_not_thump():
+def test_a_force_present_before_the_start_makes_no_transient():
     cut = record(np.full(500, 3.0)).assign_coords(time=0.1 + np.arange(500) / RATE)
     steady = st.radiate(cut, st.Bridge(PLATE.at(0.09), probe="D string left end"), air=AIR)
     assert not steady.values.any()
@@ -94,12 +94,12 @@ def test_a_force_that_was_there_before_does_not_thump():
         ({"probe": "D string left end", "direction": "x"}, "direction must have a part along the normal of the body"),
     ],
 )
-def test_what_is_refused(words, message):
+def test_bad_arguments_are_refused(words, message):
     with pytest.raises(ValueError, match=f"^{message}"):
         st.radiate(record(np.ones(100)), st.Bridge(PLATE.at(0.1), **words))
 
 
-def test_records_without_such_a_force_are_refused():
+def test_records_without_a_support_force_are_refused():
     run = record(np.ones(100)).drop_vars("support_force")
     with pytest.raises(ValueError, match=r"^run must have a SupportForce probe for a Bridge"):
         st.radiate(run, st.Bridge(PLATE.at(0.1)))

@@ -197,7 +197,7 @@ def test_motion_across_the_slip_has_the_roots_of_its_cubic(degrees):
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_motion_across_the_slip_decays_so_in_time(scheme):
+def test_motion_across_the_slip_decays_in_time_as_in_theory(scheme):
     """From the equilibrium with the mode across on top, its bristles too."""
     speed, step = 0.03, 2e-5
     system = sprung(40.0, speed)
@@ -240,7 +240,7 @@ def test_growth_in_time_is_that_of_linear_theory(scheme):
 # Records, restart, runs side by side, surfaces.
 
 
-def test_a_run_goes_on_with_both_bristles_and_runs_again(tmp_path):
+def test_a_run_continues_with_both_bristles_and_runs_again(tmp_path):
     system = standing(replace(LAW, initial_state=(1e-6, -2e-6)))
     names = ("normal_force", "tangential_force", "friction_state")
     whole, *_, again = goes_on(system, 2e-3, names, tmp_path, step=4e-6, sample_rate=5e4, probes=[])

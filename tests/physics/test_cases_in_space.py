@@ -109,7 +109,7 @@ def words(rows) -> list[tuple[str, str]]:
 
 
 @pytest.mark.parametrize(("name", "seed"), TURNS)
-def test_a_case_gives_in_space_what_it_gives_in_the_plane(name, seed):
+def test_a_case_has_the_same_result_in_space_as_in_the_plane(name, seed):
     """Under ten random rotations of the world, under two where a case takes longer; others for each case."""
     number = 100 * list(BY_NAME).index(name) + seed
     rows, space = rows_in_space(name, Rotation.random(random_state=number).as_matrix())
@@ -134,7 +134,7 @@ def test_every_case_is_turned_or_named():
 
 
 @pytest.mark.parametrize("name", [*MODES, *SIGNALS])
-def test_in_what_is_not_turned_nothing_moves(name):
+def test_cases_that_are_not_turned_have_no_motion(name):
     if name in SIGNALS:
         assert not hasattr(sys.modules[BY_NAME[name].run.__module__], "simulate")
         return
@@ -151,7 +151,7 @@ BODIES = [
 
 
 @pytest.mark.parametrize(("body", "place"), BODIES, ids=lambda one: type(one).__name__)
-def test_modes_are_those_of_the_plane_in_any_other(body, place):
+def test_modes_are_the_same_in_any_plane(body, place):
     turn = Rotation.random(random_state=3).as_matrix()
     placed = st.ModalBody.placed(body, {"here": place}, turn[:, 0], turn[:, 1])
     np.testing.assert_array_equal(placed.modes().frequency, body.modes().frequency)

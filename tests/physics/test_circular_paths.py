@@ -110,7 +110,7 @@ def test_without_travel_of_its_own_a_circle_is_a_fixed_point(tracks, scheme):
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_a_rider_that_goes_round_is_one_that_stands_on_a_disc_that_turns(scheme):
+def test_a_rider_moving_round_equals_one_standing_on_a_turning_disc(scheme):
     """Three times round: nothing ends the run, and forces are those of the disc that turns the other way."""
     velocity, duration = 55.0, 0.05
     tracks = on_a_circle(velocity=velocity), carried_past(velocity)
@@ -128,7 +128,7 @@ def test_a_rider_that_goes_round_is_one_that_stands_on_a_disc_that_turns(scheme)
     assert abs(float(runs[0].convection_work[-1])) > 0.02 * given[1]
 
 
-def test_what_sticks_is_carried_round_with_the_disc():
+def test_a_sticking_mass_is_carried_round_with_the_disc():
     """A mass that nothing holds is brought to the speed of the disc, and stays where it is on it, for two turns."""
     turning, friction, mass = 20.0, 1.0, 0.02
     system = riders(on_a_circle(turning), friction=friction, stiffness=0.0, mass=mass)
@@ -187,7 +187,7 @@ class PlainMarch:
         return found
 
 
-def test_the_march_is_a_plain_one():
+def test_the_march_equals_a_plain_one():
     """A rider on soft springs, carried round at 60 m/s: a sixth of a turn, and as far as its springs let it."""
     step, count, velocity = 4e-6, 600, 60.0
     plate = disc(cutoff=2500.0)
@@ -219,7 +219,7 @@ CASES = {
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("case", CASES)
-def test_energy_is_kept_and_laws_hold_in_every_step(case, scheme):
+def test_energy_is_conserved_and_laws_hold_in_every_step(case, scheme):
     track, abscissas = CASES[case]
     friction = st.Stribeck(0.4, 0.3, 0.5)
     system = riders(track, friction=friction, stiffness=2e4, abscissas=abscissas, mass=0.05)
@@ -238,7 +238,7 @@ def test_energy_is_kept_and_laws_hold_in_every_step(case, scheme):
     assert np.abs(travelled).max() > 1e-4
 
 
-def test_what_is_lost_in_impacts_is_small_where_nothing_lifts_off():
+def test_impact_losses_are_small_without_lift_off():
     """The work of the contact is that of the slope of the waves less that of friction, to the order of the scheme."""
     lost = []
     for step in (4e-6, 2e-6):
@@ -256,7 +256,7 @@ def test_what_is_lost_in_impacts_is_small_where_nothing_lifts_off():
     assert lost[0] / lost[1] == pytest.approx(2.0, rel=0.01)
 
 
-def test_several_contacts_on_a_circle_are_one_body_round():
+def test_several_contacts_on_a_circle_may_be_turned_by_any_angle():
     """As a whole they may be anywhere on it: turned on by any angle nothing changes."""
     abscissas = np.array(THREE)
     runs = [
@@ -270,7 +270,7 @@ def test_several_contacts_on_a_circle_are_one_body_round():
     assert np.abs(alone[:, 0] - found[0][:, 0]).max() > 0.01 * found[0].max()
 
 
-def test_a_contact_that_stays_sees_what_moves_round():
+def test_a_fixed_contact_beside_one_that_moves_round():
     """A pad at a point of the disc and a rider on a circle: the same as where both stay, without travel."""
     plate, circle = disc(30.0), disc(30.0).circle(HERE)
     there = plate.at(circle.point_at(0.1).position)
@@ -296,7 +296,7 @@ def test_runs_side_by_side_are_those_alone():
 
 
 @pytest.mark.parametrize("turning", [0.0, 40.0])
-def test_a_run_goes_on_to_the_last_bit_and_runs_again(turning, tmp_path):
+def test_a_run_continues_to_the_last_bit_and_runs_again(turning, tmp_path):
     track = on_a_circle(turning, velocity=20.0, history=st.Ramp(5e-4))
     system = riders(track, friction=0.4, stiffness=2e4, abscissas=(0.0, 0.1))
     words = {"step": 4e-6, "sample_rate": 5e4, "probes": [st.Velocity(system.track.at(HERE), "z")]}
@@ -361,7 +361,7 @@ def test_scenarios_have_circles(tmp_path):
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_a_disc_on_springs_is_ridden_round_too(scheme):
+def test_a_contact_moves_round_a_disc_on_springs(scheme):
     """A spring of no stiffness to speak of couples the modes of the disc, which are then marched in matrices."""
     plain = riders(on_a_circle(velocity=20.0), friction=0.3, stiffness=2e4)
     disc_point = plain.track.at((0.1, 1.0, 0.0))
@@ -399,7 +399,7 @@ def test_a_start_in_equilibrium_stays_there(scheme):
 # Sound.
 
 
-def test_a_disc_that_is_ridden_round_is_driven_again_as_it_moved():
+def test_a_disc_under_a_moving_contact_is_driven_again_as_it_moved():
     """From the forces and the places of a record, the acceleration of a point of the disc."""
     system = riders(on_a_circle(velocity=20.0), friction=0.3, stiffness=1e5)
     plate, place = system.track, (0.1, 2.0, 0.01)
@@ -460,7 +460,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("case", BAD)
-def test_what_does_not_fit_is_refused(case):
+def test_bad_arguments_are_refused(case):
     make, words = BAD[case]
     with pytest.raises(st.ArgumentError, match=words):
         make()

@@ -52,7 +52,7 @@ def test_two_masses_swing_in_their_normal_modes(shape, stiffness, step):
 
 
 @BOTH
-def test_a_wrong_spring_shows(scheme):
+def test_a_wrong_spring_is_detected(scheme):
     """Negative control: the middle spring left out, and central differences at a long step."""
     shape, step = np.array([1.0, -1.0]), 2e-3
     angular = np.sqrt((K + 2 * BETWEEN) / 0.4)
@@ -153,7 +153,7 @@ def test_general_damping_is_exact_at_any_step(damping, fraction):
     assert run.damping_loss.values.min() >= 0.0
 
 
-def test_damping_of_central_differences_never_gives():
+def test_damping_of_central_differences_never_adds_energy():
     """Step by step, at any damping."""
     for damping in (1.0, 60.0, 800.0):
         body, _, start = damped_block(damping)

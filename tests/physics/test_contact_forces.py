@@ -97,7 +97,7 @@ def test_reversals_are_of_second_order(frequency, friction, scheme):
     assert abs(swing(frequency, friction, 401.7, scheme) / expected - 1.0) < 1e-4
 
 
-def test_what_slid_before_decides_on_a_reversal():
+def test_the_previous_slip_decides_on_a_reversal():
     """Negative control: the same push on a contact that was open takes the friction of one sense for the whole step."""
     w, numbers = (1e-4, 0.0, 0.0, 1e-4), np.array([[0.3] + [0.0] * 7])
     forces = []
@@ -227,7 +227,7 @@ def test_bristles_start_where_they_are_told():
     assert moved(law) > 0.1
 
 
-def test_kernels_of_the_contact_do_not_inherit_leave_to_reassociate():
+def test_kernels_of_the_contact_do_not_inherit_fast_arithmetic():
     """numba hands fast arithmetic of a caller on to functions that say nothing of it."""
     functions = [
         value

@@ -57,7 +57,7 @@ def test_hertz_on_a_wall():
     assert np.ptp(time[force > 0.0]) == pytest.approx(2.943275 * deepest / speed, rel=5e-3)
 
 
-def test_damping_takes_what_it_says():
+def test_damping_follows_its_coefficient():
     """A mass on a contact's spring and dashpot, pressed so that it never opens: the oscillator in closed form."""
     stiffness, damping, mass, push = 1e6, 20.0, 0.1, 100.0
     body = st.RigidBody(mass)
@@ -155,7 +155,7 @@ def test_runs_side_by_side_are_those_alone():
     same_side_by_side(systems, 2e-3, step=4e-6, sample_rate=5e4, probes=[])
 
 
-def test_a_run_goes_on_to_the_last_bit_and_runs_again(tmp_path):
+def test_a_run_continues_to_the_last_bit_and_runs_again(tmp_path):
     system = on_layers(st.PowerStiffness(1e12, 1.5, 0.05))
     names = ("normal_force", "tangential_force", "kinetic_and_elastic")
     whole, *_, again = goes_on(system, 2e-3, names, tmp_path, step=4e-6, sample_rate=5e4, probes=[])
@@ -201,7 +201,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_does_not_fit_is_said(name):
+def test_bad_arguments_are_refused(name):
     make, words = BAD[name]
     with pytest.raises(ValueError, match=words):
         make()

@@ -103,7 +103,7 @@ def test_a_mode_decays_as_the_closed_form(ratio, scheme):
 
 
 @pytest.mark.parametrize("wrong", [1.01, 0.99])
-def test_a_ratio_off_by_a_percent_is_seen(wrong):
+def test_a_ratio_off_by_a_percent_is_detected(wrong):
     body = oscillator(1.3)
     system = st.System(
         far(oscillator(1.3 * wrong)), [st.InitialState(oscillator(1.3 * wrong), displacement=[0.0, 1e-3])]
@@ -113,7 +113,7 @@ def test_a_ratio_off_by_a_percent_is_seen(wrong):
     assert np.abs(run["displacement"].values[:, 0] / 1e-3 - position).max() > 1e-4
 
 
-def test_a_share_of_mass_brakes_free_flight():
+def test_mass_proportional_damping_brakes_free_flight():
     """v = v0 exp(-alpha t) for a body that nothing holds."""
     body = st.ReducedBody(0.2 * np.eye(2), np.zeros((2, 2)), {"tip": (0, 1)}, damping=st.Rayleigh(40.0, 0.0))
     system = st.System(far(body), [st.InitialState(body, velocity=[0.7, 0.0])])

@@ -66,7 +66,7 @@ def test_a_start_without_deflection_does_not_stay(name):
 
 
 @pytest.mark.parametrize("name", TRAVELLING)
-def test_what_a_contact_travels_along_bends_steadily_with_it(name, monkeypatch):
+def test_the_deflection_travels_steadily_with_the_contact(name, monkeypatch):
     """Nothing is exactly steady there; a start that leaves the travel out is the worse of two."""
     system = TRAVELLING[name]()
     run = st.simulate(starting(system), 0.02, scheme=EXPLICIT, probes=[])
@@ -145,7 +145,7 @@ def test_a_mode_on_top_grows_as_linear_theory_says(make):
     assert np.abs(left / np.abs(waves)).max() < 0.02 * np.hypot(*fitted)
 
 
-def test_the_fit_tells_another_exponent_apart():
+def test_the_fit_distinguishes_another_exponent():
     """Negative control: with no friction in it the mode that is put on top is another one, and does not stay one."""
     system, probe, step, duration, every, amplitude = hoffmann()
     known, _, away = growth(system, probe, step, duration, every, amplitude=amplitude)
@@ -272,7 +272,7 @@ def test_a_scenario_that_starts_in_equilibrium_can_be_swept(tmp_path):
     np.testing.assert_allclose(two, 2.0 * one, rtol=0.05)
 
 
-def test_a_run_goes_on_from_a_start_in_equilibrium():
+def test_a_run_continues_from_a_start_in_equilibrium():
     system = starting(dragged(bar().at(0.17)))
     whole = st.simulate(system, 2e-3, scheme=EXPLICIT, probes=[])
     half = st.simulate(system, 1e-3, scheme=EXPLICIT, probes=[])
@@ -365,7 +365,7 @@ def jammed() -> st.System:
         ),
     ],
 )
-def test_a_start_that_is_not_there_is_refused_in_one_line(make, words, message):
+def test_a_start_without_equilibrium_is_refused_in_one_line(make, words, message):
     with pytest.raises(ValueError, match=message) as caught:
         st.simulate(starting(make(), **words), 1e-3)
     assert "\n" not in str(caught.value)

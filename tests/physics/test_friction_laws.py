@@ -46,7 +46,7 @@ def test_steady_sliding_is_on_the_curve_of_the_law(law, belt, scheme):
     assert float(last.normal_force) == pytest.approx(LOAD, rel=1e-12)
 
 
-def test_steady_sliding_tells_the_laws_apart():
+def test_steady_sliding_distinguishes_the_laws():
     """Negative control: no two laws of the table are the same at 0.3 m/s, and the curves depend on the velocity."""
     ratios = [float(law.coefficient_at(0.3)) for law in LAWS.values() if not isinstance(law, st.StaticKinetic)]
     assert min(abs(a - b) for n, a in enumerate(ratios) for b in ratios[:n]) > 1e-3

@@ -91,7 +91,7 @@ def test_a_survey_of_turning_has_growth_in_time_and_modes_that_live():
     assert (np.abs(found.seen_growth_rate.values[:-1] / found.growth_rate.values[1:] - 1.0) > 0.2).all()
 
 
-def test_a_survey_tells_slow_growth_by_the_slip_along_the_rim():
+def test_a_survey_measures_slow_growth_by_the_slip_along_the_rim():
     """Where the normal force hardly swings, tones are those of the slip, in space along one of its two tangents."""
     found = st.squeal_survey("glass", {"turning": [2.1], "drives.0.z": [-0.1]})
     assert found.message.values.tolist() == [[""]]

@@ -55,7 +55,7 @@ def test_quasi_static_limit(angle, along, scheme):
     assert np.all(above.status.values[-20_000:] == STICKING)
 
 
-def test_limit_harness_tells_the_two_leans_apart():
+def test_limit_harness_distinguishes_the_two_leans():
     """Negative control: at 30 degrees and mu = 1 a trailing slider slides (cot 30 = 1.73) and a digging one holds
     (tan 30 = 0.58); with either limit in the other's place the test above would fail."""
     slides, _ = pushed(30.0, 1.0, False, SCHEMES[1])

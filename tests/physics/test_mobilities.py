@@ -35,7 +35,7 @@ def solved(mass, stiffness, damping, response, excitation, frequency):
 
 
 @pytest.mark.parametrize(("response", "excitation", "direction"), [(0, 0, "x"), (6, 0, "x"), (3, 6, "y")])
-def test_a_beam_of_elements_has_that_of_its_matrices(response, excitation, direction):
+def test_the_mobility_of_a_beam_of_elements_is_that_of_its_matrices(response, excitation, direction):
     elements, length = 6, 0.3
     beam = st.FiniteElementBeam(STEEL, SECTION, length, elements=elements, damping=RAYLEIGH, root_support="free")
     mass, stiffness = matrices(elements, length)
@@ -97,7 +97,7 @@ def endless(beam: st.ModalBeam, frequency: np.ndarray, zeta: float) -> np.ndarra
     return 1j * angular / (2.0 * np.pi * line) * (roots[0] - roots[1]) / (first - second)
 
 
-def test_a_long_damped_beam_is_an_endless_one():
+def test_a_long_damped_beam_is_an_infinite_one():
     zeta, frequency = 0.1, np.array([400.0, 900.0, 1600.0])
     beam = st.ModalBeam(STEEL, SECTION, 30.0, bending_modes=8000, axial_modes=0, damping=zeta)
     found = st.mobility(beam.centre, frequency=frequency).values
@@ -123,7 +123,7 @@ def test_springs_of_a_system_hold_the_points():
         st.mobility(first.centre, second.centre, frequency=FREQUENCY)
 
 
-def test_modes_that_turn_split_and_those_that_stand_do_not():
+def test_turning_modes_split_and_standing_ones_do_not():
     """From where it stands, a pair of waves of a disc that turns has two peaks, about its drag times the speed."""
     profile = st.RectangleProfile({"disc": ((0.05, 0.15), (0.0, 0.01))})
     standing = st.AxisymmetricBody(profile, STEEL, 1500.0, "inner", axis=(0.0, 1.0, 0.0), damping=1e-4, turning=0.0)
@@ -164,7 +164,7 @@ def test_frequencies_left_out_show_every_peak():
         ({"excitation": 0.1}, "excitation must be a BodyPoint"),
     ],
 )
-def test_what_is_no_mobility_is_refused(arguments, message):
+def test_bad_arguments_are_refused(arguments, message):
     beam = st.ModalBeam(STEEL, SECTION, 0.8, bending_modes=3)
     with pytest.raises(ValueError, match=message):
         st.mobility(beam.centre, **arguments)

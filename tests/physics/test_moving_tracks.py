@@ -123,7 +123,7 @@ def test_a_force_that_is_switched_off_gives_its_impulse(scheme, steps):
 
 @BOTH
 @pytest.mark.parametrize("late", [0.0, 0.5, 0.3])
-def test_a_root_whose_velocity_jumps_gives_its_body_the_whole_of_it(scheme, late):
+def test_a_jump_of_the_root_velocity_acts_fully_on_its_body(scheme, late):
     """A free beam dragged without contact: what is imposed on it at once adds up to the change of velocity."""
     step = 1e-5
     jump = (100 + late) * step
@@ -137,7 +137,7 @@ def test_a_root_whose_velocity_jumps_gives_its_body_the_whole_of_it(scheme, late
 
 
 @BOTH
-def test_a_belt_that_jumps_to_another_speed_goes_on_from_where_it_is(scheme):
+def test_a_belt_that_jumps_to_another_speed_continues_in_place(scheme):
     """It slides throughout, so friction does not see the jump; its slip does, at once."""
     history = st.Sampled((0.0, 0.1, 0.1), (1.0, 1.0, -2.0))
     run = on_a_track(st.RigidTrack(velocity=5.0, history=history), scheme=scheme, duration=0.2)
@@ -174,7 +174,7 @@ def held_by_a_spring(track, law, other=False):
 @pytest.mark.parametrize("other", [False, True], ids=["one contact", "two"])
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize(("before", "after"), [(0.1, -0.3), (0.1, 0.0), (0.0, 0.1), (0.1, 0.13)])
-def test_two_runs_are_the_one_whose_belt_jumps_on_the_way(scheme, other, law, before, after):
+def test_two_runs_equal_one_whose_belt_jumps(scheme, other, law, before, after):
     """It sticks to the belt, or slides on it, when that changes: the anchor and the bristles go with the belt."""
     words = {"scheme": scheme, "step": STEP, "sample_rate": 1.0 / STEP, "probes": []}
     half = 0.0973
@@ -205,7 +205,7 @@ def assert_joined(first, second, whole):
 
 
 @BOTH
-def test_ground_and_belt_go_on_under_other_histories_and_accelerations(scheme):
+def test_ground_and_belt_continue_under_other_histories_and_accelerations(scheme):
     """From a sine of both to an acceleration of both from the velocities that they have."""
     words = {"scheme": scheme, "step": STEP, "sample_rate": 1.0 / STEP, "probes": []}
     half, sine = 0.1, st.Harmonic(3.0, phase=0.4)
@@ -237,7 +237,7 @@ def test_ground_and_belt_go_on_under_other_histories_and_accelerations(scheme):
 
 
 @pytest.mark.parametrize("velocities", [(0.1, 0.2, 0.2), (0.1, 0.0, 0.0), (0.1, 0.1, 0.1)])
-def test_a_run_goes_on_to_the_last_bit_after_a_change(velocities, tmp_path):
+def test_a_run_continues_to_the_last_bit_after_a_change(velocities, tmp_path):
     """In two parts, one of them from a file, or in one."""
     first, second, third = velocities
     words = {"step": STEP, "sample_rate": 1.0 / STEP, "probes": []}
@@ -253,7 +253,7 @@ def test_a_run_goes_on_to_the_last_bit_after_a_change(velocities, tmp_path):
         np.testing.assert_array_equal(parts, both[name].values)
 
 
-def test_a_record_that_does_not_say_where_its_belt_is_goes_on_with_the_same_one_only():
+def test_a_record_without_belt_positions_continues_only_with_the_same_belt():
     words = {"step": STEP, "sample_rate": 1.0 / STEP, "probes": []}
     systems = [held_by_a_spring(st.RigidTrack(velocity=velocity), st.Coulomb(0.3)) for velocity in (0.1, 0.2)]
     old = st.simulate(systems[0], 0.01, **words).drop_vars("state_motion")
@@ -267,7 +267,7 @@ def test_a_record_that_does_not_say_where_its_belt_is_goes_on_with_the_same_one_
 
 
 @BOTH
-def test_a_run_goes_on_from_where_all_energy_is_gone(scheme):
+def test_a_run_continues_after_all_energy_is_lost(scheme):
     """Of the energy of shaken ground that has come to rest, rounding is left, and no fault."""
     shaken = st.Sampled((0.0, 0.1, 0.1, 0.2, 0.2), (1.0, 1.0, -1.0, -1.0, 0.0))
     track = st.RigidTrack(normal_acceleration=5.0, normal_history=shaken)

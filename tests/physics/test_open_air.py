@@ -342,7 +342,7 @@ def test_beyond_the_highest_mode_fits_end_and_below_it_responses_stay():
     assert np.abs(spectra[1][frequency > 6.6e3]).max() < 5e-3 * np.abs(spectra[1]).max()
 
 
-def test_a_start_in_motion_is_said_to_be_left_out():
+def test_a_start_in_motion_is_reported_as_left_out():
     plate = disc(0.0, cutoff=800.0)
     apart = st.RigidBody(1.0, points={"tip": (0.0, 0.0, 0.0)})
     contact = st.PointContact(apart.at("tip"), plate.at(HERE), gap=1.0, normal=(0.0, 0.0, 1.0))
@@ -419,7 +419,7 @@ def hat() -> RingSources:
     )
 
 
-def test_corners_that_turn_inwards_are_met(monkeypatch):
+def test_reentrant_corners_are_accurate(monkeypatch):
     place, wave = np.array([[0.2, 0.3, 0.5], [0.0, 0.0, 1.0]]), 30.0
 
     def found():

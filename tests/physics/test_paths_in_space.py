@@ -63,7 +63,7 @@ LAWS = [st.Coulomb(0.3), st.StaticKinetic(0.5, 0.3), st.LuGre(0.4, 0.3, 0.05, 2e
 @pytest.mark.parametrize("track", [BEAM, PLATE], ids=lambda one: one.kind)
 @pytest.mark.parametrize("made", [rubbed, joined, two], ids=lambda one: one.__name__)
 @pytest.mark.parametrize("rotation", [np.eye(3), TURNED], ids=["upright", "turned"])
-def test_a_track_in_any_plane_is_as_good_as_in_its_own(made, track, law, rotation):
+def test_results_do_not_depend_on_the_plane_of_a_track(made, track, law, rotation):
     space, flat = IntoSpace(rotation), made(track, law)
     probes = [
         st.Acceleration(track.at(0.2), "y"),
@@ -183,7 +183,7 @@ def test_friction_is_along_the_slip_on_a_track():
 # Records, restart, runs side by side, the ends, sound.
 
 
-def test_a_run_goes_on_and_runs_again(tmp_path):
+def test_a_run_continues_and_runs_again(tmp_path):
     system, names = thrown(TURNED), ("normal_force", "tangential_force", "contact_position", "acceleration")
     whole, *_, again = goes_on(system, 0.02, names, tmp_path, step=2e-5, sample_rate=5e4)
     assert again.system == system
@@ -228,7 +228,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("case", REFUSED)
-def test_what_there_is_none_of_is_told(case):
+def test_bad_arguments_are_refused(case):
     make, words = REFUSED[case]
     with pytest.raises(st.ArgumentError, match=f"^{words}"):
         make()

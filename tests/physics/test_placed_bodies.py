@@ -36,7 +36,7 @@ def plane():
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_any_plane_is_as_good_as_its_own(plane, seed):
+def test_results_do_not_depend_on_the_plane(plane, seed):
     turn = np.eye(3) if seed == 0 else Rotation.random(random_state=seed).as_matrix()
     run = placed(turn)
     for name in ("normal_force", "tangential_force"):
@@ -46,7 +46,7 @@ def test_any_plane_is_as_good_as_its_own(plane, seed):
     assert float(np.abs(run.tangential_force.isel(tangent=1)).max()) < 1e-9 * float(plane.normal_force.max())
 
 
-def test_what_no_planar_body_is_is_told():
+def test_bad_placements_are_refused():
     solid = st.RigidBody(1.0)
     for make, words in (
         (lambda: st.ModalBody.placed(solid, {"centre": "centre"}), "body must be a body of the plane"),

@@ -138,7 +138,7 @@ def pulse(middle=5e-3, width=2e-4):
 
 
 @pytest.mark.parametrize("baffled", [True, False])
-def test_the_whole_is_the_track_alone_and_the_slider(baffled):
+def test_the_sound_is_the_sum_of_track_and_slider(baffled):
     system, run = on_the_beam(), record(pulse(), 0.3 * pulse(), 0.05)
     alone = st.radiate(run, TRACK, PLACE, baffled=baffled)
     whole = st.radiate(run, system, PLACE, baffled=baffled)
@@ -178,7 +178,7 @@ def test_the_place_of_the_slider_counts():
     )
 
 
-def test_a_slider_that_moves_along_is_heard_from_the_middle_of_its_way():
+def test_a_moving_slider_is_heard_from_the_middle_of_its_way():
     system = on_the_beam()
     way = np.linspace(0.05, 0.15, SAMPLES)
     found = st.radiate(record(pulse(), 0.0, way), system, PLACE, bodies=[system.slider])
@@ -202,7 +202,7 @@ def test_beams_that_nothing_pushes_are_silent():
     assert "silence: nothing pushes the beams" in quiet.attrs["notes"]
 
 
-def test_bodies_without_a_surface_are_said():
+def test_bodies_without_a_surface_are_reported():
     mass = st.PointMass(0.1, name="bob")
     system = st.System([st.PointContact(mass.centre, TRACK, at=0.1)])
     found = st.radiate(record(pulse(), 0.0, 0.1), system, PLACE)
@@ -221,7 +221,7 @@ def test_bodies_without_a_surface_are_said():
         ({"run": record(pulse(), 0.0, 0.05).drop_vars("tangential_force")}, "run must be a record with tangential"),
     ],
 )
-def test_what_is_refused(words, message):
+def test_bad_arguments_are_refused(words, message):
     system = on_the_beam()
     given = {"run": record(pulse(), 0.0, 0.05), "listener": PLACE} | words
     if given.get("bodies") == "slider":
@@ -230,7 +230,7 @@ def test_what_is_refused(words, message):
         st.radiate(given.pop("run"), system, given.pop("listener"), **given)
 
 
-def test_a_wall_takes_a_track_and_something_a_sound():
+def test_a_wall_needs_a_track_and_sound_needs_a_surface():
     with pytest.raises(ValueError, match="baffled must be False, or left out, without a track"):
         st.radiate(record(0.0, pulse()), on_the_ground(ROD), PLACE, baffled=True)
     mass = st.PointMass(0.1)

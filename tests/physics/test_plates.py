@@ -206,7 +206,7 @@ def test_the_ledger_closes(name, scheme):
 
 
 @pytest.mark.parametrize("name", PLATES)
-def test_a_run_goes_on_to_the_last_bit(name):
+def test_a_run_continues_to_the_last_bit(name):
     make, step = SYSTEMS[name]
     words = {"step": step, "sample_rate": 0.1 / step}
     whole, first = (st.simulate(make(), duration, **words) for duration in (0.02, 0.01))

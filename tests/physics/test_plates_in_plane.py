@@ -272,7 +272,7 @@ def grows(system: st.System) -> complex:
     return complex(found.growth_rate[fastest], 2.0 * pi * found.frequency[fastest])
 
 
-def test_friction_that_falls_feeds_it():
+def test_falling_friction_feeds_it():
     """A rigid rider sees ``T = (static - slope (v - t q')) N``: a damping matrix ``-slope N t^T t`` on the modes."""
     system = rubbed()
     sheet = system.track
@@ -303,7 +303,7 @@ def test_it_grows_in_time_as_its_exponent_says():
     assert seen.imag == pytest.approx(known.imag, rel=2e-4)
 
 
-def test_it_does_not_sound_and_sound_does_not_brake_it():
+def test_it_radiates_no_sound_and_sound_does_not_damp_it():
     words = {"damping": 0.02, "cutoff": 15e3}
     rigid = st.ModalPlate(STEEL, 0.02, 0.25, 0.15, **words)
     sheet = replace(rigid, in_plane=True)

@@ -317,7 +317,7 @@ def test_quadrature_is_fine_enough():
     assert error(*found) < 1e-5
 
 
-def test_places_change_roles():
+def test_source_and_listener_are_reciprocal():
     """Reciprocity: a small source here, heard there, is the same as one there, heard here."""
     kernel, heard = interpolation(0.4), []
     for source, listener in (((0.1, 0.2), (0.4, -0.1)), ((0.4, -0.1), (0.1, 0.2))):
@@ -424,7 +424,7 @@ def test_wallace_close_by_falls_short(monkeypatch):
         ({"run": record(100, height=np.nan)}, "normal_force must be finite"),
     ],
 )
-def test_what_is_refused(words, message):
+def test_bad_arguments_are_refused(words, message):
     given = {"run": record(100), "track": BEAM, "listener": (0.1, 0.0, 1.0)} | words
     with pytest.raises(ValueError, match=message) as caught:
         st.radiate(given.pop("run"), given.pop("track"), given.pop("listener"), **given)
@@ -450,7 +450,7 @@ def test_a_ratio_of_rates_that_would_drift_is_refused():
         ratio_of(12345.678901, RATE, 10**7)
 
 
-def test_silence_is_said():
+def test_silence_is_reported():
     quiet = st.radiate(record(100, height=0.0), BEAM, (0.1, 0.0, 1.0))
     assert not quiet.values.any()
     assert "never presses" in quiet.attrs["notes"]
@@ -460,7 +460,7 @@ def test_silence_is_said():
     assert not far.values[:, 1].any()
 
 
-def test_what_is_left_out_is_said():
+def test_omissions_are_reported():
     many = replace(BEAM, cutoff=None, bending_modes=20)
     heard = st.radiate(record(500), many, (0.1, 0.0, 0.5))
     assert heard.attrs["modes"] < 20

@@ -42,7 +42,7 @@ def squeal():
     return system, run, known.values[:, 0]
 
 
-def test_a_squealing_pair_sounds_as_its_forces_at_every_step_make_it(squeal):
+def test_the_sound_of_a_squealing_pair_is_that_of_its_forces_at_every_step(squeal):
     system, run, known = squeal
     found = st.radiate(run, system, PLACE)
     again = st.radiate(run.drop_vars(VARIABLE), system, PLACE)
@@ -53,7 +53,7 @@ def test_a_squealing_pair_sounds_as_its_forces_at_every_step_make_it(squeal):
     assert np.abs(levels(again.values[:, 0], 2e-5) - true).max() > 0.2
 
 
-def test_it_is_kept_in_single_precision_with_whose_modes_they_are(squeal):
+def test_it_is_kept_in_single_precision_with_the_names_of_bodies(squeal):
     system, run, _ = squeal
     counts = {"slider": system.slider.modes(system.is_held(system.slider)).count, "track": system.track.modes().count}
     assert run[VARIABLE].dtype == np.float32
@@ -80,7 +80,7 @@ def test_only_a_track_of_the_same_modes_is_heard_so(squeal):
 
 
 @pytest.mark.parametrize("turning", [0.0, 100.0])
-def test_a_disc_moves_as_its_forces_make_it_whether_it_turns_or_not(turning):
+def test_a_disc_moves_as_its_forces_imply_turning_or_not(turning):
     system, plate = struck(turning)
     run = st.simulate(system, 0.03, step=1.0 / 480e3, sample_rate=48e3, probes=motions(plate))
     found, known = recorded_motion(run, system, [plate]), redriven(run, system)
@@ -125,7 +125,7 @@ def test_a_body_in_space_that_starts_in_motion_is_heard():
     assert not st.radiate(run.drop_vars(VARIABLE), system, (0.3, 0.3, 0.5)).values.any()
 
 
-def test_runs_side_by_side_record_it_too():
+def test_runs_side_by_side_also_record_it():
     scenario = st.load_scenario("squeal", {"duration": "2 ms"})
     system = scenario.system
     probes = motions(system.track)

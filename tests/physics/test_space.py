@@ -131,7 +131,7 @@ def _on_feet(body, law, belt, rotation, directions) -> st.System:
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.law)
 @pytest.mark.parametrize("rotation", [np.eye(3), TURNED], ids=["upright", "turned"])
-def test_a_system_of_the_plane_moves_as_there_however_it_is_turned(law, rotation):
+def test_a_planar_system_moves_equally_under_any_rotation(law, rotation):
     """Landings, sticks and reversals; what rounding makes grows through them."""
     words = {"step": 5e-6, "sample_rate": 2e5, "probes": []}
     flat, space = (st.simulate(system, 0.01, **words) for system in (in_the_plane(law), turned(law, rotation)))
@@ -192,7 +192,7 @@ def test_a_particle_on_a_slope_ends_straight_downhill_at_half_its_speed(scheme):
 
 
 @pytest.mark.parametrize("degrees", [0.0, 30.0, 135.0, 290.0])
-def test_a_mass_is_held_in_all_directions_alike(degrees):
+def test_a_mass_is_held_equally_in_all_directions(degrees):
     """A force that rises from 0 to 2 N in 1 s along any direction moves 1 kg off at mu N = 1 N, after 0.5 s."""
     mass = st.RigidBody(1.0)
     contact = st.PointContact(mass.centre, st.RigidTrack(), friction=st.Coulomb(0.1))
@@ -206,7 +206,7 @@ def test_a_mass_is_held_in_all_directions_alike(degrees):
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.law)
-def test_a_mass_is_stopped_in_all_directions_alike(law):
+def test_a_mass_is_stopped_equally_in_all_directions(law):
     """Thrown along either tangent or between them it slides as far, from the first step on."""
     found = []
     for degrees in (0.0, 90.0, 215.0):
@@ -230,7 +230,7 @@ def test_friction_damps_motion_across_the_slip(direction):
     np.testing.assert_allclose(found.slip_velocity, 10.0 * np.array(direction), rtol=1e-12)
 
 
-def test_motion_across_the_slip_decays_so_in_time():
+def test_motion_across_the_slip_decays_in_time_as_in_theory():
     """A swing across of 1 mm/s against the 10 m/s of the belt, over 30 periods."""
     system, own = swinging(across=1e-3), sqrt(STIFFNESS / MASS)
     probe, step = st.Displacement(system.slider.centre, "z"), 2.0 * pi / own / 400.0
@@ -501,7 +501,7 @@ def test_a_surface_that_moves_drags_both_bodies_apart(space):
     assert st.load_scenario(run).system == still
 
 
-def test_a_body_given_by_its_modes_moves_as_the_one_they_are_of():
+def test_a_body_given_by_its_modes_moves_like_the_original():
     """With residual shapes, in both schemes, to round-off."""
     system = standing()
     whole = system.slider
@@ -543,7 +543,7 @@ def test_an_ensemble_of_a_system_in_space_starts_from_small_changes():
         assert 0.0 < float(np.ptp(found.force.values)) < 0.5 * float(found.force_mean)
 
 
-def test_a_run_in_space_goes_on_and_runs_again(tmp_path):
+def test_a_run_in_space_continues_and_runs_again(tmp_path):
     system = standing()
     probes = [st.Displacement(system.slider.at("top"), "z"), st.Velocity(system.slider.at("foot 1"), "z")]
     names = ("normal_force", "tangential_force", "contact_position")
@@ -630,7 +630,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_does_not_fit_in_space_is_said(name):
+def test_bad_arguments_in_space_are_refused(name):
     make, message = BAD[name]
     with pytest.raises(st.ArgumentError, match=message) as refused:
         make()

@@ -105,7 +105,7 @@ def test_a_thrown_string_pulls_its_supports_by_a_square_wave():
     np.testing.assert_allclose(force[[249, 749]], [[-1, -1], [1, 1]], atol=allowed + 1e-6)
 
 
-def test_support_forces_go_on_in_a_run_that_is_continued():
+def test_support_forces_continue_in_a_continued_run():
     probes = [st.SupportForce(IDEAL, end) for end in ENDS]
     system = bowed(IDEAL, 0.05, velocity=0.1)
     words = {"probes": probes, "sample_rate": 5e4}

@@ -97,7 +97,7 @@ def test_a_face_finds_the_disc_before_it():
     assert face.areas.sum() == pytest.approx(sector, rel=1e-4)
 
 
-def test_a_pad_stays_in_equilibrium_and_says_its_resultants():
+def test_a_pad_stays_in_equilibrium_and_has_its_resultants():
     system, face = brake(0.05)
     theory = st.sliding_stability(system)
     assert theory.attrs["equilibrium"] == "sliding"
@@ -157,7 +157,7 @@ def test_a_rigid_face_that_bounces_finds_its_forces(friction):
     assert np.abs(run.ledger_residual).max() < 1e-10 * run.drive_work.max()
 
 
-def test_a_rigid_face_whose_forces_are_not_found_says_what_helps():
+def test_a_rigid_face_without_solution_reports_a_remedy():
     system, _ = brake(0.4, stiffness=None)
     with pytest.raises(st.Diverged, match="a rigid surface of so many points needs a contact stiffness"):
         st.simulate(system, 1e-3, probes=[], contact_solve=st.GaussSeidel(sweeps=2))
@@ -205,7 +205,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_does_not_fit_is_said(name):
+def test_bad_arguments_are_refused(name):
     make, words = BAD[name]
     with pytest.raises(ValueError, match=words):
         make()

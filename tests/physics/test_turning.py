@@ -189,7 +189,7 @@ def test_the_march_is_that_in_the_material():
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_energy_is_kept_and_the_drive_pays(scheme):
+def test_energy_is_conserved_and_the_drive_supplies_the_losses(scheme):
     system = rubbed(200.0, friction=st.Stribeck(0.4, 0.3, 0.5), damping=0.002, residual_at=[(0.14, 0.01)])
     ring_force = st.Force(system.track.at((0.1, 1.0, 0.01)), z=3.0, history=st.Harmonic(700.0))
     system = replace(system, drives=[*system.drives, ring_force])
@@ -201,7 +201,7 @@ def test_energy_is_kept_and_the_drive_pays(scheme):
     assert float(run.friction_loss[-1]) == pytest.approx(float(run.drive_work[-1]), rel=0.05)
 
 
-def test_a_run_goes_on_to_the_last_bit_and_runs_again(tmp_path):
+def test_a_run_continues_to_the_last_bit_and_runs_again(tmp_path):
     system = rubbed(300.0, friction=0.4, damping=0.002)
     probes = [st.Velocity(system.track.at(HERE), "z"), st.Acceleration(system.track.at(HERE), "x")]
     words = {"step": 4e-6, "sample_rate": 5e4, "probes": probes}
@@ -230,7 +230,7 @@ def test_discs_at_rest_march_beside_those_that_turn():
         np.testing.assert_allclose(together[k].normal_force, alone.normal_force, rtol=1e-9)
 
 
-def test_a_disc_that_gathers_speed_ends_as_one_that_always_had_it():
+def test_an_accelerated_disc_ends_like_one_at_constant_speed():
     """Once what the rise has left has decayed."""
     words = {"step": 4e-6, "sample_rate": 1e4, "probes": []}
     rising = rubbed(30.0, friction=0.0, damping=0.05, turning_history=st.Ramp(0.02))
@@ -305,7 +305,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_does_not_fit_is_said(name):
+def test_bad_arguments_are_refused(name):
     make, words = BAD[name]
     with pytest.raises(ValueError, match=words):
         make()

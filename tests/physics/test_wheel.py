@@ -13,7 +13,7 @@ import stridula as st
 from stridula import analysis
 from stridula.linear.reach import modes_at_rest
 
-from .fluttering import flutter
+from .mode_coupling import flutter
 
 RADIUS, LOAD, CREEP = 0.46, 5e4, 0.1
 STANDING = {"turning": 0.0, "contacts.0.surface_velocity.1": 0.0}
@@ -50,7 +50,7 @@ def test_its_rim_has_the_axial_modes_of_wheels_of_its_size():
 
 
 @pytest.mark.parametrize("order", [2, 3, 4, 5])
-def test_falling_friction_feeds_what_the_formula_says(order):
+def test_falling_friction_feeds_the_mode_as_in_the_formula(order):
     """``a = -N mu'`` pushes by ``a Z / (Z - a)`` times the velocity of the rim, Z the impedance of the rail sideways.
 
     At the same coefficient without a fall there is another growth, by what the load changes.
@@ -68,7 +68,7 @@ def test_falling_friction_feeds_what_the_formula_says(order):
 
 
 @pytest.mark.parametrize("order", [3, 4, 5])
-def test_rolling_makes_of_a_pair_two_waves_that_share_its_growth(order):
+def test_rolling_splits_a_pair_into_two_waves_that_share_its_growth(order):
     """Turning couples the two of a pair by the drag d: ``mean + sqrt(half the difference² - d²)`` of their exponents.
 
     Standing, one of them passes the contact with its antinode and grows, the other with its node.
@@ -105,7 +105,7 @@ def test_a_survey_of_creep_has_growth_in_time_and_the_mode_lives():
     assert (np.abs(found.seen_growth_rate.values[:-1] / found.growth_rate.values[1:] - 1.0) > 0.2).all()
 
 
-def test_a_contact_that_hardly_yields_reaches_as_far_as_a_rigid_one():
+def test_a_stiff_contact_has_the_reach_of_a_rigid_one():
     rigid = flutter(0.9)
     stiff = replace(rigid, contact=replace(rigid.contact, stiffness=1e13))
     start = st.InitialEquilibrium(status="sliding")

@@ -262,7 +262,7 @@ def test_a_tone_beside_a_stronger_one_must_stand_out():
     assert near == [3, 2]
 
 
-def test_nothing_has_no_tones_and_bad_numbers_are_refused():
+def test_silence_has_no_tones_and_bad_numbers_are_refused():
     signal = record([("sliding", 0.5)], lambda t: 0.0 * t).normal_force
     for found in (*analysis.tones(signal), *analysis.tones(signal, np.empty((0, 2)))):
         assert found.size == 0

@@ -31,7 +31,7 @@ def said(monkeypatch):
     return words
 
 
-def test_compiling_is_said_where_something_is_compiled(said, tmp_path, monkeypatch):
+def test_compiling_is_reported_when_it_happens(said, tmp_path, monkeypatch):
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
 
     def twice(number):
@@ -47,14 +47,14 @@ def test_compiling_is_said_where_something_is_compiled(said, tmp_path, monkeypat
     assert said == [bars.COMPILING, "half"], "nothing is said when the bar has gone"
 
 
-def test_a_run_that_compiles_nothing_does_not_say_so(stridula, said):
+def test_a_run_that_compiles_nothing_does_not_report_compiling(stridula, said):
     for _ in range(2):
         assert stridula("run", "squeal", "--duration", "2 ms")[0] == 0
     assert said[-1].startswith("0.002 of 0.002 s, ")
     assert said.count(bars.COMPILING) <= 1
 
 
-def test_a_sensitivity_says_how_far_it_is(stridula, said):
+def test_a_sensitivity_shows_its_progress(stridula, said):
     arguments = ("--vary", "friction=1:1.5", "--duration", "2 ms", "--samples", "32")
     assert stridula("sensitivity", "squeal", *arguments)[0] == 0
     points = [words for words in said if words != bars.COMPILING]
@@ -83,7 +83,7 @@ def block():
 
 
 @pytest.mark.parametrize("name", ["pad", ""])
-def test_the_search_for_the_modes_of_a_large_body_is_told(block, caplog, name):
+def test_the_search_for_the_modes_of_a_large_body_is_reported(block, caplog, name):
     body = dataclasses.replace(block, name=name, cutoff=2000.0 + len(name))
     with caplog.at_level("INFO", "stridula"):
         body.modes()
@@ -96,7 +96,7 @@ def test_the_search_for_the_modes_of_a_large_body_is_told(block, caplog, name):
     assert end.task is None
 
 
-def test_other_large_bodies_tell_of_it(caplog):
+def test_other_large_bodies_also_report_it(caplog):
     count = 1100
     mass, stiffness = np.ones(count), 1e4 * np.arange(1.0, count + 1.0)
     with caplog.at_level("INFO", "stridula"):
@@ -112,7 +112,7 @@ def test_other_large_bodies_tell_of_it(caplog):
     assert [words.split("(")[0] for words in begun] == ["modes of chain ", "modes of disc "]
 
 
-def test_a_bar_says_that_modes_are_found(said, block):
+def test_a_bar_reports_the_search_for_modes(said, block):
     with bars.bar("squeal"):
         dataclasses.replace(block, cutoff=2010.0).modes()
     assert [words.split("(")[0] for words in said] == ["modes of the solid body ", bars.PREPARING]
@@ -121,7 +121,7 @@ def test_a_bar_says_that_modes_are_found(said, block):
 
 
 @pytest.mark.parametrize("is_terminal", [True, False])
-def test_commands_without_a_bar_say_that_modes_are_found_and_leave_nothing(is_terminal, block, monkeypatch, capsys):
+def test_commands_without_a_bar_report_the_search_for_modes_and_leave_nothing(is_terminal, block, monkeypatch, capsys):
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("TTY_COMPATIBLE", "1" if is_terminal else "0")
     monkeypatch.setattr(sys.stderr, "isatty", lambda: is_terminal, raising=False)

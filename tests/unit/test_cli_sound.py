@@ -76,7 +76,7 @@ def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
         ("squeal", ("--duration", "10 us"), "duration must be at least 2e-05 s, two samples, to be heard, got 1e-05"),
     ],
 )
-def test_what_cannot_be_heard_is_refused_before_the_run(stridula, monkeypatch, tmp_path, name, asked, message):
+def test_inaudible_systems_are_refused_before_the_run(stridula, monkeypatch, tmp_path, name, asked, message):
     def fail(*_, **__):
         raise AssertionError("it ran")
 
@@ -127,7 +127,7 @@ def test_a_float_file_holds_what_is_beyond_full_scale(stridula):
 
 
 @pytest.mark.usefixtures("kept")
-def test_without_a_baffle_one_hears_less_and_from_below_too(stridula):
+def test_sound_without_a_baffle_is_quieter_and_reaches_below(stridula):
     places = ("--listener", "0.6,0,0.5", "--listener", "0.6,0,-0.5")
     alone = ("--body", "track")
     code, out, err = stridula("sound", "run.nc", *alone, "--unbaffled", *places, "--wav", "free.wav")
@@ -153,7 +153,7 @@ def test_a_spectrogram_is_drawn_and_named_after_the_case(stridula, tmp_path, mon
 
 
 @pytest.mark.usefixtures("kept")
-def test_silence_is_said(stridula):
+def test_silence_is_reported(stridula):
     code, out, err = stridula("sound", "open.nc", "--body", "track", "--wav", "a.wav")
     assert (code, err) == (0, "")
     assert out.startswith("a.wav: 2 channels, 48 kHz, 0.005 s, silence (full scale 1 Pa)\ntrack is silent: the contact")
@@ -172,7 +172,7 @@ def test_a_silent_spectrogram_is_drawn(stridula):
 
 
 @pytest.mark.usefixtures("kept")
-def test_what_a_coarse_record_misses_is_said(stridula):
+def test_omissions_of_a_coarse_record_are_reported(stridula):
     code, out, err = stridula("sound", "coarse.nc")
     assert (code, err) == (0, "")
     assert "modes above what the record's sample rate carries are left out" in out
@@ -190,7 +190,7 @@ def with_another_track_on_the_way(records):
     return run, [s.system for s in scenarios], half
 
 
-def test_a_record_whose_track_was_changed_is_sounded_in_parts_only(stridula, records, tmp_path):
+def test_a_record_with_a_changed_track_is_heard_in_parts_only(stridula, records, tmp_path):
     run, systems, half = with_another_track_on_the_way(records)
     message = rf"run must have the same track throughout to be heard, got another one from {half:.6g} s on"
     with pytest.raises(ValueError, match=f"^{message}"):
@@ -211,7 +211,7 @@ def test_a_record_whose_track_was_changed_is_sounded_in_parts_only(stridula, rec
         np.testing.assert_array_equal(*(soundfile.read(tmp_path / f"{name}.wav")[0] for name in ("part", "mine")))
 
 
-def test_of_a_record_on_which_drives_were_changed_the_track_is_heard_alone(stridula, records):
+def test_only_the_track_is_heard_if_drives_were_changed(stridula, records):
     run, _, half = with_another_track_on_the_way(records)
     system = st.load_scenario(records["run.nc"]).system
     texts = [
@@ -297,7 +297,7 @@ def test_bad_input_is_one_line_and_writes_nothing(stridula, tmp_path, monkeypatc
     assert written(tmp_path) == before
 
 
-def test_an_interrupted_run_says_that_no_sound_was_written(stridula, monkeypatch, tmp_path):
+def test_an_interrupted_run_reports_that_no_sound_was_written(stridula, monkeypatch, tmp_path):
     def interrupt(*arguments, **fields):
         raise KeyboardInterrupt
 
@@ -320,7 +320,7 @@ def test_a_plate_is_heard_from_above_its_middle(stridula):
 
 
 @pytest.mark.parametrize("floor", [False, True])
-def test_of_several_contacts_those_on_a_track_drive_it(stridula, tmp_path, floor):
+def test_only_contacts_on_a_track_drive_it(stridula, tmp_path, floor):
     """Two feet of one body: one on a floor and one on a beam, or both on the beam."""
     feet = st.ReducedBody(
         np.eye(4) * 0.1, np.eye(4) * 1e5, {"left": (0, 1), "right": (2, 3)}, damping=st.Rayleigh(1.0, 1e-6)
@@ -341,7 +341,7 @@ def test_of_several_contacts_those_on_a_track_drive_it(stridula, tmp_path, floor
     assert (tmp_path / "feet.wav").read_bytes() == (tmp_path / "same.wav").read_bytes()
 
 
-def test_what_has_not_arrived_is_silence(stridula):
+def test_sound_that_has_not_arrived_is_silence(stridula):
     assert stridula("run", "judder", "--duration", "3 ms", "--out", "early.nc")[0] == 0
     code, out, _ = stridula("sound", "early.nc", "--body", "track", "--wav", "early.wav")
     assert code == 0
@@ -350,7 +350,7 @@ def test_what_has_not_arrived_is_silence(stridula):
 
 
 @pytest.mark.usefixtures("kept")
-def test_a_coarse_record_says_up_to_where_its_sound_is_whole(stridula):
+def test_a_coarse_record_reports_its_bandwidth(stridula):
     code, out, _ = stridula("sound", "coarse.nc")
     assert code == 0
     assert "complete only up to 833.3 Hz" in out

@@ -128,7 +128,7 @@ def test_a_reaction_needs_a_body_without_connections():
         st.simulate(joined, 1e-3, probes=[st.Reaction(system.slider)])
 
 
-def test_only_what_is_joined_is_coupled():
+def test_only_joined_bodies_are_coupled():
     """A spring on a mass alone keeps its modes apart; one between bodies couples theirs, and theirs only."""
     contact = st.PointContact(ROD.tip, BAR, at=0.2)
     own = [st.Spring(ONE.centre, stiffness=9.0), st.Dashpot(ONE.centre, coefficient=0.1)]

@@ -188,12 +188,12 @@ EVERY_DRIVE = {
 }
 
 
-def test_each_drive_is_there():
+def test_every_drive_is_tested():
     assert {drive.kind: type(drive) for drive in EVERY_DRIVE.values()} == {kind.kind: kind for kind in DRIVES}
     assert list(EVERY_DRIVE) == [kind.kind for kind in DRIVES]
 
 
-def test_a_drive_says_what_it_does_and_to_what():
+def test_a_drive_has_its_effect_and_its_target():
     said = {name: (drive.place, drive.acted_on, drive.velocities) for name, drive in EVERY_DRIVE.items()}
     assert said == {
         "force": ("point", ROD, ()),

@@ -88,7 +88,7 @@ def test_in_python_the_error_names_the_extra(tmp_path):
     assert said == {code: f"MissingPackage: {line(beginning)}" for code, beginning in IN_PYTHON.items()}, done.stderr
 
 
-def test_the_command_line_says_so_in_one_line_before_it_runs(tmp_path):
+def test_the_command_line_reports_it_in_one_line_before_it_runs(tmp_path):
     packages = {"matplotlib", "soundfile", "starlette", "uvicorn"}
     done = run_without(packages, f"VERBS = {[*VERBS]!r}\n{EACH_VERB}", tmp_path)
     assert done.stderr.splitlines() == [f"stridula: {line(beginning)}" for beginning in VERBS.values()]
@@ -96,23 +96,23 @@ def test_the_command_line_says_so_in_one_line_before_it_runs(tmp_path):
     assert not [*tmp_path.iterdir()]
 
 
-def test_without_a_command_line_the_command_says_so(tmp_path):
+def test_without_a_command_line_the_command_reports_it(tmp_path):
     done = run_without({"typer"}, "sys.argv = ['stridula', 'list']\nfrom stridula.cli import main\nmain()", tmp_path)
     assert (done.returncode, done.stderr) == (2, f"stridula: {line('the command line needs typer')}\n")
 
 
-def test_what_no_extra_brings_is_an_error_of_its_own():
+def test_other_missing_modules_keep_their_own_error():
     with pytest.raises(ModuleNotFoundError, match="No module named 'nothing_of_ours'") as caught, named_extras():
         import nothing_of_ours  # noqa: F401
     assert not isinstance(caught.value, MissingPackage)
 
 
-def test_names_that_are_not_there_stay_attribute_errors():
+def test_missing_names_stay_attribute_errors():
     with pytest.raises(AttributeError, match=r"module 'stridula\.plot' has no attribute 'overvew'"):
         on_first_use("stridula.plot", {}, "overvew")
 
 
-def test_a_package_that_is_there_is_not_missed(monkeypatch):
+def test_an_installed_package_is_not_reported(monkeypatch):
     require("pytest")
     monkeypatch.setitem(sys.modules, "soundfile", None)
     with pytest.raises(MissingPackage, match="soundfile"):

@@ -58,7 +58,7 @@ def test_a_scenario_is_varied_by_key_and_unit():
     assert found.max() <= 4e3
 
 
-def test_critical_value_is_closed_in_on():
+def test_critical_value_is_bracketed():
     found = st.critical_value(hoffmann_at, "friction", 0.5, 1.0, tolerance=1e-10)
     assert float(found["value"]) == pytest.approx(0.75, abs=1e-10)
     assert float(found["stable"]) < float(found["unstable"]) <= float(found["stable"]) + 1e-10
@@ -116,7 +116,7 @@ def test_bad_arguments(call, message):
     assert "\n" not in str(error.value)
 
 
-def test_modes_left_out_of_what_is_followed_still_count():
+def test_untracked_modes_still_count():
     loci = st.root_loci(hoffmann_at, "friction", np.linspace(0.5, 1.0, 6), highest=1e-3)
     assert loci.sizes["mode"] == 0
     assert loci["unstable_modes"].values.tolist() == [0, 0, 0, 1, 1, 1]
@@ -139,7 +139,7 @@ def test_labels_of_critical_values_do_not_cover_each_other():
     assert [text.get_horizontalalignment() for text in above.texts] == ["left", "left", "left", "right"]
 
 
-def test_what_is_no_root_loci_is_told():
+def test_other_datasets_are_refused():
     with pytest.raises(ValueError, match="loci must be the result of root_loci"):
         plot.root_loci(st.critical_value(hoffmann_at, "friction", 0.5, 1.0))
     with pytest.raises(ValueError, match="loci must be a Dataset"):

@@ -99,7 +99,7 @@ def test_a_run_that_ends_leaves_the_others_alone():
         assert_like(run, st.simulate(one, 0.02, **WORDS), 1e-6)
 
 
-def test_order_and_number_of_workers_do_not_show():
+def test_order_and_number_of_workers_do_not_matter():
     systems = [*squeals(5), CASES["judder"](), *squeals(9)[5:], SYSTEMS["frozen contact"][0]()]
     first = st.simulate_many(systems, 100 * STEP, workers=1, **WORDS)
     second = st.simulate_many(systems, 100 * STEP, workers=3, **WORDS)
@@ -200,7 +200,7 @@ def test_bad_arguments_are_named(change, message):
         st.simulate_many(**({"systems": squeals(1), "duration": 1e-3} | change))
 
 
-def test_no_system_is_no_record():
+def test_no_systems_give_no_records():
     assert st.simulate_many([], 1.0) == []
 
 
@@ -255,7 +255,7 @@ def test_an_error_names_the_system():
         st.simulate_many([*systems[:2], 5], 1e-3)
 
 
-def test_a_step_found_for_all_is_not_held_against_one():
+def test_a_common_step_is_not_an_error_of_one_system():
     mass = st.PointMass(1.0)
     free = st.System(st.PointContact(mass.centre, st.RigidTrack()), [st.Gravity()])
     first, second = st.simulate_many([free, CASES["stable"]()], 1e-6, sample_rate=2e7)

@@ -329,7 +329,7 @@ def test_market_files_are_refused_wherever_they_are_cut_within_a_word(tmp_path):
                 one_matrix(tmp_path, text[:end])
 
 
-def test_rows_that_nobody_names_are_refused_before_there_is_room_for_them(tmp_path):
+def test_unnamed_rows_are_refused_before_memory_is_allocated(tmp_path):
     path = tmp_path / "m.txt"
     path.write_text("1 1 1.0\n1000000000 1000000000 1.0\n")
     tracemalloc.start()

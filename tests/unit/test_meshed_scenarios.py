@@ -269,7 +269,7 @@ def profile_point(profile) -> np.ndarray:
     return mesh.nodes[mesh.cells[0]].mean(axis=0)
 
 
-def test_all_that_a_body_of_revolution_has(tmp_path):
+def test_every_key_of_a_body_of_revolution(tmp_path):
     disc = {
         "profile": PROFILES["rectangles"][0],
         "material": {"hat": METAL, "disc": {"young": "110 GPa", "density": "7.1 g/cm3", "poisson": 0.28}},
@@ -356,7 +356,7 @@ def test_every_mesh_is_the_one_written_in_python(table, mesh, tmp_path):
     assert case.system.slider == st.SolidBody(mesh, STEEL, {"p": 3}, damping=0.01, residual_flexibility=False, name="a")
 
 
-def test_all_that_a_solid_has(tmp_path):
+def test_every_key_of_a_solid(tmp_path):
     mesh = MESHES["elements"]
     body = {
         "mesh": mesh[0],
@@ -496,7 +496,7 @@ def test_a_sweep_takes_meshes_along_and_reads_them_once(tmp_path):
     assert np.isfinite(cutoffs.mean_force.values).all()
 
 
-def test_a_text_names_no_meshes():
+def test_a_text_may_not_name_meshes():
     text = '[bodies.a]\nkind = "solid"\nmesh = { shape = "file", file = "/etc/passwd" }\n'
     with pytest.raises(st.ScenarioError, match=r"bodies must not name files in a text, got '/etc/passwd'"):
         tables_of_text(text, "text")
@@ -596,7 +596,7 @@ BAD_DISCS = {
 
 
 @pytest.mark.parametrize(("changes", "message"), BAD_DISCS.values(), ids=BAD_DISCS)
-def test_a_bad_body_of_revolution_says_what_is_wrong(changes, message, tmp_path, monkeypatch):
+def test_errors_of_a_body_of_revolution_are_explained(changes, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     disc = {"profile": dict(RING), "material": METAL, "cutoff": 5e3}
     for key, value in changes.items():
@@ -658,7 +658,7 @@ BAD_SOLIDS = {
 
 
 @pytest.mark.parametrize(("changes", "message"), BAD_SOLIDS.values(), ids=BAD_SOLIDS)
-def test_a_bad_solid_says_what_is_wrong(changes, message, tmp_path, monkeypatch):
+def test_errors_of_a_solid_are_explained(changes, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     body = {"mesh": CUBE, "materials": METAL, "points": {"p": 0}, **changes}
     assert message in told(with_solid, body, tmp_path)
@@ -679,7 +679,7 @@ def test_a_bad_solid_says_what_is_wrong(changes, message, tmp_path, monkeypatch)
         (None, "contacts.0.track.point must be given: a position, as the body has no named points"),
     ],
 )
-def test_a_point_that_is_not_there_is_told(point, message, tmp_path):
+def test_a_missing_point_is_reported(point, message, tmp_path):
     disc = {"profile": RING, "material": METAL, "cutoff": 5e3}
     on_disc(disc, tmp_path)
     tables = read_tables(tmp_path / "case.toml")

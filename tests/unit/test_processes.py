@@ -64,7 +64,7 @@ def test_another_process_gives_the_same_to_the_last_bit(helper_of, source, measu
     assert repr(helper.outcomes(points[:4])) == repr(expected[:4]) or len(points) < 8
 
 
-def test_a_process_that_is_gone_is_told(helper_of):
+def test_a_lost_process_is_reported(helper_of):
     task, points = task_of(measures=("mean_force",))
     helper = helper_of(task)
     helper._process.kill()
@@ -72,7 +72,7 @@ def test_a_process_that_is_gone_is_told(helper_of):
     assert helper.outcomes(points) is None
 
 
-def test_what_no_other_process_can_import_stays_in_threads(monkeypatch):
+def test_functions_that_cannot_be_imported_stay_in_threads(monkeypatch):
     assert portable(task_of()[0]) is not None
     assert portable(task_of(squeal)[0]) is not None
     assert portable(task_of(measures=({"peak": lambda run: 0.0},))[0]) is None
@@ -130,7 +130,7 @@ def test_one_worker_needs_no_process():
     helpers.close()
 
 
-def test_where_no_process_can_begin_threads_go_on(monkeypatch):
+def test_threads_continue_if_no_process_can_start(monkeypatch):
     def fails(asked, ready):
         raise OSError("no more processes")
 

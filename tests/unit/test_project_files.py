@@ -55,7 +55,7 @@ def test_every_python_of_the_classifiers_is_tested():
 
 
 @pytest.mark.parametrize("path", FORMS, ids=lambda path: path.name)
-def test_forms_ask_for_something(path):
+def test_forms_have_labelled_fields(path):
     form = read(path)
     assert {"name", "description", "body"} <= set(form)
     assert all(field["attributes"]["label"] and field["id"] for field in form["body"])
@@ -82,7 +82,7 @@ def test_the_recipe_requires_what_the_project_does():
     assert recipe["about"]["license"] == PROJECT["license"]
 
 
-def test_oldest_releases_are_the_floors():
+def test_oldest_releases_are_the_lower_bounds():
     assert OLDEST["oldest"](["numpy>=2.0", "stridula[cli]", "tomli-w>=1.0"]) == ["numpy==2.0", "tomli-w==1.0"]
     with pytest.raises(SystemExit, match="a dependency must be name>=release, got 'numpy<3'"):
         OLDEST["oldest"](["numpy<3"])

@@ -89,7 +89,7 @@ def test_slow_swings_and_drifts_of_sliding_are_stable():
     assert named(record(always(SLIDING), 1.0 + SECOND**2))[0] == "stable sliding"
 
 
-def test_held_is_sticking_and_open_has_left():
+def test_a_held_contact_sticks_and_an_open_one_has_left():
     assert named(record(always(STICKING), 1.0 + tone(20.0))) == ("sticking", 1.0)
     assert named(record(always(SEPARATED), 0.0)) == ("off the track", 1.0)
 
@@ -119,7 +119,7 @@ def test_five_slow_cycles_are_periodic():
     assert found.frequency == pytest.approx(0.27, rel=1e-3)
 
 
-def test_one_slip_is_stick_slip_unless_next_to_nothing():
+def test_one_slip_is_stick_slip_unless_negligible():
     status = always(STICKING)
     status[10_000:13_000] = SLIDING
     found = analysis.regime(record(status))
@@ -162,7 +162,7 @@ def test_random_impacts_are_judder():
     assert found.impact_rate == pytest.approx(400.0, abs=20.0)
 
 
-def test_a_run_off_its_track_is_that_whatever_came_before():
+def test_a_run_off_its_track_has_that_regime():
     found = analysis.regime(record(always(SLIDING), 1.0 + tone(), ended="off the track"))
     assert (found.regime, found.confidence) == ("off the track", 1.0)
     assert found.tonality > 0.99
@@ -251,7 +251,7 @@ def test_landings_within_the_intervals_are_counted():
     assert found.frequency == found.impact_rate == pytest.approx(800.0)
 
 
-def test_damping_betrays_a_vibration_that_the_samples_hide():
+def test_damping_reveals_a_vibration_hidden_by_the_samples():
     """It slides at every step with equal forces; a steady state would lose nothing to damping."""
     run = record(always(SLIDING, 1000), rate=1000.0, lost=0.1)
     found = analysis.regime(run)
@@ -416,7 +416,7 @@ def test_slips_as_fast_as_a_tone_are_one_vibration_in_bursts_too(every, expected
     assert named(run)[0] == expected
 
 
-def test_half_of_the_time_is_in_the_lengths_that_prevail():
+def test_the_prevailing_length_covers_half_of_the_time():
     assert prevailing(np.array([1.0] * 20 + [30.0])) == 30.0
     assert prevailing(np.array([1.0] * 40 + [30.0])) == 1.0
     assert prevailing(np.zeros(0)) == np.inf
@@ -492,7 +492,7 @@ def test_the_last_rest_must_outlast_all_before():
     assert last_rest(np.array([2, 2])) == 0
 
 
-def test_the_weight_between_stops_falls_to_nothing_at_their_edges():
+def test_the_weight_between_stops_falls_to_zero_at_their_edges():
     sticking = np.repeat([1.0, 0.0, 1.0], [100, 300, 100])
     weight = between_stops(sticking, 21)
     assert weight[:100].max() < 0.05

@@ -135,7 +135,7 @@ duration = "1 ms"
 """
 
 
-def test_a_plate_takes_what_stands_at_the_top_and_survives_provenance(tmp_path):
+def test_a_plate_takes_values_at_the_top_and_survives_provenance(tmp_path):
     (tmp_path / "plate.toml").write_text(PLATE, encoding="utf-8")
     case = st.load_scenario(tmp_path / "plate.toml")
     steel, line = st.Material(2.1e11, 7800.0, 0.28), st.Line((0.05, 0.04), math.radians(30.0))
@@ -199,7 +199,7 @@ def test_a_plate_moves_in_its_plane_where_its_table_says_so(tmp_path):
         ("2 kHz", "20 Hz", "cutoff must leave at least one mode (first at"),
     ],
 )
-def test_a_bad_plate_says_what_is_wrong(old, new, message, tmp_path):
+def test_errors_of_a_plate_are_explained(old, new, message, tmp_path):
     assert old in PLATE
     assert message in "\n".join(problems(PLATE.replace(old, new), tmp_path))
 

@@ -164,7 +164,7 @@ def test_a_record_is_a_scenario():
 
 
 @pytest.mark.parametrize("given", [3, None, b"squeal", ["squeal"], {"title": "x"}, xr.Dataset()])
-def test_what_is_no_name_no_path_and_no_record_is_refused(given):
+def test_bad_sources_of_scenarios_are_refused(given):
     with pytest.raises(st.ScenarioError, match=r"^scenario must be a ") as caught:
         st.load_scenario(given)
     assert "\n" not in str(caught.value)
@@ -279,7 +279,7 @@ def test_a_record_of_many_bodies_runs_again_bit_by_bit(tmp_path):
     xr.testing.assert_equal(repeated.drop_attrs(), record.drop_attrs())
 
 
-def test_a_record_of_many_bodies_is_shown_as_the_same_scenario_and_gone_on_from(tmp_path):
+def test_a_record_of_many_bodies_is_shown_as_the_same_scenario_and_continued(tmp_path):
     system, probes = general()
     record = st.simulate(system, 1e-3, probes=probes)
     st.save(record, tmp_path / "run.nc")
@@ -316,7 +316,7 @@ def test_matrices_written_out_are_the_same_as_their_file(tmp_path):
     assert systems[0].slider == body
 
 
-def test_equal_bodies_are_told_apart_by_their_names_in_the_file(tmp_path):
+def test_equal_bodies_are_distinguished_by_their_names_in_the_file(tmp_path):
     (tmp_path / "case.toml").write_text(
         '[bodies]\nslider = {kind = "point mass", mass = 1}\ntrack = {kind = "point mass", mass = 1}\n'
         '[[contacts]]\ntip = {body = "slider"}\ntrack = {kind = "point", body = "track"}\n'

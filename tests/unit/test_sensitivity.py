@@ -131,7 +131,7 @@ def test_samples_with_a_run_that_failed_are_left_out_and_counted(computed):
     ],
     ids=["constant", "NaN", "too few"],
 )
-def test_what_never_varies_or_hardly_is_has_no_indices_and_no_warning(computed, outputs):
+def test_outputs_that_hardly_vary_have_no_indices_and_no_warning(computed, outputs):
     computed(outputs)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -140,7 +140,7 @@ def test_what_never_varies_or_hardly_is_has_no_indices_and_no_warning(computed, 
     assert np.isnan(found["total_order_interval"]).all()
 
 
-def test_what_varies_in_one_sample_only_gives_no_warning(computed):
+def test_an_output_that_varies_in_one_sample_gives_no_warning(computed):
     computed(lambda a: {"f": (np.arange(a.size) == 3).astype(float)})
     with warnings.catch_warnings():
         warnings.simplefilter("error")

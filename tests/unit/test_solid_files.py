@@ -258,7 +258,7 @@ def one_line_of(path):
     return None
 
 
-def test_a_file_that_is_not_there_is_said(tmp_path):
+def test_a_missing_file_is_reported(tmp_path):
     with pytest.raises(FileNotFoundError, match="cannot read"):
         st.SolidMesh.read(tmp_path / "none.msh")
 

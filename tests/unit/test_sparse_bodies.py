@@ -82,7 +82,7 @@ def test_matrices_are_read_from_files(tmp_path):
     assert read.total_mass == pytest.approx(SIZE * HEAVY)
 
 
-def test_what_large_bodies_need_is_said(tmp_path):
+def test_requirements_of_large_bodies_are_reported(tmp_path):
     mass, stiffness = chain(True)
     for make, words in (
         (lambda: body(True, cutoff=None), "cutoff must be given for more than 4000"),

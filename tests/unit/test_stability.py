@@ -113,7 +113,7 @@ def test_exponents_are_those_of_the_formula(seed, damping, count, sense):
 
 
 @pytest.mark.parametrize("share", [-0.4, 0.2, 0.0])
-def test_the_formula_tells_another_friction_apart(share):
+def test_the_formula_distinguishes_another_friction(share):
     """Negative control: the wrong sense, half the friction or none gives other numbers."""
     system, *known = two_bodies(1)
     found = exponents(st.sliding_stability(system, status="sliding"))
@@ -187,7 +187,7 @@ def loaded(load: float):
     return found, np.concatenate([known, -known])
 
 
-def test_a_load_adds_what_the_bent_track_does():
+def test_a_load_adds_the_effect_of_the_bent_track():
     found, known = loaded(2e4)
     assert_same(exponents(found), known, 1e-5 * np.abs(known).max())
     slider, track = rod(-30.0, elements=2), bar(bending_modes=4, axial_modes=2)
@@ -255,7 +255,7 @@ def test_a_law_without_load_still_has_a_shape_for_its_state():
     assert np.isfinite(found.mode_shape).all()
 
 
-def test_what_a_map_shows():
+def test_measures_of_a_map():
     found = stability.stability_of(pair(dragged(), 0.8, rod(-45.0)))
     every = st.sliding_stability(pair(dragged(), 0.8, rod(-45.0)))
     fastest = int(np.argmax(every.growth_rate.values))

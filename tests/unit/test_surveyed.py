@@ -89,7 +89,7 @@ def a_survey() -> xr.Dataset:
     return surveyed(layout, keys, layout.values, outcomes, {"title": "By hand"})
 
 
-def test_what_joins_another_mode_has_its_name():
+def test_a_mode_that_joins_another_has_its_name():
     found = a_survey()
     assert found.frequency.dims == ("friction", "load", "mode")
     assert found.frequency.sel(mode=0).values.ravel()[2:5].tolist() == [1010.0, 1000.0, 990.0]
@@ -133,7 +133,7 @@ def test_a_map_has_tones_by_colour_and_what_is_quiet_beside_them():
         plot.squeal_map(a_survey().drop_vars("fate"))
 
 
-def test_the_command_line_prints_what_each_mode_becomes(stridula, tmp_path):
+def test_the_command_line_prints_the_fate_of_each_mode(stridula, tmp_path):
     words = ("survey", "weak-pressure", "--vary", "friction=0.3,0.9", "-o", "found.nc", "--table", "found.csv")
     code, out, _ = stridula(*words)
     assert code == 0

@@ -73,7 +73,7 @@ def test_every_case_met_is_a_good_end(stridula, tmp_path):
     assert (folder / "fine.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_case_that_falls_short_is_told_everywhere(stridula, tmp_path):
+def test_a_case_that_falls_short_is_reported_everywhere(stridula, tmp_path):
     code, out, err = stridula([GOOD, SHORT], "--out", "there")
     assert code == 1
     assert out.count("falls short") == 1

@@ -46,7 +46,10 @@ def channels(pressure: xr.DataArray) -> tuple[Array, float]:
     values = pressure.values.astype(float).reshape(pressure.shape[0], -1)
     if not np.isfinite(values).all():
         raise ArgumentError(
-            "pressure", "be finite", pressure, got=f"{np.count_nonzero(~np.isfinite(values))} infinite or NaN values"
+            "pressure",
+            "be finite",
+            pressure,
+            got=f"{np.count_nonzero(~np.isfinite(values))} values that are infinite or NaN",
         )
     return values, 1.0 / _interval(pressure)
 

@@ -190,7 +190,7 @@ def test_the_tour_goes_through_its_stops_by_keys(browsing):
     plays_on(page)
 
 
-def test_the_bodies_are_rubbed_by_hand_and_come_back(browsing):
+def test_bodies_are_dragged_by_hand_and_return(browsing):
     page = browsing.open("#case=weak-pressure")
     until(page, "document.getElementById('hand').textContent.startsWith('drag')")
     before = page.evaluate(NOW)
@@ -229,7 +229,7 @@ def test_the_bodies_are_rubbed_by_hand_and_come_back(browsing):
     until(page, "stridula.now().values[arg] > 2", LOAD)
 
 
-def test_what_sounds_is_recorded_from_press_to_press(browsing):
+def test_sound_is_recorded_between_two_presses(browsing):
     page = browsing.open("#case=strong-pressure")
     record = page.locator("#record")
     assert page.locator("#recording").is_hidden()
@@ -281,7 +281,7 @@ def test_the_note_is_named_where_there_is_a_tone(browsing):
     assert page.locator("#note").text_content() == ""
 
 
-def test_a_tip_that_sticks_has_words_in_place_of_a_portrait(browsing):
+def test_a_sticking_tip_shows_text_instead_of_a_portrait(browsing):
     browsing.context.add_init_script(WRITTEN)
     stick = STOPS[0]
     values = "&".join(f"{key}={value}" for key, value in stick.overrides.items())
@@ -292,7 +292,7 @@ def test_a_tip_that_sticks_has_words_in_place_of_a_portrait(browsing):
     assert [one for one in written if "NaN" in one or "undefined" in one] == []
 
 
-def test_what_is_silent_has_words_in_place_of_a_spectrogram(browsing):
+def test_silence_shows_text_instead_of_a_spectrogram(browsing):
     browsing.context.add_init_script(WRITTEN)
     page = browsing.open()
     draw = """(hears) => import('./spectrogram.js').then(({ Spectrogram }) => {

@@ -18,7 +18,7 @@ import stridula as st
 from stridula import analysis, plot, scenarios, studies
 
 from .numbers import number, plain
-from .verdicts import folder, verdict, watcher
+from .outcomes import folder, outcome, watcher
 
 # A name, and for each argument what it is: a word of `THINGS`, or a plain value.
 Given = tuple[str, dict[str, tuple[str, Any]]]
@@ -58,7 +58,7 @@ def inputs(seed: int, count: int) -> Iterator[Given]:
     """Return names of callables and their arguments."""
     names = list(_callables())
     for k in range(count):
-        dice = random.Random(f"doors {seed} {k}")
+        dice = random.Random(f"calls {seed} {k}")
         name = dice.choice(names)
         yield name, _arguments(dice, name)
 
@@ -70,7 +70,7 @@ def check(given: Given) -> str:
         Path("file.txt").write_text("x")
         values = {word: _thing(kind, value) for word, (kind, value) in arguments.items()}
         try:
-            return verdict(lambda: _callables()[name](**values))
+            return outcome(lambda: _callables()[name](**values))
         finally:
             pyplot.close("all")
             for open_ever in range(3):

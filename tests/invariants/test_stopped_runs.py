@@ -64,7 +64,7 @@ def ended_of(stop):
     return stop.record.attrs["ended"]
 
 
-def test_every_way_to_end_badly_has_its_words():
+def test_every_failure_has_a_message():
     for ended in ENDED.values():
         assert (ended in WHAT) == (ended in CAUSE) == (ended not in ("finished", "off the track"))
 
@@ -124,7 +124,7 @@ def leaking_energy(modes):
         (chain, leaking_energy),
     ],
 )
-def test_energy_from_nowhere(make, fault, scheme, monkeypatch):
+def test_created_energy(make, fault, scheme, monkeypatch):
     """A fault in the recurrence shows in the energies, long before anything overflows.
 
     The march of one contact has no coefficients of its own for energies, which could differ from those of the motion.
@@ -139,7 +139,7 @@ def test_energy_from_nowhere(make, fault, scheme, monkeypatch):
 
 
 @BOTH
-def test_a_state_that_something_else_wrote_to(scheme, monkeypatch):
+def test_a_state_modified_from_outside(scheme, monkeypatch):
     """A position moved by a part in ten thousand between two chunks of a march."""
     advance = March.advance
 
@@ -152,7 +152,7 @@ def test_a_state_that_something_else_wrote_to(scheme, monkeypatch):
     check(stopped(oscillator(), scheme=scheme), "energy created", (0, 1000))
 
 
-def test_energy_from_nowhere_keeps_the_samples_before(monkeypatch):
+def test_created_energy_keeps_the_earlier_samples(monkeypatch):
     """The record kept is that of the sound run, bit for bit, up to the sample that is wrong."""
     system = oscillator(history=st.Harmonic(20.0), size=1.0)
     words = {"step": STEP, "sample_rate": 1e4, "probes": [st.Velocity(MASS.centre, "x")]}
@@ -188,7 +188,7 @@ def damping_that_gives(energies):
         (damping_that_gives, 60),
     ],
 )
-def test_what_counts_as_energy_from_nowhere(change, wrong):
+def test_definition_of_created_energy(change, wrong):
     """A ledger that does not close, stored energy below zero, friction that gives some back."""
     energies = np.zeros((layout.ENERGIES, 100))
     energies[layout.STORED] = energies[layout.DRIVE_WORK] = np.linspace(0.0, 1.0, 100)

@@ -8,7 +8,7 @@ import numpy as np
 
 import stridula as st
 
-from .toys import Cable, Halving
+from .user_classes import Cable, Halving
 
 STEP = 5e-6
 

@@ -35,7 +35,7 @@ def watcher() -> Callable[[Any], None]:
     return watch
 
 
-def verdict(call: Callable[[], object]) -> str:
+def outcome(call: Callable[[], object]) -> str:
     """Return whether a call is accepted or refused as documented; anything else that is raised goes through.
 
     Raises

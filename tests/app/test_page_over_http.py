@@ -45,7 +45,7 @@ def elsewhere(tmp_path):
     assert server.complaints == ""
 
 
-def test_a_page_that_is_not_secure_sounds_too(chromium, elsewhere):
+def test_a_page_over_http_also_has_sound(chromium, elsewhere):
     with Browsing(chromium, elsewhere) as browsing:
         browsing.context.add_init_script(LISTENS)
         page = browsing.open()
@@ -64,7 +64,7 @@ def test_a_page_that_is_not_secure_sounds_too(chromium, elsewhere):
         browsing.complaints = [said for said in browsing.complaints if not any(word in said for word in EXPECTED)]
 
 
-def test_the_thread_of_the_sound_is_taken_where_there_is_one(chromium, server):
+def test_the_audio_thread_is_used_where_available(chromium, server):
     with Browsing(chromium, server) as browsing:
         browsing.context.add_init_script(LISTENS)
         page = browsing.open()

@@ -68,14 +68,14 @@ HALVES = {
 
 
 @pytest.mark.parametrize("half", HALVES.values(), ids=HALVES)
-def test_who_does_not_ask_in_time_is_let_go(hurried, half):
+def test_clients_that_send_nothing_in_time_are_dropped(hurried, half):
     with call(hurried) as one:
         one.sendall(half)
         assert is_let_go(one)
     assert status(hurried) == 200
 
 
-def test_many_who_do_not_ask_give_way(hurried):
+def test_many_silent_clients_give_way(hurried):
     with ExitStack() as stack:
         for number in range(MOST_CONNECTIONS + 20):
             one = stack.enter_context(call(hurried))
@@ -90,7 +90,7 @@ def test_a_page_that_asks_slowly_is_served(hurried):
         assert one.recv(100).startswith(b"HTTP/1.1 200")
 
 
-def test_a_socket_on_which_nothing_is_said_makes_room(hurried):
+def test_a_silent_socket_makes_room(hurried):
     words = {"origin": f"http://127.0.0.1:{hurried}", "open_timeout": WAIT}
     with connect(f"ws://127.0.0.1:{hurried}/socket", **words) as silent:
         assert '"hello"' in silent.recv(WAIT)
@@ -144,7 +144,7 @@ def mutated(random: random.Random, host: str) -> bytes:
     return bytes(data)
 
 
-def test_what_is_no_http_is_refused_without_a_word_on_the_terminal(own):
+def test_invalid_http_is_refused_without_terminal_output(own):
     dice = random.Random(7)
     for _ in range(400):
         with call(own.port) as one, suppress(ConnectionError, TimeoutError):
