@@ -1,4 +1,4 @@
-"""What a hand on the picture plays, without a page."""
+"""Dragging on the picture, without a page."""
 
 from __future__ import annotations
 
@@ -72,12 +72,12 @@ def test_each_case_offers_its_values_for_dragging(tmp_path):
 
 
 def test_dragging_at_a_steady_speed_gives_a_steady_velocity(tmp_path):
-    # Half a width a second, to the right and back.
+    # Half a width per second, to the right and back.
     path = [[0.2 + 0.5 * TICK * k, 0.5] for k in range(15)] + [[0.55 - 0.5 * TICK * k, 0.5] for k in range(15)]
     found = [one["speed"] for one in moved(tmp_path, {"velocity": BOTH_WAYS}, {}, path)]
     assert found[13] == pytest.approx(0.05, rel=0.01)
     assert found[-1] == pytest.approx(-0.05, rel=0.01)
-    # What only goes one way goes it whichever way the hand moves, and never stops.
+    # A value with one sign keeps it for both directions of the hand, and never becomes zero.
     found = [one["speed"] for one in moved(tmp_path, {"velocity": ONE_WAY}, {}, path)]
     assert found[13] == found[-1] == pytest.approx(-0.5, rel=0.01)
     assert max(found) <= -0.04

@@ -1,4 +1,4 @@
-"""Maps of regimes around what is played."""
+"""Maps of regimes around the played scenario."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_an_unwanted_map_stops(talk):
     talk.say("no map")
     talk.play(480)
     talk.others.clear()
-    # The map that comes after it is the only one.
+    # Only the later map is sent.
     rows = rows_of(talk, x=ACROSS, y=UP, points=2)
     assert len(rows) == 2
 

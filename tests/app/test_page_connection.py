@@ -13,7 +13,7 @@ FRICTION = "contact.friction.coefficient"
 
 def test_the_page_reconnects_and_continues_unchanged(chromium, own, tmp_path):
     with Browsing(chromium, own) as browsing:
-        # A socket that finds no server complains; so it shall here.
+        # A socket without server logs an error, as expected here.
         browsing.complains = False
         page = browsing.open(f"#case=stable-sliding&{FRICTION}=0.62")
         until(page, "stridula.now()?.toml.includes('coefficient = 0.62')")

@@ -1,4 +1,4 @@
-"""The page on another machine, over plain http: browsers keep the thread of the sound to secure addresses."""
+"""The page from another machine over plain http: browsers allow the audio thread for secure addresses only."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .conftest import launched
 from .serving import Server
 
 NAME = "bench"
-# Whatever goes to the loudspeakers is listened to.
+# The output to the loudspeakers is recorded.
 LISTENS = """const connect = AudioNode.prototype.connect;
 AudioNode.prototype.connect = function (to, ...more) {
   if (to === this.context.destination) {
@@ -24,7 +24,7 @@ window.loudest = () => {
   ear.getFloatTimeDomainData(heard);
   return Math.max(...heard.map(Math.abs));
 };"""
-# What browsers say of plain http, and of what they have kept for it.
+# Messages of browsers about plain http and their caches.
 EXPECTED = ("Cross-Origin-Opener-Policy", "ScriptProcessorNode is deprecated")
 
 

@@ -1,4 +1,4 @@
-"""Systems in space in a browser: they are drawn, one goes round them, and what is slow is heard over and over."""
+"""Systems in space in a browser: drawing, turning the view, and looped sound of slow systems."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LOADED = "performance.getEntriesByType('resource').filter(({ name }) => name.inc
 
 @pytest.fixture(scope="module")
 def chromium():
-    """Start a browser that draws in space by the processor."""
+    """Start a browser with software rendering."""
     with launched(*SOFTWARE) as browser:
         yield browser
 
@@ -39,7 +39,7 @@ def opened(browsing, case: str = CASE):
 
 
 def seen(page) -> np.ndarray:
-    """Return the picture in space as it is seen, colours of pixels."""
+    """Return the visible picture in space as colours of pixels."""
     page.evaluate("stridula.space.again()")
     return imread(io.BytesIO(page.locator("#space").screenshot()))[..., :3]
 
@@ -57,7 +57,7 @@ def test_a_system_in_space_is_drawn_with_its_contacts(browsing):
     page.locator("#play").click()
     picture = seen(page)
     assert len(np.unique((255 * picture).astype(int).reshape(-1, 3), axis=0)) > 200
-    # The disc is there, lit: much of it is light where the panel is white, too, so that shaded sides tell.
+    # The lit disc is visible: much of it is as light as the panel, so its shaded sides are tested.
     assert ((picture.max(axis=2) < 0.9) & (picture.min(axis=2) > 0.4)).mean() > 0.01
     states = page.evaluate("Array.from(stridula.space.dots.geometry.attributes.color.array)")
     assert len(states) == 15
@@ -78,7 +78,7 @@ def test_the_view_turns_by_keys_and_mouse(browsing):
         different.append(float(np.abs(seen(page) - first).mean()))
     assert min(different[:3]) > 1e-3
     assert different[-1] < 0.01 * min(different[:3])
-    # What moves the eye moves nothing else.
+    # Turning the view moves nothing else.
     assert page.locator("#play").text_content() == "Play"
     box = canvas.bounding_box()
     page.mouse.move(box["x"] + 100, box["y"] + 100)

@@ -1,4 +1,4 @@
-"""What the player makes of what is played: a level at which the limiter rests; without a browser."""
+"""Levelling of the player, at which its limiter is inactive; without a browser."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .scripting import result_of
 
 CEILING = 0.7
 BLOCK = 4800
-# Of each tenth of a second: the loudest that sounds, and the most that the limiter takes away [dB].
+# For each tenth of a second: the largest output and the largest reduction by the limiter [dB].
 PLAYER = """import { Voice } from "./player.js";
 result = given.map(({ levelled, sound }) => {
   const voice = new Voice(48000, (said) => "peak" in said && reductions.push(said.reduction));
@@ -88,7 +88,7 @@ def test_without_a_level_the_limiter_never_rests_in_a_loud_case(tmp_path):
 
 
 def heard(case: str, seconds: float) -> np.ndarray:
-    """Return what is heard of a case [Pa]."""
+    """Return the sound of a case [Pa]."""
     instrument = Instrument(playable(case, None, {}))
     blocks = [one for _ in range(round(10 * seconds)) for one in instrument.play(BLOCK)]
     return np.concatenate([one.sound for one in blocks if isinstance(one, Part)])

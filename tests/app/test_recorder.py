@@ -1,4 +1,4 @@
-"""What was recorded on the page, as a file."""
+"""Recordings of the page as files."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def recorded(folder, parts):
 
 def test_a_recording_holds_what_was_heard_1_db_below_full_scale(tmp_path):
     time = np.arange(RATE // 4) / RATE
-    # A tone on a weight: the weight is not heard.
+    # A tone on a constant weight, which is not audible.
     sound = 5.0 + 0.02 * np.sin(2.0 * np.pi * 1000.0 * time)
     found = recorded(tmp_path, [(part, 10.0, "Pa") for part in np.split(sound, 5)])
     assert (found["seconds"], found["on"]) == (0.25, False)

@@ -1,4 +1,4 @@
-"""What was played last, as files: they open elsewhere and hold what was heard."""
+"""The last seconds played as files: they open elsewhere and hold the sound that was heard."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_the_sound_of_the_pressure_is_in_pascals(talk, tmp_path):
     assert 1.0 / float(pressure.time[1] - pressure.time[0]) == pytest.approx(RATE)
     assert np.abs(sound).max() > 1e-3
     assert np.allclose(pressure.values[:, 0], sound, atol=1e-6 * np.abs(sound).max())
-    # A second file begins where it was played.
+    # A second file begins at its time of playing.
     talk.play(480)
     file.write_bytes(talk.save("wav"))
     assert st.read_wav(file).sizes["time"] == RATE // 2 + 480
@@ -111,7 +111,7 @@ def test_the_record_reruns_the_last_scenario(talk, tmp_path):
 
 @pytest.mark.parametrize("case", ["weak-pressure", "violin", "glass"])
 def test_the_regime_shown_is_that_of_the_record(case, tmp_path):
-    """Over the last second, in which something was turned and energies counted anew."""
+    """Over the last second, in which a value was changed and energies restarted."""
     instrument = Instrument(playable(case, None, {}))
     key = {"weak-pressure": FRICTION, "violin": "drives.*.x", "glass": "drives.0.z"}[case]
     value = instrument.played.turned.values[key]
@@ -128,7 +128,7 @@ def test_the_regime_shown_is_that_of_the_record(case, tmp_path):
     assert (np.diff(run.damping_loss) >= -1e-12 * float(run.damping_loss[-1])).all()
     saved = st.regime(run.isel(time=slice(-RATE, None)), start=0.0)
     assert shown["regime"] == saved.regime.item()
-    # What judders has no tone to speak of.
+    # Judder has no tone.
     if case != "weak-pressure":
         assert shown["frequency"] == pytest.approx(saved.frequency.item(), rel=1e-3)
 

@@ -1,4 +1,4 @@
-"""What the page holds of its scene once something of it was refused."""
+"""Values of the page after some of them were refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scenes that are refused: in the words of `load_scenario`, and all goes on as it was."""
+"""Refused scenes: messages as in `load_scenario`, and playing continues unchanged."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SLIDES = 'base = "stable-sliding"\n'
 
 @pytest.fixture
 def plays(talk):
-    """Play, and look that it goes on after whatever was asked."""
+    """Play, and check that it continues after any request."""
     assert talk.scene("stable-sliding")["type"] == "scene"
     before = talk.play(4800)
     yield talk
@@ -116,7 +116,7 @@ kind = "modal beam"
 
 @pytest.mark.parametrize("path", ["/etc/hostname", "/nowhere"])
 def test_a_link_reads_no_file(talk, path):
-    """Neither what it holds nor whether it is there is told."""
+    """Neither the content nor the existence of the file is revealed."""
     keys = {"bodies.glass.profile.shape": "mesh", "bodies.glass.profile.file": path}
     answer = talk.scene("glass", keys)
     assert set(answer["refused"]) == set(keys)
@@ -131,7 +131,7 @@ def test_too_many_steps_are_refused(talk):
 
 
 def told(answer):
-    """Return what is wrong with a scene, a line each."""
+    """Return the problems of a scene, one line each."""
     return [line for lines in answer["refused"].values() for line in lines]
 
 
@@ -189,7 +189,7 @@ def test_a_refused_value_stays_as_it_was_and_the_others_are_played(talk):
     assert short["type"] == "refused"
     assert short["refused"] == {"track.length": short["problems"]}
     assert short["kept"] == {"case": "stable-sliding", "text": None, "overrides": {"damping": 0.03}}
-    # One turns on before the answer has come.
+    # A further change before the answer arrives.
     more = {"damping": 0.02, "track.length": 0.2, "slider.angle": 9.0, "slider.length": 0.4}
     answer = talk.scene("stable-sliding", more)
     assert (answer["type"], set(answer["refused"])) == ("scene", {"track.length", "slider.angle"})
@@ -236,7 +236,7 @@ def test_the_played_scenario_runs_unchanged_elsewhere(talk, tmp_path):
     file.write_text(answer["toml"], encoding="utf-8")
     assert st.load_scenario(file).system == st.load_scenario("squeal", overrides).system
     assert st.load_scenario(file).title == answer["title"] == "Squeal"
-    # Its text is played as the case was.
+    # Its text plays like the case.
     again = talk.scene(text=answer["toml"])
     assert (again["values"], again["toml"]) == (answer["values"], answer["toml"])
     assert not again["goes_on"]

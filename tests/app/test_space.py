@@ -1,4 +1,4 @@
-"""Systems in space on the page: what is played and told, what is drawn of it, and what it costs."""
+"""Systems in space on the page: sound, messages, drawings and their cost."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from stridula.scenarios.show import scenario_text
 from .conversation import RATE, parts_of
 from .scripting import result_of
 
-# What becomes a body of the page, and where its corners are under some numbers, in the page's own scripts.
+# A body in the page's own scripts, and its corners for some modal values.
 MOVED = """import { Body } from "./surfaces.js";
 result = given.map(({ described, numbers, rates, steady }) => {
   const body = new Body(described);
@@ -68,7 +68,7 @@ def test_every_system_in_space_is_played_and_drawn(talk, case):
         rows = heard(names[touch["body"]]["rows"])
         assert rows[touch["row"]].shape == (3, names[touch["body"]]["numbers"])
     assert 0.0 < scene["seconds_kept"] <= 10.0
-    # Small enough to be said again when bodies change.
+    # Small enough to be sent again when bodies change.
     assert len(str(scene)) < 3_000_000
 
 
@@ -88,7 +88,7 @@ def test_bodies_already_drawn_are_not_sent_again(talk):
 def test_a_text_in_space_is_played_as_it_is_described(talk):
     scene = talk.scene(text=scenario_text("glass"))
     assert scene["type"] == "scene"
-    # Its bodies stay bodies: no list of shapes takes their place.
+    # Its bodies are not replaced by lists of shapes.
     assert 'shape = "line"' in scene["toml"]
     assert len(scene["toml"]) < 5000
     assert talk.scene("glass")["toml"] == scene["toml"]
@@ -122,7 +122,7 @@ def test_controls_change_loads_and_friction_first_and_no_mesh(case):
     keys = [control.key for control in controls]
     assert not any(word in key for key in keys for word in ("profile", "mesh", "cutoff", "residual", "origin"))
     quick = [control for control in controls if "material" not in control.key]
-    # Each of them changes something, and none takes modes to be found again.
+    # Each of them has an effect, and none requires modes to be computed again.
     for control in quick[:8]:
         value = before.turned.values[control.key]
         assert control.low * control.scale <= value <= control.high * control.scale
@@ -150,7 +150,7 @@ def test_too_large_bodies_are_refused_before_modes_are_computed():
 
 
 def test_slow_systems_are_sent_in_pieces(talk):
-    """No pull holds up the other pages for long: of what is slow there is as much as is computed soon."""
+    """No request delays other pages for long: slow systems return what is computed quickly."""
     assert talk.scene("brake")["speed"] < 0.5
     talk.say("pull", parts=20, samples=480)
     parts = parts_of(talk.bytes())
@@ -180,7 +180,7 @@ def test_points_of_a_surface_count_as_one_contact_in_the_last_seconds(talk, tmp_
     assert variables["normal_force"].shape == (24, 2)
     assert variables["status_share"].shape == (24, 2, 3)
     assert variables["normal_force"].mean(axis=0) == pytest.approx([2000.0, 2000.0], rel=0.1)
-    # Of 64 contacts less than ten seconds are kept.
+    # For 64 contacts less than ten seconds are kept.
     assert 0.5 < instrument.last_seconds.seconds < 5.0
 
 
@@ -228,7 +228,7 @@ def test_a_block_is_split_along_its_edges(tmp_path):
     assert np.linalg.norm(areas, axis=1).sum() == pytest.approx(2 * 0.01 * 0.01 + 4 * 0.01 * 0.149, rel=1e-5)
     assert (np.linalg.norm(areas, axis=1) > 0.0).all()
     assert np.einsum("ti,ti->", areas, corners.mean(axis=1)) / 3.0 == pytest.approx(0.01 * 0.149 * 0.01, rel=1e-5)
-    # Its creases are its twelve edges.
+    # Its drawn edges are its twelve edges.
     ends = place[np.array(found["source"])[np.array(found["edges"])]].reshape(-1, 2, 3)
     assert np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum() == pytest.approx(8 * 0.01 + 4 * 0.149, rel=1e-5)
 
@@ -239,7 +239,7 @@ def test_large_surfaces_have_fewer_corners():
     few = thinned.clustered(whole, 100)
     assert len(few.place) <= 100
     assert few.polygons.max() < len(few.place)
-    # Corners are corners of the whole, and move as these do.
+    # Corners are those of the whole surface, and move with it.
     apart = np.linalg.norm(few.place[:, None] - whole.place[None], axis=2)
     nearest = apart.argmin(axis=1)
     assert apart.min(axis=1).max() == 0.0

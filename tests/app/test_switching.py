@@ -1,4 +1,4 @@
-"""What one turns or chooses on the page never ends the stroke for good; without a browser and without a server."""
+"""No change on the page ends the stroke for good; without a browser and without a server."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ UNBELIEVED = {"energy created", "not finite", "contact unsolved"}
 
 
 def after(case: str, hundredths: int, repeats: bool = True) -> Instrument:
-    """Return an instrument that has played a case for so many hundredths of a second."""
+    """Return an instrument that has played a case for a number of hundredths of a second."""
     found = Instrument(playable(case, None, {}))
     found.repeats = repeats
     played(found, hundredths)
@@ -26,7 +26,7 @@ def after(case: str, hundredths: int, repeats: bool = True) -> Instrument:
 
 
 def played(instrument: Instrument, hundredths: int) -> tuple[list[Part], list[str]]:
-    """Play on and return the parts, and why strokes ended."""
+    """Continue and return the parts, and the reasons why strokes ended."""
     came = [one for _ in range(hundredths) for one in instrument.play(RATE // 100)]
     return [one for one in came if isinstance(one, Part)], [one.why for one in came if isinstance(one, Stop)]
 
@@ -79,7 +79,7 @@ def test_a_moved_contact_continues_at_its_new_place(case):
 
 
 def broken(instrument: Instrument) -> Instrument:
-    """Return an instrument in whose march energy comes from nowhere."""
+    """Return an instrument whose march creates energy."""
     instrument.live._belief.initial_energy += 1.0
     return instrument
 

@@ -1,4 +1,4 @@
-"""Systems that are no two beams on the page: what is played, drawn, heard, turned and said of them."""
+"""Systems other than two beams on the page: playing, drawing, sound, controls and messages."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def test_two_rods_on_a_beam_are_heard_together():
     inner = slice(int(np.flatnonzero(wanted)[0]), len(wanted) - 100)
     loudest = np.abs(wanted).max()
     assert loudest > 1e-3
-    # The streamed one comes a sample later.
+    # The streamed signal is one sample late.
     assert np.abs(sound[1:] - wanted[:-1])[inner].max() < 1e-5 * loudest
     alone = instrument.live.advance(480)[0].contacts["normal_force"]
     assert alone.shape[0] == 2
@@ -271,7 +271,7 @@ def test_slow_systems_are_shown_slowly_with_a_note(browsing):
 
 
 def slow(monkeypatch, *speeds):
-    """Let an instrument seem to play so many seconds in one, one measurement after the other."""
+    """Let the measured speed of an instrument be a given one, measurement by measurement."""
     found = iter(speeds)
     monkeypatch.setattr(Instrument, "speed", lambda self: (self.live.restart(), next(found))[1])
 
@@ -287,7 +287,7 @@ def test_steps_are_longer_where_that_keeps_up_with_the_sound(monkeypatch):
     part, *_ = (part for part in instrument.play(480) if isinstance(part, Part))
     again = st.simulate(*told(text), duration=480 / RATE, sample_rate=RATE, step=1.0 / RATE / 7, probes=())
     assert np.array_equal(again.normal_force.values[:, 0], part.chunk.contacts["normal_force"][0])
-    # So it stays while something is turned, and not for another case.
+    # This remains while values change, but not for another case.
     assert instrument.change(playable("violin", None, {BOW_FORCE: 0.25}), 1)
     assert instrument.live.ratio == 7
     instrument.change(playable("lugre", None, {}), 2)

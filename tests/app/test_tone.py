@@ -48,5 +48,5 @@ def test_no_tone_lies_outside_the_audible_range(tmp_path):
 def test_silence_has_no_tone(tmp_path):
     steady = np.full(SIZE, 3.7)
     assert tones(tmp_path, 0.0 * TIME, steady, steady + 1e-7 * sine(500.0)) == [None, None, None]
-    # What is faint and all there is has one.
+    # A faint signal alone has a tone.
     assert tones(tmp_path, 1e-7 * sine(500.0)) == pytest.approx([500.0], abs=0.1 * BIN)

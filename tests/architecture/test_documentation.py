@@ -1,4 +1,4 @@
-"""The documentation: titles of the groups of names, formulas without a network, and no sentences that were riddles."""
+"""The documentation: titles of the groups of names, formulas without a network, and no misunderstood phrases."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = [path for folder in (".", "tutorials") for path in sorted((ROOT / "examples" / folder).glob("*.py"))]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.rst")), *SCRIPTS]
 HELP = ROOT / "src" / "stridula" / "cli" / "commands.py"
-# What readers stumbled over, and what it is called instead.
+# Phrases that readers did not understand, and their replacements.
 RIDDLES = {
     r"\b(gone|goes|go) on from\b": "continue",
     r"\bwhat came of\b": "the result",

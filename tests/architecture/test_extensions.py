@@ -1,4 +1,4 @@
-"""A track and a law from outside the package march as those within: nothing in it need be told of them."""
+"""A track and a law from outside the package work like built-in ones, without registration."""
 
 from __future__ import annotations
 

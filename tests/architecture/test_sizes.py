@@ -16,7 +16,7 @@ COMMANDS = "commands.py"
 
 
 def too_large(text: str) -> list[str]:
-    """Functions with more lines of code, or more arguments that can go without a name, than one can take in."""
+    """Functions with too many lines of code, or too many arguments that are not keyword-only."""
     found = []
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):

@@ -1,4 +1,4 @@
-"""Shipped scenarios of meshed bodies that are wrong, as far as their tables: a mesh may be as large as memory is."""
+"""Wrong scenarios of meshed bodies, checked without making meshes, which may be as large as the memory."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from .scenarios import Given, wrong
 
 
 def inputs(seed: int, count: int) -> Iterator[Given]:
-    """Return scenarios as the bytes of their files, and what is set by key."""
+    """Return scenarios as the bytes of their files, and overrides."""
     return wrong("meshed", seed, count, is_meshed=True)
 
 
 def check(given: Given) -> str:
-    """Return what comes of a scenario."""
+    """Return the outcome of a scenario."""
     content, overrides = given
     with folder():
         Path("case.toml").write_bytes(content)

@@ -1,4 +1,4 @@
-"""A few hundred inputs of each kind that are wrong on purpose; `python -m tests.fuzz` runs many, with limits."""
+"""A few hundred deliberately wrong inputs of each kind; `python -m tests.fuzz` runs many, with limits."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from . import __main__ as runner
 from .outcomes import ACCEPTED, REFUSED
 
-# As many as take some seconds; other kinds have FEW.
+# Numbers that take some seconds; other kinds have FEW.
 SEED, COUNTS, FEW = 0, {"scenarios": 200, "matrices": 400, "records": 100, "calls": 150}, 100
 PARTS = 10
 KINDS = runner.modules()
@@ -36,7 +36,7 @@ def test_inputs_are_repeatable(name):
 
 
 class Wrong:
-    """Inputs each of which goes wrong in another way."""
+    """Inputs that fail in different ways."""
 
     @staticmethod
     def inputs(seed, count):

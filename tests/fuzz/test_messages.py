@@ -1,4 +1,4 @@
-"""A few hundred conversations at random."""
+"""A few hundred random conversations."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from . import messages
 
 SEED, COUNT = 7, 300
-# What they may leave in memory, once memory is as the first of them left it [bytes].
+# Growth of memory allowed after the first of them [bytes].
 GROWTH = 60e6
 
 
@@ -21,7 +21,7 @@ def test_a_session_answers_any_message_and_continues(capfd):
         if number == COUNT // 3:
             before = process.memory_info().rss
     assert process.memory_info().rss < before + GROWTH
-    # Both kinds are there, or nothing would be tried.
+    # Both outcomes occur, or nothing would be tested.
     assert min(found["accepted"], found["refused"]) > COUNT // 10
     assert capfd.readouterr() == ("", "")
 

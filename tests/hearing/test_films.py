@@ -1,4 +1,4 @@
-"""Films: the motion is that of the record, a closed contact is closed in the picture, which says its scales."""
+"""Films: the motion is that of the record, closed contacts are drawn closed, and scales are shown."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_the_motion_is_that_of_the_record(pair, motion):
     slider, _ = pair_of(motion)
     root = slider[:, -1, 1] - slider[0, -1, 1]
     moved = run.displacement.values[per - 1 :: per, 0][-100:]
-    # Two low-passes, of one frame and of one sample, of a root that moves slowly.
+    # Two low-passes, of one frame and of one sample, for a root that moves slowly.
     np.testing.assert_allclose(root, moved - moved[0], atol=2e-6)
 
 
@@ -175,7 +175,7 @@ def on_plate():
 
 
 def test_a_plate_is_shown_by_its_cut_along_the_line(on_plate):
-    """Where a contact is closed, the cut bends as far as the tip says."""
+    """At a closed contact the cut has the displacement of the tip."""
     _, cut = pair_of(on_plate)
     low, high = cut[0, [0, -1], 0]
     assert low < -0.3 < 0.3 < high
@@ -281,7 +281,7 @@ def test_a_string_is_a_line_under_the_hairs_of_a_bow(bowed):
 
 
 def test_sticking_points_move_with_the_strokes(bowed):
-    """The bow goes up: so does the string where it sticks, but for the speck that stands for its twist."""
+    """The bow moves up, and so does the sticking string, except for the point that models its torsion."""
     assert len(bowed.surfaces) == 5
     stuck = bowed.run.status_share.sel(contact_status="sticking").values == 1.0
     drawn, seen = bowed.drawn(50.0), 0
@@ -291,7 +291,7 @@ def test_sticking_points_move_with_the_strokes(bowed):
         still = stuck[1:, number] & stuck[:-1, number]
         (line, row), (tip, own) = touch.touched, touch.tip
         apart = (drawn[line][:, row] - drawn[tip][:, own])[:, 1]
-        # Beside a slip the low-pass has a share of it.
+        # Near a slip the low-pass includes a part of it.
         assert np.median(np.diff(apart)[still]) == pytest.approx(50.0 * np.diff(bow.travel)[0], rel=0.01)
         seen += np.count_nonzero(still)
     assert seen > 50
@@ -314,7 +314,7 @@ def test_each_contact_is_marked_where_it_touches(bowed):
 
 
 def test_a_beam_on_two_tracks_is_closed_on_both():
-    """Its tip is on a beam, another point presses on a stop, whose place follows from the beam."""
+    """Its tip is on a beam; another point presses on a stop, whose place follows from the beam."""
     steel = st.Material(2.1e11, 7800.0)
     beam = st.ModalBeam(steel, st.Rectangle(0.02, 0.005), 1.0, bending_modes=6, axial_modes=0, damping=0.02)
     rod = st.FiniteElementBeam(steel, st.Rectangle(0.01, 0.01), 0.3, angle=0.6, elements=4, damping=0.02)

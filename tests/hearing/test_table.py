@@ -1,4 +1,4 @@
-"""The table of what listeners hear."""
+"""The table of measures at listeners."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sound files: what is read is what was heard, in pascals, and nothing is clipped or folded back."""
+"""Sound files: they are read back in pascals, without clipping or aliasing."""
 
 from __future__ import annotations
 

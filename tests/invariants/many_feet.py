@@ -1,7 +1,7 @@
 """Random blocks on one to eight feet under every law of friction: solved, laws at every step, ledger.
 
-As a program, ``python -m invariants.many_feet --count 10000`` in the folder of the tests, it takes as many, from a
-seed, and prints a line of counts; what fails is told with its number.
+As a program, ``python -m invariants.many_feet --count 10000`` in the folder of the tests, it runs that number from a
+seed and prints a line of counts; failures are printed with their number.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ LAWS = ("coulomb", "static", "stribeck", "exponential", "linear", "lugre", "agin
 
 
 def drawn(seed: int, number: int) -> Recipe:
-    """Return a block on feet, one to eight of them in turn, the laws mixed."""
+    """Return a block on one to eight feet in turn, with mixed laws."""
     random = np.random.default_rng((seed, number))
     count = 1 + number % MOST
     feet = tuple(
@@ -78,7 +78,7 @@ def solution_and_faults(seed: int, number: int) -> tuple[str, set[str]]:
 
 
 def main() -> None:
-    """Take many and print what came of them."""
+    """Run many and print the results."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=0)

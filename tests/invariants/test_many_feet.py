@@ -25,7 +25,7 @@ def test_all_laws_are_drawn():
 
 @pytest.mark.parametrize("number", [4186, 8566, 9262, 9389])
 def test_feet_that_could_slide_slowly_or_fast_stay_with_one(number):
-    """Weakening laws on feet that answer each other: without that the sweeps change from one to the other for ever."""
+    """Weakening laws on coupled feet: otherwise the sweeps alternate between the two solutions for ever."""
     assert solution_and_faults(2, number) == ("solved", set())
 
 

@@ -1,4 +1,4 @@
-"""Compiled once and for all: the cache of one short run serves every kind of run, in every later process."""
+"""Compilation happens once: the cache of one short run serves every kind of run in later processes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ KERNELS = {"march.march_run", "march.march_runs"}
 
 
 def counts(cache, *words):
-    """What `every_kind` says of each compiled function, and the time that its first run had to wait for one."""
+    """Counts of `every_kind` for each compiled function, and the time that its first run waited for compilation."""
     environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), "PYTHONPATH": os.pathsep.join(sys.path)}
     command = [sys.executable, "-m", "kernels.every_kind", *words]
     done = subprocess.run(command, env=environment, capture_output=True, text=True)

@@ -46,7 +46,7 @@ def solve(gap, slip, w, mu, last_slip=0.0):
 
 
 def clear_of_borders(gap, slip, w, mu):
-    """Keep away from the border of the cone, where round-off decides between two states that give the same forces."""
+    """Avoid the border of the cone, where round-off decides between two states with the same forces."""
     if gap >= 0:
         return True
     normal, minus = np.linalg.solve(w, [-gap, -slip])
@@ -100,7 +100,7 @@ def test_laws_hold(gap, slip, turn, flat, mu):
 @given(lengths, lengths, turns, flats, frictions)
 @settings(max_examples=300, deadline=None)
 def test_mirror_image(gap, slip, turn, flat, mu):
-    """Turning x round changes the sign of slip, W_NT and tangential force, and nothing else: bit for bit."""
+    """Reversing x changes the sign of slip, W_NT and tangential force, and nothing else: bit for bit."""
     w = compliance(turn, flat)
     mirrored = w * np.array([[1, -1], [-1, 1]])
     one, other = solve(gap, slip, w, mu), solve(gap, -slip, mirrored, mu)
@@ -110,7 +110,7 @@ def test_mirror_image(gap, slip, turn, flat, mu):
 @given(lengths, lengths, turns, flats, frictions, some.floats(-20, 20))
 @settings(max_examples=200, deadline=None)
 def test_forces_scale_with_displacements_and_stiffness(gap, slip, turn, flat, mu, power):
-    """The laws know no scale: displacements times 2^p and compliances times 2^m give forces times 2^(p-m)."""
+    """The laws have no scale: displacements times 2^p and compliances times 2^m give forces times 2^(p-m)."""
     w, p = compliance(turn, flat), 2.0 ** round(power)
     normal, tangential, status, jammed, *_ = solve(gap, slip, w, mu)
     larger = solve(gap * p, slip * p, w * 4.0, mu)
@@ -144,7 +144,7 @@ def test_painleve_jam_is_reached():
 
 
 def test_harness_rejects_a_wrong_solve():
-    """Negative control: with the sign of W_NT turned over, the state found is not consistent for most random cases."""
+    """Negative control: with the sign of W_NT reversed, the state found is not consistent for most random cases."""
     random = np.random.default_rng(7)
     wrong = 0
     for _ in range(200):

@@ -53,7 +53,7 @@ def disagreements(run, trail) -> dict[str, float]:
         off = np.nanmax(np.abs(values - expected))
         if off > tolerance * peak + least * (name in ENERGIES):
             found[name] = off / max(peak, 1e-300)
-    # A height may be zero all along: on the scale of what moves.
+    # A height may be zero throughout: relative to all displacements.
     moved = max(np.abs(trail.height).max(), np.ptp(trail.position))
     for name in ("gap", "contact_height"):
         expected = trail.gap if name == "gap" else trail.height
@@ -63,7 +63,8 @@ def disagreements(run, trail) -> dict[str, float]:
     status = run.status.values.reshape(trail.status.shape)
     if np.any(status != trail.status):
         found["status"] = float(np.mean(status != trail.status))
-    # A share is a ratio of what a gap or a force misses of its border, down to a hundredth of the peaks of COLUMNS.
+    # A share is a ratio of the distances of a gap or a force from its border, down to a hundredth of the peaks of
+    # COLUMNS.
     off = np.abs(run.status_share.values.reshape(trail.share.shape) - trail.share).max()
     if off > 1e-4:
         found["status_share"] = off
@@ -79,7 +80,7 @@ def test_kernel_and_twin_agree_at_every_step(name, scheme, form):
     make, step = SYSTEMS[name]
     run, trail = both(make(), scheme, form, step)
     assert disagreements(run, trail) == {}
-    # Every combination of states was tried at one step in ten: never more than one held.
+    # All combinations of states were tried at one step in ten: never more than one was consistent.
     assert set(trail.solutions) == {1}
     assert "unsolved_steps" not in run or not run.unsolved_steps.any()
     assert set(np.unique(trail.status)) - {0}, "no contact in the steps compared: the case tests nothing"
@@ -155,7 +156,7 @@ def slightly(change, system):
     ],
 )
 def test_comparison_rejects_a_wrong_twin(change, name):
-    """Negative control: what both should share is a little different in the twin."""
+    """Negative control: a shared value is slightly different in the twin."""
     make, step = SYSTEMS[name]
     system = make()
     run, _ = both(system, SCHEMES[1], twin.exact, step, 1)
@@ -221,7 +222,7 @@ def test_comparison_distinguishes_the_mean_of_the_state_from_its_last_value(monk
 
 
 def test_one_contact_of_coupled_modes_takes_one_sweep():
-    """It is solved exactly: nothing is left to iterate."""
+    """It is solved exactly, without iteration."""
     make, step = SYSTEMS["frozen contact"]
     words = {"step": step, "sample_rate": 1 / step, "probes": []}
     once = st.simulate(make(), 2000 * step, contact_solve=st.GaussSeidel(sweeps=1), **words)

@@ -1,4 +1,4 @@
-"""The compiled ledger against plain NumPy: the same samples are believed, to the last one."""
+"""The compiled ledger against plain NumPy: exactly the same samples are accepted."""
 
 from __future__ import annotations
 

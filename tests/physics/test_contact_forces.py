@@ -1,6 +1,6 @@
 """Contact forces move bodies as loads do; contact, stick and reversals are timed to second order.
 
-Default steps wherever nothing else is said.
+With default steps unless stated otherwise.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def test_reversals_are_of_second_order(frequency, friction, scheme):
 
 
 def test_the_previous_slip_decides_on_a_reversal():
-    """Negative control: the same push on a contact that was open takes the friction of one sense for the whole step."""
+    """Negative control: the same push on a contact that was open has friction of one sense for the whole step."""
     w, numbers = (1e-4, 0.0, 0.0, 1e-4), np.array([[0.3] + [0.0] * 7])
     forces = []
     for status in (SLIDING, SEPARATED):
@@ -113,7 +113,7 @@ def test_the_previous_slip_decides_on_a_reversal():
 
 @BOTH
 def test_time_in_contact_is_of_second_order(scheme):
-    """A mass on a floor shaken by 1.2 g: it leaves where the floor falls faster than it, and lands after a parabola.
+    """A mass on a floor shaken by 1.2 g: it leaves when the floor falls faster, and lands after a parabola.
 
     Whole steps, which `status` counts, are a step too many each time.
     """
@@ -162,7 +162,7 @@ def test_time_in_stick_ends_where_the_force_leaves_the_cone(scheme):
 def test_stiff_friction_damps_a_sawtooth(scheme):
     """Steady sliding at 1 um/s, the mass a tenth of that too fast: ``h dF/dv`` is fifty times the mass.
 
-    What rings from step to step falls by a third of itself in each, `n / 3^n` for a double root; the mean of two slips
+    Oscillations from step to step fall by a third in each, `n / 3^n` for a double root; the mean of two slips
     never sees it.
     """
     law = st.RateAndState(0.6, 0.005, 0.01, 1e-5, 1e-6)
