@@ -1,4 +1,4 @@
-"""Systems at the edge of what the equations admit, each with an answer that is known."""
+"""Systems at the limits of the equations, each with a known answer."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def test_a_ledger_that_is_no_number_stops_the_run():
 
 
 def test_an_interrupt_in_the_last_chunk_is_not_lost():
-    """The run is whole; whoever pressed Ctrl-C still learns of it."""
+    """The run is complete, and the interrupt is still raised."""
 
     class Pressed(st.Constant):
         def factor(self, time):

@@ -13,7 +13,7 @@ STEEL = st.Material(2.1e11, 7800.0, 0.3)
 STRIP = st.Rectangle(0.02, 0.005)
 SAMPLES = ([0.0, 300.0, 2000.0], [0.002, 0.01, 0.05])
 
-# What each form says of the ratio of a mode of frequency f [Hz].
+# Damping ratio of a mode of frequency f [Hz] under each form.
 FORMS = {
     "ratio": (0.013, lambda f: 0.013 + 0.0 * f),
     "rayleigh": (st.Rayleigh(30.0, 2e-6), lambda f: 30.0 / (4 * np.pi * f) + 2e-6 * np.pi * f),
@@ -55,7 +55,7 @@ def test_modes_have_the_ratio_of_their_frequency(body, form):
     np.testing.assert_allclose(modes.damping[elastic], ratio(f), rtol=1e-12)
     np.testing.assert_allclose(modes.damping_rate[elastic], 4 * np.pi * f * ratio(f), rtol=1e-12)
     assert modes.damping_matrix is None
-    # No force is needed to translate or to turn a beam, but a share of mass brakes it.
+    # No force is needed to translate or to turn a beam, but mass-proportional damping brakes it.
     np.testing.assert_allclose(modes.damping_rate[~elastic], 30.0 if form == "rayleigh" else 0.0, rtol=1e-12)
 
 
@@ -77,7 +77,7 @@ def far(body):
 
 
 def oscillator(ratio, w=300.0, mass=0.2):
-    """A mass on two springs whose damping law gives the ratio, one and above by a law only."""
+    """A mass on two springs with a damping ratio from a law; one and above by a law only."""
     damping = st.RisingDamping(0.0, ratio / (w / (2 * np.pi)))
     return st.ReducedBody(mass * np.eye(2), mass * w**2 * np.eye(2), {"tip": (0, 1)}, damping=damping)
 
@@ -114,7 +114,7 @@ def test_a_ratio_off_by_a_percent_is_detected(wrong):
 
 
 def test_mass_proportional_damping_brakes_free_flight():
-    """v = v0 exp(-alpha t) for a body that nothing holds."""
+    """v = v0 exp(-alpha t) for a free body."""
     body = st.ReducedBody(0.2 * np.eye(2), np.zeros((2, 2)), {"tip": (0, 1)}, damping=st.Rayleigh(40.0, 0.0))
     system = st.System(far(body), [st.InitialState(body, velocity=[0.7, 0.0])])
     run = st.simulate(system, 0.1, step=1e-4, probes=[st.Displacement(body.at("tip"), "x")])

@@ -1,4 +1,4 @@
-"""Starts in sliding equilibrium stay there; with a mode on top they go as linear theory says."""
+"""Starts in sliding equilibrium stay there; with a mode on top they follow linear theory."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_a_law_that_depends_on_speed_stays_there_where_its_force_turns_the_norma
 
 @pytest.mark.parametrize("name", STEADY)
 def test_a_start_without_deflection_does_not_stay(name):
-    """Negative control: the same systems from where they are undeformed."""
+    """Negative control: the same systems from their undeformed state."""
     run = st.simulate(STEADY[name](), 0.02, scheme=EXPLICIT, probes=[])
     moved = max(change(run.normal_force), change(run.tangential_force), change(run.slip_velocity))
     assert moved > 1e-4
@@ -67,7 +67,7 @@ def test_a_start_without_deflection_does_not_stay(name):
 
 @pytest.mark.parametrize("name", TRAVELLING)
 def test_the_deflection_travels_steadily_with_the_contact(name, monkeypatch):
-    """Nothing is exactly steady there; a start that leaves the travel out is the worse of two."""
+    """Nothing is exactly steady there; a start without the travel is worse."""
     system = TRAVELLING[name]()
     run = st.simulate(starting(system), 0.02, scheme=EXPLICIT, probes=[])
     kept = change(run.normal_force)
@@ -84,7 +84,7 @@ def test_the_deflection_travels_steadily_with_the_contact(name, monkeypatch):
 
 
 def growth(system: st.System, probe, step: float, duration: float, every: int, scheme=EXPLICIT, **words):
-    """Exponent of the most unstable mode, and the one seen in how far it takes a run from its equilibrium."""
+    """Exponent of the most unstable mode, and that of the departure of a run from its equilibrium."""
     theory = st.sliding_stability(system, time=0.0)
     values = theory.growth_rate.values + 2j * pi * theory.frequency.values
     known = values[np.where(values.imag > 0.0, values.real, -np.inf).argmax()]
@@ -137,7 +137,7 @@ def test_a_mode_on_top_grows_as_linear_theory_says(make):
     assert known.real > 0.0
     assert seen.real == pytest.approx(known.real, rel=2e-3)
     assert seen.imag == pytest.approx(known.imag, rel=2e-3)
-    # It is the mode alone: envelope and phase from the first step on, not after others have died out.
+    # The mode alone: envelope and phase from the first step on, without a decay of others.
     time = step * (1.0 + np.arange(len(away)))
     waves = np.exp(known * time)
     fitted, *_ = np.linalg.lstsq(np.stack([waves.real, waves.imag], axis=1), away[:, 0], rcond=None)
@@ -146,7 +146,7 @@ def test_a_mode_on_top_grows_as_linear_theory_says(make):
 
 
 def test_the_fit_distinguishes_another_exponent():
-    """Negative control: with no friction in it the mode that is put on top is another one, and does not stay one."""
+    """Negative control: a mode computed without friction is a different one, and does not persist."""
     system, probe, step, duration, every, amplitude = hoffmann()
     known, _, away = growth(system, probe, step, duration, every, amplitude=amplitude)
     waves = np.exp((known - 0.01) * step * (1.0 + np.arange(len(away))))
@@ -190,7 +190,7 @@ def test_theory_says_where_the_contact_points_are_in_equilibrium(name):
 
 
 def test_an_initial_state_taken_from_theory_is_accepted():
-    """What rounding leaves of a gap in a solve and in the turn to physical displacements is no overlap."""
+    """Rounding of a gap, in the solve and in physical displacements, is not an overlap."""
     refused = 0
     for seed in range(40):
         random = np.random.default_rng(seed)

@@ -166,7 +166,7 @@ def test_stick_slip_of_a_static_and_a_kinetic_coefficient(scheme):
     amplitude = np.hypot(0.2 * LOAD / STIFFNESS, belt / angular)
     late = slice(x.size // 2, None)
     assert {1, 2} == set(status[late])
-    # A step's travel is what a break can be missed by.
+    # A break may be late by the travel of one step.
     assert x[late].max() == pytest.approx(middle + amplitude, rel=1e-3)
     assert x[late].min() == pytest.approx(middle - amplitude, rel=3e-3)
     breaks = np.flatnonzero((status[:-1] == 1) & (status[1:] == 2))

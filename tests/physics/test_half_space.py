@@ -63,7 +63,7 @@ def test_the_displacement_does_not_depend_on_the_orientation():
 
 
 def dragged(block, tips, plane):
-    """Press a bump on the squares of a plane and drag it; `tips` says by what point of the block each is met."""
+    """Press a bump on the squares of a plane and drag it; `tips` has the point of the block on each."""
     gaps = 0.02 * (grid(4) ** 2).sum(axis=1) / SIDE
     contacts = [
         st.PointContact(block.at(tips(name)), plane.at(name), friction=st.Coulomb(0.4), gap=gap, surface="face")
@@ -81,7 +81,7 @@ def rigid(mass=1e-3):
 
 
 def test_two_equal_half_spaces_yield_as_one_of_half_the_modulus():
-    """Pressed on each other, where what one moves along itself under pressure the other one does, too."""
+    """Pressed on each other, where both have the same tangential displacement under pressure."""
     soft = st.Material(RUBBER.young / 2, 1000.0, RUBBER.poisson)
     one = st.ModalBody.half_space(soft, grid(4), SIDE, coupled=False, name="plane")
     single = dragged(rigid(), lambda _: "middle", one)

@@ -39,7 +39,7 @@ def test_ledger_closes_over_two_seconds(name, scheme):
 
 
 def test_harness_rejects_a_march_that_leaks(monkeypatch):
-    """Negative control: one mode whose increment is off by 1e-7, once in 20 000 steps, ends the run."""
+    """Negative control: an error of 1e-7 in the increment of one mode, once in 20 000 steps, ends the run."""
     advance = March.advance
 
     def leaking(march, *arguments):

@@ -1,4 +1,4 @@
-"""A march without end: the run of `simulate` in parts, and what a change on the way keeps."""
+"""Live marches: the run of `simulate` in parts, and continuity at changes."""
 
 import numpy as np
 import pytest
@@ -59,7 +59,7 @@ def test_a_change_to_the_same_system_changes_nothing(case):
 
 
 def test_a_root_continues_in_place_at_another_velocity():
-    """Its displacement does not jump in the eyes of a probe: 1 cm/s for 0.31 s, then 2 and 0.5 cm/s for 0.1 s each."""
+    """Its displacement at a probe does not jump: 1 cm/s for 0.31 s, then 2 and 0.5 cm/s for 0.1 s each."""
 
     def dragged(velocity):
         what = system("weak-pressure", drives__0__velocity=velocity)
@@ -148,7 +148,7 @@ def test_a_plate_keeps_the_amplitude_of_each_of_its_waves():
     spans, old = live.spans["track"], live.position
     assert live.change(now, ())
     ratio = np.sqrt(0.0041 / 0.004)
-    # The contact is put back to its opening, by a displacement that is small against the waves.
+    # The contact keeps its gap, by a displacement that is small against the waves.
     kept = np.abs(live.position[slice(*spans)] - ratio * old[slice(*spans)])
     assert kept.max() < 0.05 * np.abs(old[slice(*spans)]).max()
     frequencies = [one.track.modes().angular_frequency for one in (before, now)]
@@ -232,7 +232,7 @@ def test_schemes_change_during_a_run():
 
 
 def test_steps_are_as_long_as_asked_for_and_the_run_bit_for_bit():
-    """A sample has a whole number of steps, none longer than asked for."""
+    """A sample has a whole number of steps, none longer than requested."""
     what = system("weak-pressure")
     live = LiveMarch(what, probes(what), step=9e-6)
     assert live.ratio == 3

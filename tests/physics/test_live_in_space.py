@@ -1,4 +1,4 @@
-"""A march without end in space: the run of `simulate` in parts, and what a change on the way keeps."""
+"""Live marches in space: the run of `simulate` in parts, and continuity at changes."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_motion_of_bodies_is_given_with_springs_on_residual_shapes():
 
 
 def changed_in_both(change, samples: int = 480):
-    """March a rod along a beam in the plane and the same in space, changed on the way; return their normal forces."""
+    """March a rod along a beam in the plane and in space, with a change during the run; return their normal forces."""
     before, now = rubbed(BEAM), change(rubbed(BEAM))
     found = []
     for first, second in ((before, now), (IntoSpace(TURNED).system(before)[0], IntoSpace(TURNED).system(now)[0])):

@@ -1,4 +1,4 @@
-"""Mobilities against the direct solution of the matrices, closed forms of endless beams, and each other."""
+"""Mobilities against the direct solution of the matrices, closed forms of infinite beams, and each other."""
 
 from __future__ import annotations
 
@@ -74,14 +74,14 @@ def test_modes_left_out_yield_statically():
     beyond_it = natural > 1500.0
     left_out = (whole.trace("foot")[1] ** 2)[beyond_it] @ (1.0 / whole.modes().stiffness[beyond_it])
     angular = 2.0 * np.pi * low
-    # At most what all modes left out would do, were they the lowest of them, undamped.
+    # At most the response of all modes left out with the frequency of the lowest of them, undamped.
     most = angular * left_out * ((low / beyond) ** 2 / (1.0 - (low / beyond) ** 2))
     assert (np.abs(found - known) <= 1.05 * most + 1e-9 * np.abs(known)).all()
     np.testing.assert_allclose(np.abs(bare - known), angular * left_out, rtol=0.2)
 
 
 def endless(beam: st.ModalBeam, frequency: np.ndarray, zeta: float) -> np.ndarray:
-    """Driving-point mobility of an endless beam whose waves have the damping ratio of its modes.
+    """Driving-point mobility of an infinite beam whose waves have the damping ratio of its modes.
 
     ``i w / m' 2 pi`` times the integral of ``1 / (W² + 2 i zeta w W - w²)`` over wavenumbers k, ``W = c k²``: by
     partial fractions in W, ``int dk / (k² - a²) = pi i / a``. Without damping it is ``(1 - i) / 4 m' c_B`` (Cremer).
@@ -124,7 +124,7 @@ def test_springs_of_a_system_hold_the_points():
 
 
 def test_turning_modes_split_and_standing_ones_do_not():
-    """From where it stands, a pair of waves of a disc that turns has two peaks, about its drag times the speed."""
+    """In a fixed frame, a pair of waves of a turning disc has two peaks, split by its drag times the speed."""
     profile = st.RectangleProfile({"disc": ((0.05, 0.15), (0.0, 0.01))})
     standing = st.AxisymmetricBody(profile, STEEL, 1500.0, "inner", axis=(0.0, 1.0, 0.0), damping=1e-4, turning=0.0)
     turned = replace(standing, turning=20.0)

@@ -34,7 +34,7 @@ WORDS = {"step": 2e-6, "sample_rate": 5e4}
 
 
 def rubbed(track, law=None, connections=()) -> st.System:
-    """A rod that is pushed along a track of the plane and presses on it, one that moves by some millimetres."""
+    """A rod that is pushed along a planar track and presses on it, moving by some millimetres."""
     contact = st.PointContact(ROD.tip, track, at=0.3, friction=law or st.Coulomb(0.3), gap=1e-5)
     push = st.Force(ROD.root, x=40.0, y=-60.0, history=st.Ramp(1e-3))
     return st.System(contact, [push], connections)
@@ -104,7 +104,7 @@ def test_its_rows_are_turned():
     assert hash(turned) == hash(replace(PLATE, plane=TURNED[:, :2].T))
 
 
-# Friction across the track, too.
+# Also with friction across the track.
 
 # The weight rises in 10 ms: there is no sudden friction at the start.
 MASS, WEIGHT, FRICTION, RISE = 0.3, 30.0, 0.2, 0.01
@@ -155,7 +155,7 @@ def by_equations(times):
 @pytest.mark.parametrize("rotation", [np.eye(3), TURNED], ids=["upright", "turned"])
 @pytest.mark.parametrize("scheme", [st.CentralDifference(), st.ExactModal()], ids=lambda one: one.name)
 def test_a_mass_thrown_across_a_soft_beam_moves_by_its_equations(scheme, rotation):
-    """Of first order in the step, as in the plane: the force of a step acts where the contact is at its end."""
+    """Of first order in the step, as in the plane: the force of a step acts at the place of the contact at its end."""
     errors, swings = [], []
     for step in (4e-5, 2e-5, 1e-5):
         run = st.simulate(thrown(rotation), 0.05, scheme=scheme, step=step, sample_rate=1.0 / step, probes=[])

@@ -1,4 +1,4 @@
-"""Planar bodies in space: whatever plane they are put into, they do what they do in their own."""
+"""Planar bodies in space: their motion does not depend on the plane."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_bad_placements_are_refused():
 
 
 def test_a_mass_keeps_its_weight():
-    """A point mass that falls along what was y."""
+    """A point mass that falls along the former y."""
     turn = Rotation.from_euler("z", 90.0, degrees=True).as_matrix()
     mass = st.ModalBody.placed(st.PointMass(0.5), {"centre": "centre"}, turn[:, 0], turn[:, 1])
     assert mass.total_mass == pytest.approx(0.5)

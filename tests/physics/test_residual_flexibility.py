@@ -1,4 +1,4 @@
-"""Residual shapes: what modes beyond a cutoff yield statically, against the whole body, a twin and closed forms."""
+"""Residual shapes: static flexibility of modes beyond a cutoff, against the whole body, a twin and closed forms."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def test_bars_in_contact_converge_with_the_cube_of_their_modes():
 
 @pytest.mark.parametrize("law", [st.Coulomb(0.3), st.StaticKinetic(0.4, 0.3)])
 def test_equilibrium_is_that_of_the_whole_body(law):
-    """Springs, loads and gravity find the body as soft as it is, too."""
+    """Also for springs, loads and gravity."""
     known = st.sliding_stability(on_feet(law, None)).normal_force.values
     np.testing.assert_allclose(st.sliding_stability(on_feet(law)).normal_force, known, rtol=1e-10)
     plain = st.sliding_stability(on_feet(law, residual_flexibility=False)).normal_force.values
@@ -101,7 +101,7 @@ def test_equilibrium_is_that_of_the_whole_body(law):
 
 
 def test_mode_coupling_is_that_of_the_whole_body():
-    """Without the modes left out another mode grows."""
+    """Without residual shapes another mode grows."""
     found = {}
     for name, system in {
         "whole": on_feet(st.Coulomb(0.9), None, belt=0.8),
@@ -136,7 +136,7 @@ def test_growth_in_time_is_that_of_linear_theory(law, belt, scheme):
 
 
 def test_a_massless_contact_counts_where_friction_does_not_depend_on_speed():
-    """Only mass holds a slip against friction that falls: tangential rows of such contacts see modes alone."""
+    """Only mass resists falling friction: tangential rows of such contacts act on modes alone."""
     theory = st.sliding_stability(on_feet(st.ExponentialWeakening(0.4, 0.2, 0.5)))
     highest = 2.0 * pi * theory.frequency.values.max()
     assert theory.growth_rate.values.max() < 0.1 * highest

@@ -132,7 +132,7 @@ def _on_feet(body, law, belt, rotation, directions) -> st.System:
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.law)
 @pytest.mark.parametrize("rotation", [np.eye(3), TURNED], ids=["upright", "turned"])
 def test_a_planar_system_moves_equally_under_any_rotation(law, rotation):
-    """Landings, sticks and reversals; what rounding makes grows through them."""
+    """Landings, sticks and reversals, which amplify rounding."""
     words = {"step": 5e-6, "sample_rate": 2e5, "probes": []}
     flat, space = (st.simulate(system, 0.01, **words) for system in (in_the_plane(law), turned(law, rotation)))
     size = float(flat.normal_force.max())
@@ -178,7 +178,7 @@ def test_linear_theory_is_that_of_the_plane(friction):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_a_particle_on_a_slope_ends_straight_downhill_at_half_its_speed(scheme):
-    """Speed and speed downhill lose and win alike: their sum stays the speed at the start."""
+    """Total speed falls as downhill speed rises: their sum stays the initial speed."""
     errors = []
     for step in (4e-3, 2e-3, 1e-3):
         run = st.simulate(thrown_on_a_slope(), 10.0, step=step, sample_rate=25.0, scheme=scheme, probes=[])
@@ -207,7 +207,7 @@ def test_a_mass_is_held_equally_in_all_directions(degrees):
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.law)
 def test_a_mass_is_stopped_equally_in_all_directions(law):
-    """Thrown along either tangent or between them it slides as far, from the first step on."""
+    """Thrown along either tangent or between them it slides equally far, from the first step on."""
     found = []
     for degrees in (0.0, 90.0, 215.0):
         mass, way = st.RigidBody(1.0), radians(degrees)
@@ -344,7 +344,7 @@ def dragged(friction: float, damping: float) -> st.System:
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_growth_in_time_is_that_of_linear_theory(scheme):
-    """Mode coupling through friction in four directions, with what friction damps across each."""
+    """Mode coupling through friction in four directions, with the damping of friction across each."""
     system = dragged(0.5, 0.002)
     probe = st.Displacement(system.slider.at("top"), "z")
     known, seen, _ = growth(system, probe, 2e-6, 4e-3, 20, scheme, amplitude=1e-10)
@@ -377,7 +377,7 @@ def test_a_start_in_sliding_equilibrium_stays_there(scheme):
 def test_a_coin_that_slides_and_spins_stops_doing_both_at_once():
     """At v / (R w) = 0.652998 the ratio stays; there F = 0.616031 mu N and T = 0.471694 mu N R (Farkas et al. 2003).
 
-    Forty-eight points, three motions: where it stops the forces of sticking are not determined, and are found.
+    Forty-eight points, three motions: when it stops, the sticking forces are not unique, and a solution is found.
     """
     known, spin = 0.652998, 20.0
     system, places = coin(4, 12, known * RADIUS * spin, spin)
@@ -403,7 +403,7 @@ def test_a_coin_that_slides_and_spins_stops_doing_both_at_once():
 
 
 def test_a_rigid_body_turns_about_its_principal_axes():
-    """Velocity of a point of a body that spins: v + w x r, whatever its inertia; energy is that of the motion."""
+    """Velocity of a point of a body that spins: v + w x r, for any inertia; kinetic energy is that of the motion."""
     random = np.random.default_rng(7)
     half = random.standard_normal((3, 3))
     inertia = half @ half.T + 3.0 * np.eye(3)
@@ -479,7 +479,7 @@ def rubbing(space: bool) -> st.System:
 
 @pytest.mark.parametrize("space", [False, True])
 def test_a_surface_that_moves_drags_both_bodies_apart(space):
-    """The upper goes with it by mu N / k, the lower the other way; N is 10 N less what the upper's spring carries."""
+    """The upper moves with it by mu N / k, the lower the other way; N is 10 N less the force of the upper's spring."""
     system = rubbing(space)
     way = np.array([0.6, -0.8]) if space else np.array([1.0])
     theory = st.sliding_stability(system)
@@ -495,7 +495,7 @@ def test_a_surface_that_moves_drags_both_bodies_apart(space):
     still = st.System(system.contact, [*system.drives, st.InitialEquilibrium()], system.connections)
     run = st.simulate(still, 0.5, step=1e-3, probes=[])
     np.testing.assert_allclose(run.normal_force, normal, rtol=1e-9)
-    # The drive gives what friction takes: 1 m/s against mu N.
+    # The drive supplies the loss of friction: 1 m/s against mu N.
     assert float(run.drive_work[-1]) == pytest.approx(0.3 * normal * 0.5, rel=1e-2)
     assert float(run.friction_loss[-1]) == pytest.approx(0.3 * normal * 0.5, rel=1e-9)
     assert st.load_scenario(run).system == still

@@ -1,4 +1,4 @@
-"""Surfaces recorded in short: what is left is what all points come to, and what is heard of them."""
+"""Surfaces in short records: resultants and sound equal those of all points."""
 
 from __future__ import annotations
 
@@ -51,13 +51,13 @@ def pair():
 
 @pytest.fixture(scope="module")
 def both(pair):
-    """The same run with all points and in short."""
+    """The same run with all points and as a short record."""
     return [st.simulate(pair, 8.2e-3, surface_rate=rate, **WORDS) for rate in ("all", MAPS)]
 
 
 @pytest.fixture(scope="module")
 def usual(pair):
-    """The run as it is recorded where nobody says otherwise."""
+    """The run as recorded by default."""
     return st.simulate(pair, 8.2e-3, **WORDS)
 
 
@@ -131,7 +131,7 @@ def test_it_continues_and_runs_again(both):
     again = scenario.simulate()
     np.testing.assert_array_equal(again.normal_force, run.normal_force)
     np.testing.assert_array_equal(again.map_status, run.map_status)
-    # The system of a record has no mesh, and knows the areas and places of its points.
+    # The system of a record has no mesh, but the areas and places of its points.
     np.testing.assert_allclose(again.surface_moment, run.surface_moment, rtol=1e-12, atol=1e-15)
     (face,) = scenario.system.faces
     assert analysis.surface(run, face).identical(analysis.surface(run, SOLE))

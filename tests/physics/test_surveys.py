@@ -1,4 +1,4 @@
-"""Squeal surveys: modes that grow, what becomes of each in time, and how a survey is kept and resumed."""
+"""Squeal surveys: growing modes, their fates in time, and saving and resuming of surveys."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_a_mode_grows_in_time_as_its_eigenvalue_says_and_lives_on():
     assert set(found.fate.values) == {"lives"}
     assert set(found.regime.values) == {"squeal"}
     assert (found.reached * found.steady == 1.0).all()
-    # Its tone is below, for the contact opens, and the next ones are multiples of it.
+    # Its tone is lower, as the contact opens, and the next ones are multiples of it.
     strongest = found.tone_frequency.isel(tone=0)
     assert ((strongest < found.frequency) & (strongest > 0.95 * found.frequency)).all()
     np.testing.assert_allclose(
@@ -102,7 +102,7 @@ def runs_of(system: st.System, amplitude: float) -> Runs:
 @pytest.mark.parametrize("speed", [1.0, 1e-4])
 @pytest.mark.parametrize(("share", "changes"), [(0.9, False), (1.1, True)])
 def test_a_contact_opens_or_stops_where_the_reach_of_a_mode_ends(speed, share, changes):
-    """Fast belts open it, slow ones stop it. Within a period the mode grows by little, which is taken off."""
+    """Fast belts open it, slow ones stop it. The small growth of the mode within a period is subtracted."""
     system = flutter(0.8, speed)
     runs = runs_of(system, 1e-3)
     (number,) = runs.rest.reach
@@ -124,7 +124,7 @@ def test_growth_and_limit_cycle_do_not_depend_on_how_small_the_start_is():
 
 
 def test_growth_is_not_given_where_several_modes_contribute():
-    """Negative control: the run of another system has no part of this mode."""
+    """Negative control: the run of another system does not contain this mode."""
     runs, others = (runs_of(flutter(friction), 1e-3) for friction in (0.8, 1.2))
     (number,) = runs.rest.reach
     run = runs.of(number)

@@ -1,4 +1,4 @@
-"""How far linear theory and runs agree: counts on a sweep made by hand."""
+"""Agreement of linear theory and runs: counts on a sweep made by hand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bodies, sections and materials: what they say of themselves, and what they refuse."""
+"""Bodies, sections and materials: properties and refused arguments."""
 
 from __future__ import annotations
 

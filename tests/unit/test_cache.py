@@ -1,4 +1,4 @@
-"""What is kept on disk for other processes: found again as it was, bounded, and never in the way."""
+"""The cache on disk for other processes: exact, bounded, and ignored if it fails."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_the_least_recently_used_file_is_removed(place, monkeypatch):
     for age, name in ((200, "one"), (100, "two")):
         before = (place / f"{name}.kept").stat().st_mtime - age
         os.utime(place / f"{name}.kept", (before, before))
-    # Asked for, it is the younger one.
+    # A use makes it the younger one.
     assert cache.recall("one") is not None
     cache.keep("three", ARRAYS)
     assert sorted(path.stem for path in place.iterdir()) == ["one", "three"]

@@ -1,4 +1,4 @@
-"""Calibration: known parameters are found again, equal seeds search alike, and what cannot be aimed at is told."""
+"""Calibration: known parameters are recovered, equal seeds give equal searches, bad targets are reported."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ def test_runs_that_fail_count_as_the_worst_and_the_others_continue():
     )
     assert float(found["angle"]) < 90.0
     assert np.isfinite(float(found["travel"]))
-    # 5 m in units of half a metre, pressed together.
+    # 5 m in units of half a metre, compressed.
     assert float(found["miss"]) == pytest.approx(7.5, abs=0.01)
     assert not found["met"].values.any()
 

@@ -1,4 +1,4 @@
-"""Cards in notebooks: they are whole pages of HTML, name what one wants to know, draw to scale, and take no time."""
+"""Cards in notebooks: valid HTML, main facts, drawings to scale, no slow computation."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def test_names_are_text():
 
 def test_a_rod_is_drawn_as_it_leans():
     (low, high) = page(ROD).places
-    # Down on the page is y.
+    # y is downwards on the page.
     assert (high - low) @ [np.cos(ROD.angle), np.sin(ROD.angle)] == pytest.approx(0.0, abs=0.2)
     assert high[0] > low[0]
     assert high[1] < low[1]
@@ -146,7 +146,7 @@ def test_the_card_of_a_body_of_revolution_lists_computed_modes():
 
 
 def test_only_visible_edges_of_a_block_are_drawn():
-    """Of twelve edges nine are seen, cut where elements end; none within a face."""
+    """Nine of twelve edges are visible, cut at the ends of elements; none lies within a face."""
     surface = BLOCK.drawn_at_rest
     edges = edges_seen(surface.place, surface.polygons, surface.normals)
     # Elements have a node in the middle of each edge.

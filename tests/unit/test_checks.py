@@ -1,4 +1,4 @@
-"""Limits and lists in messages: what they print obeys what they say, and no list of many names is long."""
+"""Limits and lists in messages: printed limits are valid, and lists of many names are short."""
 
 from __future__ import annotations
 

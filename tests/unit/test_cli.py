@@ -1,4 +1,4 @@
-"""The command line: what it prints, what it writes, how it ends."""
+"""The command line: output, files, exit codes."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def test_show_reports_doubts_beside_the_text(stridula, tmp_path):
     assert (code, tomllib.loads(out)["track"]["material"]["density"]) == (0, 7.8)
     assert err == "stridula: doubtful: track: density of 7.8 kg/m3; did you mean g/cm3?\n"
     assert stridula("show", "mine.toml", "--out", "whole.toml") == (0, "", err)
-    # What cannot run can be shown.
+    # A scenario that cannot run can be shown.
     (tmp_path / "mine.toml").write_text('base = "squeal"\n[track]\nlength = -1\n')
     assert stridula("show", "mine.toml")[::2] == (0, "")
 

@@ -1,4 +1,4 @@
-"""Bars of the command line: the words beside them, and the time left."""
+"""Bars of the command line: their texts, and the time left."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ STEEL = st.Material(2.1e11, 7800.0, 0.3)
 
 @pytest.fixture
 def said(monkeypatch):
-    """Return what is said beside a bar."""
+    """Return the text beside a bar."""
     words: list[str] = []
     show = rich_bars.Progress.update
 

@@ -1,4 +1,4 @@
-"""The command line between other programs: a scenario from a pipe, and what the shell completes."""
+"""The command line between other programs: scenarios from a pipe, and shell completion."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PROGRAM = "import sys; sys.argv[0] = 'stridula'; from stridula.cli import main; 
 
 @pytest.fixture
 def piped(monkeypatch):
-    """Put something into standard input."""
+    """Set standard input."""
 
     def put(content: bytes) -> None:
         monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=io.BytesIO(content)))

@@ -1,4 +1,4 @@
-"""What is heard, from the command line: `stridula sound` and `stridula run --wav`."""
+"""Sound from the command line: `stridula sound` and `stridula run --wav`."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
     np.testing.assert_allclose(pressure["x"], system.track.length / 2 + np.array([-0.09, 0.09]))
     assert stridula("sound", "run.nc", "--wav", "again.wav")[0] == 0
     assert (tmp_path / "run.wav").read_bytes() == (tmp_path / "again.wav").read_bytes()
-    # Each body can be heard by itself, and together they are the whole.
+    # Each body can be heard alone, and their sum is the whole.
     st.write_wav("track.wav", st.radiate(record, system.track))
     for body in ("track", "slider"):
         assert stridula("sound", "run.nc", "--body", body, "--wav", f"{body} alone.wav", "--full-scale", "1")[0] == 0
@@ -158,7 +158,7 @@ def test_silence_is_reported(stridula):
     assert (code, err) == (0, "")
     assert out.startswith("a.wav: 2 channels, 48 kHz, 0.005 s, silence (full scale 1 Pa)\ntrack is silent: the contact")
     assert not st.read_wav("a.wav").any()
-    # A slider that is drawn into the air is heard all the same.
+    # A slider that is pulled into the air is still heard.
     code, out, err = stridula("run", "squeal", "--duration", "30 ms", "--set", "gap=10", "--wav", "b.wav")
     assert (code, err) == (0, "")
     assert "track is silent: the contact never presses; slider: a line of dipoles" in out

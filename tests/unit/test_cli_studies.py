@@ -1,4 +1,4 @@
-"""The verbs that look at many parameters: stability, calibrate, sensitivity."""
+"""Commands over many parameters: stability, calibrate, sensitivity."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Two records side by side: differences that are put in are found, where and when they were put in."""
+"""Comparison of two records: inserted differences are found at their places and times."""
 
 from __future__ import annotations
 

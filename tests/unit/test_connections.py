@@ -1,4 +1,4 @@
-"""Springs, dashpots and rigid tracks: what they refuse, and how systems hold them."""
+"""Springs, dashpots and rigid tracks: refused arguments, and their use in systems."""
 
 from __future__ import annotations
 

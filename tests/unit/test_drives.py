@@ -1,4 +1,4 @@
-"""Drives and contact: what they refuse, and the directions of forces."""
+"""Drives and contact: refused arguments, and the directions of forces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Records as tables for other programs: what is read back is what was recorded."""
+"""Records as tables for other programs: they are read back unchanged."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Packages that an extra brings: without one, a line says what needs it and how it is installed."""
+"""Packages of extras: if one is missing, an error names its purpose and how to install it."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from stridula.extras import NEEDED, MissingPackage, how_to_install, missing, nam
 
 ROOT = Path(__file__).resolve().parents[2]
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
-# An interpreter in which packages are as if they had never been installed.
+# An interpreter in which packages appear not to be installed.
 WITHOUT = """
 import sys
 from importlib.machinery import PathFinder
 found = PathFinder.find_spec
 PathFinder.find_spec = lambda name, *where: None if name.partition(".")[0] in {packages!r} else found(name, *where)
 """
-# What a user does without any of them, and the line that answers, up to the package.
+# Actions of a user without any of them, and the error up to the name of the package.
 IN_PYTHON = {
     "st.load_scenario('squeal')": "scenarios need pydantic",
     "st.sweep": "scenarios need pydantic",
@@ -52,7 +52,7 @@ for code in CODES:
     except Exception as error:
         print(type(error).__name__ + ": " + str(error))
 """
-# Verbs where the command line is there, and what it is for is not.
+# Commands with the command line installed, but not the package of the command.
 VERBS = {
     ("run", "squeal", "--plot", "a.png"): "figures need matplotlib",
     ("run", "squeal", "--wav", "a.wav"): "sound files need soundfile",
@@ -77,7 +77,7 @@ def run_without(packages: set[str], code: str, folder: Path) -> subprocess.Compl
 
 
 def line(beginning: str) -> str:
-    """Return all that is to be said."""
+    """Return the complete line."""
     package = beginning.rpartition(" ")[2]
     return f'{beginning}, which is not installed: pip install ".[{NEEDED[package][1]}]" in the sources'
 
@@ -125,7 +125,7 @@ def test_the_error_crosses_to_other_processes():
 
 
 def brought(extra: str) -> set[str]:
-    """Return the packages of an extra and of those that it names."""
+    """Return the packages of an extra and of the extras that it includes."""
     found = set()
     for text in EXTRAS[extra]:
         name, inner = re.match(r"([\w-]+)(?:\[(.*?)\])?", text).groups()

@@ -1,4 +1,4 @@
-"""Laws of friction: what they refuse, and their curves."""
+"""Laws of friction: refused arguments, and their curves."""
 
 from __future__ import annotations
 

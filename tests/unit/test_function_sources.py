@@ -1,4 +1,4 @@
-"""Studies of what a function makes of values: the same as of scenarios, and its faults in one line."""
+"""Studies of systems made by functions: the same as with scenarios, with errors in one line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Root loci and critical values: closed forms of two coupled modes, following, bad arguments, the figure."""
+"""Root loci and critical values: closed forms of two coupled modes, tracking, bad arguments, the figure."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_frequencies_follow_the_closed_form_and_lock_in():
 
 
 def test_a_mode_keeps_its_number_across_a_crossing():
-    # Two modes that do not couple cross without touching: each goes straight on.
+    # Two uncoupled modes cross without interaction: each continues straight.
     def crossing(value: float) -> st.System:
         stiffness = np.diag([1.0, (0.5 + value) ** 2, 4.0])
         body = st.ReducedBody(np.eye(3), stiffness, points={"foot": (None, 2)}, translation=np.zeros((2, 3)))
@@ -72,7 +72,7 @@ def test_critical_value_with_damping(damping):
 
 
 def test_a_mode_may_become_stable_again():
-    # More damping on both modes calms a pair that would flutter.
+    # More damping on both modes stabilises a pair that would flutter.
     found = st.critical_value(lambda e: sinou((e, e)).system(0.3), "damping", 0.001, 0.2, tolerance=1e-6)
     assert float(found["unstable"]) < float(found["stable"])
     assert sinou_limit((float(found["value"]),) * 2) == pytest.approx(0.3, rel=1e-5)

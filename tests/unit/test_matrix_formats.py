@@ -1,4 +1,4 @@
-"""Matrices as CalculiX, Nastran and Ansys write them: a chain whose frequencies are known, and what is refused."""
+"""Matrices of CalculiX, Nastran and Ansys: a chain with known frequencies, and refused files."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ BLOCKS = np.kron(np.array([[2.5, 0.0, -1.25], [0.0, 3.0, 0.5], [-1.25, 0.5, 4.0]
 
 
 def check_chain(body, rtol=1e-6):
-    """The frequencies of a chain that is held at one end, and how far its free end gives way to a force."""
+    """The frequencies of a chain held at one end, and the static displacement of its free end under a force."""
     order = np.arange(1, SIZE + 1)
     wanted = np.sqrt(SPRING / MASS) / np.pi * np.sin((2 * order - 1) * np.pi / (2 * (2 * SIZE + 1)))
     modes, trace = body.modes(), body.trace("end")
@@ -163,7 +163,7 @@ def test_ansys_harwell_boeing(kind, across, right_hand_side, tmp_path):
 
 @pytest.mark.parametrize("ending", [".mapping", ".mmf.mapping"])
 def test_ansys_matrix_market_with_one_mapping(ending, tmp_path):
-    """What HBMAT says of the rows of one matrix holds for all of them."""
+    """The rows of one matrix from HBMAT are those of all matrices."""
     files = {role: tmp_path / f"{role}.mmf" for role in MATRICES}
     for role, path in files.items():
         with open(path, "wb") as file:
@@ -173,7 +173,7 @@ def test_ansys_matrix_market_with_one_mapping(ending, tmp_path):
 
 
 def test_scipy_reads_the_harwell_boeing_files_of_these_tests(tmp_path):
-    """Those that it reads: without a right-hand side."""
+    """Those that SciPy supports: without a right-hand side."""
     written(
         tmp_path, {"k.rsa": formats.harwell_boeing(BLOCKS, "RUA", 3, False).replace("D+", "E+").replace("D-", "E-")}
     )
@@ -223,7 +223,7 @@ def test_bad_decks_are_reported_in_one_line(deck, tmp_path):
     assert "\n" not in str(caught.value)
 
 
-# What is refused.
+# Refused files.
 
 
 def refused(files, points=END, **words):

@@ -26,7 +26,7 @@ def scenario(folder, keys, points):
 
 
 def files_in(folder):
-    """Write all there is into a folder of its own, from which the scenario does not name it."""
+    """Write all files into a separate folder, which the scenario does not name."""
     held = folder / "model"
     held.mkdir()
     contents = {f"{role}.matrix": formats.harwell_boeing(matrix) for role, matrix in MATRICES.items()}

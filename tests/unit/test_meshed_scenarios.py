@@ -67,7 +67,7 @@ def loaded(tables: dict, folder: Path) -> st.Scenario:
 
 
 def told(make, *arguments) -> str:
-    """Return what is wrong, of which each problem is one line."""
+    """Return the problems, each of one line."""
     with pytest.raises(st.ScenarioError) as caught:
         make(*arguments)
     assert "\n" not in str(caught.value)
@@ -92,7 +92,7 @@ def write_squares(path: Path) -> None:
 
 
 def pin_on_disc() -> st.System:
-    """Return the shipped rig as one writes it in Python."""
+    """Return the shipped rig as written in Python."""
     normal = (0.0697564737441253, 0.9975640502598242, 0.0)
     places = 0.0025 * np.arange(5)
     radii = [0.157, 0.1595, 0.162, 0.1645, 0.167]
@@ -138,7 +138,7 @@ def test_the_pin_on_disc_is_the_one_written_in_python():
 
 @pytest.mark.parametrize("name", ["pin-on-disc", "pad-on-disc", "brake"])
 def test_bodies_that_touch_stand_where_they_touch(name):
-    """As pictures show them, within the rounding of angles."""
+    """As drawn in pictures, within the rounding of angles."""
     for contact in st.load_scenario(name).system.contacts:
         tip, touched = (end.body.place(end.position) for end in (contact.tip, contact.touched_point))
         np.testing.assert_allclose(tip, touched, atol=2e-6)
@@ -187,7 +187,7 @@ def test_the_pad_on_disc_is_the_one_written_in_python():
     )
     turn = math.radians(20.0)
     assert pad.mesh == st.SolidMesh.sector((0.08, 0.12), (-turn, turn), 0.015, (2, 4, 2), axis="y")
-    # Every foot is where the disc has the point that it touches, and is dragged as the disc turns.
+    # Every foot is at the point of the disc that it touches, and is dragged by the turning disc.
     for contact in case.system.contacts:
         there = disc.place(contact.track.position)
         np.testing.assert_allclose(pad.mesh.nodes[pad.points[contact.tip.position]], there, atol=1e-6)
@@ -411,7 +411,7 @@ def write_cube(path: Path) -> None:
 
 
 def of_files(folder: Path) -> Path:
-    """Write a scenario whose bodies are from files in a folder of its own, and one elsewhere that builds on it."""
+    """Write a scenario whose bodies are from files in a separate folder, and one elsewhere based on it."""
     (folder / "sub").mkdir()
     write_squares(folder / "sub" / "ring.inp")
     write_cube(folder / "sub" / "cube.inp")

@@ -1,4 +1,4 @@
-"""Mode shapes: what panels show is how modes move the body, and what they say is its frequency and damping."""
+"""Mode shapes: panels show the displacements of modes, with frequency and damping."""
 
 from __future__ import annotations
 

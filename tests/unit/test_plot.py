@@ -1,4 +1,4 @@
-"""Figures: what is drawn is what the law and the record say."""
+"""Figures: the drawing agrees with the law and the record."""
 
 from __future__ import annotations
 
@@ -146,7 +146,7 @@ def test_measures_need_one_contact(two, measure):
 
 
 def a_sweep(regimes, grows=None, kinds=None, x=(0.1, 0.2, 0.3), y=(10.0, 20.0)):
-    """Return what a sweep over friction and angle would, made by hand."""
+    """Return a result like that of a sweep over friction and angle, made by hand."""
     shape = (len(x), len(y))
     grows = np.zeros(shape) if grows is None else np.asarray(grows, dtype=float)
     kinds = np.full(shape, "sliding", dtype=object) if kinds is None else np.array(kinds, dtype=object)
@@ -196,7 +196,7 @@ def test_bounds_of_linear_theory_lie_between_cells():
     assert {(0.15, 5.0), (0.15, 15.0)} <= corners
     assert {x for x, _ in corners} == {0.15}
     assert growth.get_linewidths()[0] > sliding.get_linewidths()[0]
-    # Elsewhere the bound of sliding lies: it turns where held begins.
+    # Elsewhere it is the bound of sliding, beyond which the contact is held.
     assert (0.15, 25.0) in {(round(x, 6), round(y, 6)) for x, y in sliding.get_paths()[0].vertices.tolist()}
 
 

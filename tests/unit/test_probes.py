@@ -1,4 +1,4 @@
-"""Probes: what they refuse, their labels, directions and reactions."""
+"""Probes: refused arguments, labels, directions and reactions."""
 
 from __future__ import annotations
 

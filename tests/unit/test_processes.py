@@ -1,4 +1,4 @@
-"""Parts of a sweep in other processes: the same to the last bit, and what becomes of those that end."""
+"""Parts of a sweep in other processes: the same to the last bit, also if processes end."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def test_a_process_that_cannot_import_a_function_is_never_ready_and_says_nothing
 
 
 def test_processes_begin_once_threads_wait_for_each_other(monkeypatch):
-    """They take over from the threads, which give the same; those of no use are ended with the sweep."""
+    """They replace the threads, with the same results; idle ones are ended with the sweep."""
     begun = []
     monkeypatch.setattr(processes, "Helper", lambda asked, ready: begun.append(Eager(ready)) or begun[-1])
     monkeypatch.setattr(processes, "COST", -1e9)
@@ -109,7 +109,7 @@ def test_processes_begin_once_threads_wait_for_each_other(monkeypatch):
 
 
 class Eager:
-    """A process that is ready at once, and gone when it is asked."""
+    """A process that is ready at once, and gone when it is used."""
 
     def __init__(self, ready):
         self.ended = False

@@ -1,4 +1,4 @@
-"""Profiles of bodies of revolution: what they hold, files of meshes, and wrong ones refused in one line."""
+"""Profiles of bodies of revolution: content, mesh files, and refusals in one line."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_small_cells_grow_step_by_step():
     ],
 )
 def test_the_thinnest_part_is_measured(profile, thinnest):
-    """Straight in from a side that leans a little it is somewhat farther; cells here are coarse."""
+    """Measured normal to a slightly inclined side it is somewhat larger; cells here are coarse."""
     found = profile.mesh(lambda thickness, region: 0.01).thinnest
     assert found == pytest.approx(thinnest, rel=0.03)
 

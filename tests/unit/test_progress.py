@@ -1,4 +1,4 @@
-"""Bars that Python asks for: in terminals, notebooks and logs, with rich and without."""
+"""Progress bars from Python: in terminals, notebooks and logs, with and without rich."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_a_command_writes_nothing_to_a_log(capsys):
 
 
 def shown_in_one_line(capsys) -> list[str]:
-    """Return what stands in the one line of a bar, one after the other."""
+    """Return the successive texts in the one line of a bar."""
     with bars.bar("squeal", asked=True) as show:
         show(1.0, 2.0, "half of it all")
         show(2.0, 2.0, "all")

@@ -1,4 +1,4 @@
-"""Bodies given by matrices and point masses: modes against closed forms, damping of every kind, what they refuse."""
+"""Bodies given by matrices and point masses: modes against closed forms, all kinds of damping, refused arguments."""
 
 from __future__ import annotations
 
@@ -282,7 +282,7 @@ def test_small_asymmetry_is_averaged_away():
     assert body.stiffness[0, 1] == pytest.approx(-C + 5e-7, rel=1e-15)
 
 
-# What is refused.
+# Refused arguments.
 
 LARGE = scipy.sparse.eye_array(10**6, format="csr")
 BAD = {

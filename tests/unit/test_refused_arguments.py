@@ -1,4 +1,4 @@
-"""Arguments of the wrong kind or size: refused in one line, at once, before anything is made of them."""
+"""Arguments of the wrong kind or size: refused in one line, before any computation."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ def _big_endian(arrays):
 
 
 def test_a_sparse_matrix_with_bad_indices_crashes_no_process(tmp_path):
-    # To unfold it would write outside of its memory.
+    # Expanding it would write outside of its memory.
     bad = scipy.sparse.csc_array(np.eye(3))
     bad.indices[1] = 10**6
     refused(lambda: st.ReducedBody(bad, np.eye(3), {"tip": (0, 1)}), "indices")
@@ -320,7 +320,7 @@ def test_a_record_that_was_edited_is_refused(run, edit, message):
         refused(lambda: plot.timeline(edited, ["normal_force", "status"]), message)
 
 
-# What a process that was killed leaves.
+# Remains of a killed process.
 
 
 def test_remains_of_a_killed_process_are_removed_by_the_next_writer(tmp_path, run):

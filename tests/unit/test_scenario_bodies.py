@@ -232,7 +232,7 @@ def test_a_friction_at_the_top_is_that_of_every_contact_without_its_own(tmp_path
     own = TWO_CONTACTS.replace('gap = "1 mm"', 'friction = {law = "static-kinetic", static = 0.5, kinetic = 0.4}')
     path.write_text(own)
     assert frictions(path) == [st.Coulomb(0.3), st.StaticKinetic(0.5, 0.4)]
-    # A part of a law is that of the top with what is its own; a bare number is a law of its own.
+    # A partial law is merged with that at the top; a bare number is a complete law.
     stribeck = TWO_CONTACTS.replace(
         "friction = 0.3", 'friction = {law = "stribeck", static = 0.5, kinetic = 0.3, velocity = 0.1}'
     )
@@ -253,7 +253,7 @@ def test_a_friction_set_at_the_top_is_that_of_all_contacts(tmp_path):
     assert frictions(path, **{"contacts.1.friction.coefficient": 0.9}) == [st.Coulomb(0.3), st.Coulomb(0.9)]
     (found,) = problems(TWO_CONTACTS.replace("friction = 0.3", 'friction = "x"'), tmp_path)
     assert found == "friction.coefficient must be a number, got 'x'"
-    # Without one at the top it must be said which contact is meant.
+    # Without one at the top the contact must be named.
     (found,) = problems(TWO_CONTACTS.replace("friction = 0.3", ""), tmp_path, {"coefficient": 0.5})
     assert "contacts.0.friction.coefficient" in found
     assert "contacts.1.friction.coefficient" in found

@@ -1,4 +1,4 @@
-"""Messages about scenarios that cannot be."""
+"""Messages about invalid scenarios."""
 
 from __future__ import annotations
 

@@ -223,7 +223,7 @@ def test_every_reduced_body_survives_provenance(body, tmp_path):
 
 
 def general() -> tuple[st.System, tuple[object, ...]]:
-    """Return a system with all that a pair of beams has not, and its probes."""
+    """Return a system with all features that a pair of beams lacks, and its probes."""
     section = st.Circle(0.01)
     rod = st.FiniteElementBeam(STEEL, section, 0.3, angle=0.3, elements=3, cutoff=8e3, root_support="free")
     plate = st.ModalBeam(STEEL, section, 0.8, bending_modes=5, axial_modes=2, name="plate")
@@ -298,7 +298,7 @@ def test_matrices_written_out_are_the_same_as_their_file(tmp_path):
     body.save(tmp_path / "pad.npz")
     rest = '[[contacts]]\ntip = {body = "pad", point = "tip"}\ntrack = {kind = "rigid"}\n[simulation]\nduration = 1.0\n'
     (tmp_path / "file.toml").write_text(f'[bodies.pad]\nkind = "reduced"\nfile = "pad.npz"\n{rest}')
-    # Rows in full, as one would write them by hand.
+    # Rows in full, as written by hand.
     rows = {name: getattr(body, name).tolist() for name in ("mass", "stiffness")}
     points = "\n".join(f'"{name}" = {value.tolist()}' for name, value in body.points.items())
     (tmp_path / "rows.toml").write_text(

@@ -1,4 +1,4 @@
-"""Sensitivity: closed forms, scipy's own indices, probabilities with intervals, what fails or never varies."""
+"""Sensitivity: closed forms, scipy's own indices, probabilities with intervals, failed and constant outputs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def ishigami(x, y, z):
 
 @pytest.fixture
 def computed(monkeypatch):
-    """Let a function of the points stand for a sweep; it returns values over the points by name."""
+    """Replace a sweep by a function of the points, which returns values over the points by name."""
 
     def put(function):
         def sweep(scenario, points, measures, **options):
@@ -95,7 +95,7 @@ def test_probabilities_have_wilsons_interval_and_count_independent_draws_only(co
     expected = np.array([middle - half, middle + half]) / (1 + z**2 / n)
     np.testing.assert_allclose(squeal["probability_interval"], expected)
     assert float(found["probability"].sum()) == pytest.approx(1.0)
-    # The only parameter makes all of it.
+    # The only parameter causes all of the variance.
     assert float(found["first_order"].sel(output="is squeal", parameter="a")) == pytest.approx(1.0, abs=0.1)
     assert np.isnan(found["first_order"].sel(output="is judder")).all()
 

@@ -1,4 +1,4 @@
-"""Solid bodies and their meshes: what is refused and how, points, faces, equality, other processes."""
+"""Solid bodies and their meshes: refusals, points, faces, equality, other processes."""
 
 from __future__ import annotations
 
@@ -212,7 +212,7 @@ def test_bodies_are_compared_by_content_and_travel_with_their_modes():
 
 
 def test_modes_are_the_same_in_each_run():
-    """Of the search, which starts from random numbers: to the last bit in another process."""
+    """The search starts from random numbers: equal to the last bit in another process."""
     code = (
         "import stridula as st; mesh = st.SolidMesh.block((0.1, 0.03, 0.02), (6, 3, 2));"
         "modes = st.SolidBody(mesh, st.Material(2.1e11, 7800.0), cutoff=4e4).modes();"
@@ -255,7 +255,7 @@ def test_coincident_places_are_dissected_too():
 
 
 def test_other_libraries_are_taken_where_they_are(monkeypatch):
-    """The seam: the first that is installed makes the factors."""
+    """The first installed library factorises."""
     asked = []
 
     def fake(matrix):

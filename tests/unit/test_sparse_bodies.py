@@ -1,4 +1,4 @@
-"""Reduced bodies of sparse matrices that are too large to be made dense."""
+"""Reduced bodies of sparse matrices that are too large for dense ones."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ def test_chains_have_the_frequencies_of_their_formula(held):
     expected = expected[expected <= 60.0]
     assert expected.size > 15
     found = modes.frequency[~modes.massless]
-    # Rounding of the largest squared frequency, seen at the least.
+    # Rounding relative to the largest squared frequency, at the smallest one.
     rounding = 64.0 * np.finfo(float).eps * 4.0 * STIFF / HEAVY / (4.0 * np.pi**2)
     np.testing.assert_allclose(found**2, expected**2, rtol=1e-12, atol=rounding)
     assert (found == 0.0).sum() == (0 if held else 1)
 
 
 def test_static_displacements_are_those_of_springs_in_a_row():
-    """A pull at the end stretches every spring; what the modes left out yield is in the residual shapes."""
+    """A pull at the end stretches every spring; residual shapes have the flexibility of the modes left out."""
     chained = body(True)
     modes = chained.modes()
     end, middle = chained.trace("end")[0], chained.trace("middle")[0]

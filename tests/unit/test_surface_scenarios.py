@@ -1,4 +1,4 @@
-"""Faces in contact in scenarios: the table, the shipped brake, what is refused and how."""
+"""Faces in contact in scenarios: the table, the shipped brake, refusals."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_a_surface_stands_on_a_plane_beside_a_contact(block):
 
 
 def test_a_force_on_a_face_presses_evenly(block):
-    """The surface carries it with equal pressure at every point, to what a wider bed bends."""
+    """The surface carries it with equal pressure at every point, up to the bending of a wider bed."""
     case = st.load_scenario(block, {"friction": 0.0})
     run = case.simulate()
     force = run.normal_force.isel(time=-1)

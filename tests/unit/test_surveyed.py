@@ -1,4 +1,4 @@
-"""Surveys from what came of their points: modes followed, tones named, tables and maps, the command line."""
+"""Surveys from the outcomes of points: tracked modes, named tones, tables and maps, the command line."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ def modes(*frequencies):
 
 
 def test_modes_keep_their_names_from_point_to_point():
-    """One comes up later, one pauses, and all are named by rising frequency."""
+    """One appears later, one pauses, and all are named by rising frequency."""
     before = [[], [0], [1], [2], [3]]
     names = followed([modes(*one) for one in FREQUENCIES], before)
     assert names == [[], [1], [1, 2], [0, 2], [1, 2]]
-    # What is farther off than a fifth is another mode.
+    # A mode farther away than a fifth is another one.
     assert followed([modes(1000.0), modes(1250.0)], [[], [0]]) == [[0], [1]]
     assert followed([modes(1000.0), modes(1150.0)], [[], [0]]) == [[0], [0]]
-    # Two never become one.
+    # Two modes never merge.
     assert followed([modes(1000.0), modes(990.0, 1010.0)], [[], [0]]) == [[1], [0, 1]]
 
 

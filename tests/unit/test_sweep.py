@@ -1,4 +1,4 @@
-"""Sweeps: points and their order, what is measured, what is kept on disk and how a sweep goes on."""
+"""Sweeps: points and their order, measures, files on disk and resuming."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_a_list_has_the_dimension_point_and_a_coordinate_for_each_key():
     found = st.sweep("squeal", points, "travel", **SHORT)
     assert found["travel"].dims == ("point",)
     assert found["friction"].values.tolist() == [0.3, 0.9]
-    # Of two units both become SI.
+    # Values in two units both become SI.
     assert found["slider.length"].values.tolist() == [0.5, 0.6]
     assert found["slider.length"].attrs["units"] == "m"
     assert set(found.coords) == {"point", "friction", "slider.length"}
@@ -174,7 +174,7 @@ def test_a_measure_brings_those_that_belong_to_it(monkeypatch):
 
 
 def test_failing_points_are_kept_with_their_message_and_the_others_continue():
-    """Not built, overlapping at the start, blown up by its drive; each as alone."""
+    """Not built, overlapping at the start, blown up by its drive; each as in a run alone."""
     points = [
         {"friction": 0.3, "angle": "20 deg", "transverse": 3.0},
         {"friction": 0.3, "angle": "95 deg", "transverse": 3.0},
@@ -445,7 +445,7 @@ def test_bad_points_are_named(make, message):
 
 def test_several_machines_give_the_same_bytes_and_a_lost_one_is_reported():
     with warnings.catch_warnings():
-        # What dask's own start and end warn of is not ours.
+        # Warnings of dask's own start and end are ignored.
         warnings.simplefilter("ignore")
         distributed = pytest.importorskip("distributed")
         options = {"dashboard_address": None, "processes": True, "silence_logs": 50}

@@ -184,7 +184,7 @@ def test_messages_name_the_type_of_a_bad_argument(refused, message):
 
 
 def test_cached_results_of_a_system_are_not_pickled():
-    """In another process texts have another hash, and functions cannot be read."""
+    """In another process texts have other hashes, and functions cannot be unpickled."""
     system = st.load_scenario("squeal").system
     arrays = assemble(system)
     assert assemble(system) is arrays

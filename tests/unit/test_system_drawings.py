@@ -1,4 +1,4 @@
-"""Drawings of systems before their run: where things are, which way they go, and what is said of them."""
+"""Drawings of systems before their run: places, directions and labels."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def on_belt(track=None, drives=(), **options):
 
 
 def said(figure) -> list[str]:
-    """Return all words of a figure."""
+    """Return all texts of a figure."""
     words = [text.get_text() for axes in figure.axes for text in axes.texts]
     words += [axes.get_title("left") for axes in figure.axes] + [text.get_text() for text in figure.texts]
     return words + [text.get_text() for legend in figure.legends for text in legend.get_texts()]
@@ -188,7 +188,7 @@ def test_bodies_in_space_are_drawn_with_arrows_and_names(name, monkeypatch):
         assert any(one.startswith(system.body_name(body)) for one in words)
     assert {"contact", "normal of a contact", "force"} <= set(words)
     assert any(one.startswith("x, y and z: ") for one in words)
-    # All that is drawn is in the room for it.
+    # All drawn parts lie in the box.
     (axes,) = figure.axes
     lines = np.concatenate([np.column_stack(line.get_data_3d()) for line in axes.get_lines()])
     x, y, _ = plot.scenes.proj3d.proj_transform(*lines.T, axes.get_proj())

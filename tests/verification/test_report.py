@@ -128,7 +128,7 @@ class Interrupting(st.Constant):
 
 
 def test_ctrl_c_in_the_last_chunk_of_a_run_is_not_lost(stridula):
-    """A run keeps it until its chunk is done, and ends well if that was the last: the rest must stop all the same."""
+    """A run delays it until its chunk is done, and succeeds if that was the last: the rest must still stop."""
 
     def short_run() -> Outcome:
         body = st.PointMass(1.0)
