@@ -1,6 +1,6 @@
 """Many one-second runs of the squeal case on a GPU: runs per second, against the processor and the card's peak.
 
-    python benchmarks/gpu.py              measure; without a GPU print only a line that says so
+    python benchmarks/gpu.py              measure; without a GPU, print one line to that effect
     python benchmarks/gpu.py --dry-run    compile for compute capability 9.0 without a GPU: registers, local memory
     python benchmarks/gpu.py --map 1000   also a map of 1000 x 1000 runs, friction by angle
     python benchmarks/gpu.py --short      a few short runs against the processor, also on numba's simulator

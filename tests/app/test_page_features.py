@@ -95,7 +95,7 @@ def test_instruments_are_one_group_of_pictures(browsing):
     page.locator("#instruments").click()
     cards = page.locator("#cards .card")
     assert cards.count() == len(CASES)
-    # Every case of the page has a picture of its own.
+    # Every case of the page has its own picture.
     pictures = {card.locator("svg").inner_html() for card in cards.all()}
     assert len(pictures) == len(CASES)
     assert page.locator("#cards input:checked").input_value() == "squeal"

@@ -1,4 +1,4 @@
-"""The server: what it gives to whom, and how it refuses."""
+"""The server: files, allowed clients and refusals."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_third_party_files_are_served_unchanged_with_their_licence(server, entry
     assert (answer.status, content) == (200, entry.read_bytes())
     assert answer.getheader("content-type").partition(";")[0] == kinds[entry.name.rpartition(".")[2]]
     assert b"MIT" in content
-    # It speaks with nobody: of the addresses in it none is asked for.
+    # The page contacts nobody: no address in it is requested.
     assert not re.search(rb"import\s*\(|from\s*[\"']https?:", content)
 
 
@@ -101,7 +101,7 @@ def test_sockets_for_another_host_name_are_refused(server, host):
 def test_this_machine_has_three_names(server, host):
     answer, _ = server.get("/", Host=f"{host}:{server.port}")
     assert answer.status == 200
-    # A policy cannot hold an address of IPv6: browsers would complain of it.
+    # A policy cannot hold an IPv6 address: browsers would log an error.
     assert "[" not in answer.getheader("content-security-policy")
     assert "connect-src 'self'" in answer.getheader("content-security-policy")
 

@@ -86,7 +86,7 @@ def of_one(law, columns, state, step, small):
     # Contacts that stick or stop are held by the static coefficient, except those that land.
     was = np.concatenate([[True], closed[:-1]])
     held = np.array([held_up_to(law, before) for before in was])
-    # Viscous friction above the static one may bring a contact to rest: the ratio at the velocity seen holds, too.
+    # Viscous friction above the static one may bring a contact to rest: the ratio at its velocity is also allowed.
     high = np.array([curve(law, abs(v) + unsure) for v in centred])
     allowed = np.maximum(held, np.concatenate([[np.inf, np.inf], high]))
     if np.any(np.abs(tangential[stuck]) > allowed[stuck] * normal[stuck] * (1 + 1e-12) + TOLERANCE * peak):

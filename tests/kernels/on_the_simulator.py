@@ -64,7 +64,7 @@ def on_a_table() -> list[st.System]:
 
 
 def off_the_track() -> list[st.System]:
-    """The second run leaves its track, the others go on."""
+    """The second run leaves its track, the others continue."""
     return [
         pair(dragged(0.5, 5.0), 0.6, gap=1e-9, at=at, rod=slider(**ROD), bar=track(**BAR))
         for at in (0.2, 0.8 - 2e-5, 0.5)

@@ -198,7 +198,7 @@ def test_a_slip_that_ends_within_the_step(gap, slip, turn, flat, mu, last_slip):
 def test_a_block_that_turns_round_moves_as_its_two_parabolas():
     """Mass m under a push F, friction mu N, h = 1: v = d before, then v' = (F -+ mu N)/m up to and after its stop.
 
-    Over a step about the stop the velocity goes from d to (1 - d / (F + mu N)) times -(F - mu N), whatever the share;
+    Over a step about the stop the velocity goes from d to (1 - d / (F + mu N)) times -(F - mu N), for any share;
     without the treatment it is 0 or d - (F - mu N).
     """
     mass, push, mu, normal = 2.0, 3.0, 0.5, 1.6

@@ -1,6 +1,6 @@
 """The compiled march against its general twin, step by step, for everything that a system may hold.
 
-The twin follows the two-position form with one matrix for all modes; see `test_march` for what its cancellation costs:
+The twin follows the two-position form with one matrix for all modes; see `test_march` for its loss by cancellation:
 1e-8 of the peak for positions and energies, 1e-6 for forces. A height is compared on the scale of all displacements.
 """
 

@@ -83,7 +83,7 @@ def thin(body_of_thickness, order: int, scale, count: int = 1) -> np.ndarray:
 
 @pytest.mark.parametrize(("n", "known"), [(0, 6.660), (1, 6.552), (2, 7.956), (3, 13.27)])
 def test_a_thin_annulus_is_that_of_leissa(n, known):
-    """Leissa 1969, Vibration of Plates, table 2.24, whose four digits Kirchhoff's equation gives, too.
+    """Leissa 1969, Vibration of Plates, table 2.24, whose four digits also follow from Kirchhoff's equation.
 
     The cube of the thickness, at k h = 0.1, may leave some 1e-4.
     """
@@ -155,7 +155,7 @@ def test_a_ring_without_lateral_contraction_bends_as_a_curved_beam(n):
 def test_a_ring_of_steel_lies_between_a_beam_and_a_plate():
     """Ansys VM302, after Genta 2005, has 209.929 Hz for n = 3, in shells of finite size, and 75.299 Hz for n = 2.
 
-    The latter is not that of a free ring: its frequencies are in the ratio 2.828, whatever its bending stiffness is.
+    The latter is not that of a free ring: its frequencies are in the ratio 2.828 for any bending stiffness.
     """
     steel = st.Material(2.1e11, 7850.0, 0.3)
     body = ring(steel)
@@ -381,7 +381,7 @@ def test_pairs_have_one_frequency_and_stand_together():
 
 
 def test_shapes_are_orthogonal_and_of_unit_mass():
-    """By an integral over the whole body, of Gauss points of its own."""
+    """By an integral over the whole body, with independent Gauss points."""
     x, weight = np.polynomial.legendre.leggauss(5)
     body = replace(HATTED, profile=replace(HATTED.profile, size=0.01), cutoff=6000.0, orders=3)
     angles = 2.0 * np.pi * np.arange(9) / 9.0

@@ -228,7 +228,7 @@ def test_bristles_start_where_they_are_told():
 
 
 def test_kernels_of_the_contact_do_not_inherit_fast_arithmetic():
-    """numba hands fast arithmetic of a caller on to functions that say nothing of it."""
+    """numba passes the fast arithmetic of a caller on to functions that do not set it."""
     functions = [
         value
         for module in (bookkeeping, contact, contacts, direct, faces, friction, solves)

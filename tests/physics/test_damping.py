@@ -60,7 +60,7 @@ def test_modes_have_the_ratio_of_their_frequency(body, form):
 
 
 def decayed(w, rate, t):
-    """Displacement and velocity after t of a mode let go at 1 with no velocity, whatever its damping."""
+    """Displacement and velocity after t of a mode released at 1 with no velocity, for any damping."""
     roots = np.roots([1.0, rate, w**2]).astype(complex)
     if abs(roots[0] - roots[1]) < 1e-6 * w:
         return np.exp(-w * t) * (1 + w * t), -np.exp(-w * t) * w**2 * t
@@ -125,7 +125,7 @@ def test_mass_proportional_damping_brakes_free_flight():
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("scheme", [st.ExactModal(), st.CentralDifference()], ids=lambda s: s.name)
 def test_energy_lost_a_cycle_of_a_forced_mode(form, scheme):
-    """In the steady state damping takes ``pi d w X²`` a cycle from each mode of amplitude X, and the ledger says so."""
+    """In the steady state damping takes ``pi d w X²`` a cycle from each mode of amplitude X, as does the ledger."""
     damping, ratio = FORMS[form]
     track = st.ModalBeam(STEEL, STRIP, 0.8, bending_modes=1, axial_modes=0, damping=damping)
     own = track.modes().angular_frequency[0]

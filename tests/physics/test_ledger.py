@@ -27,7 +27,7 @@ def test_ledger_closes_over_two_seconds(name, scheme):
     run = st.simulate(CASES[name](), 2.0, scheme=scheme, step=STEP)
     assert run.attrs["ended"] == "finished"
     assert residual(run) < 1e-10
-    # The residual is that of its own definition, and the contact's work splits into its three parts.
+    # The residual follows its definition, and the contact's work is the sum of its three parts.
     balance = (
         run.kinetic_and_elastic + run.damping_loss - run.drive_work - run.contact_work - run.attrs["initial_energy"]
     )

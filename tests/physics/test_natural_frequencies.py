@@ -113,7 +113,7 @@ def test_order_of_linear_bar_is_two(supports, mass):
 
 
 def test_order_of_lumped_bending_is_two():
-    """A lumped mass is right to the second order only, whatever the shape functions."""
+    """A lumped mass is accurate to second order only, for any shape functions."""
     exact = bending(2 * np.pi, 0.3)
     words = {"supports": "simply supported", "mass": "lumped"}
     order = observed_order(lambda n: families(beam_of(elements=n, **words))[0][1], exact, (16, 32))

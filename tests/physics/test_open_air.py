@@ -53,7 +53,7 @@ def test_a_surface_is_closed_and_moves_as_the_body(body, area, volume):
     assert surface.areas.sum() == pytest.approx(area, rel=1e-9)
     assert found == pytest.approx(volume, rel=1e-3)
     assert np.abs(flow).max() < 1e-9 * area
-    # A rigid translation along z, by what it gives the modes, moves the surface by the z of its normals.
+    # A rigid translation along z, in modal coordinates, moves the surface by the z of its normals.
     free = body if body.kind == "solid" else replace(body, held=())
     modes, surface = free.modes(), free.surface().as_points
     moved = surface.shapes @ modes.translation[2][~modes.massless]

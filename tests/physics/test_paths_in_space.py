@@ -46,7 +46,7 @@ def joined(track, law=None) -> st.System:
 
 
 def two(track, law=None) -> st.System:
-    """Two masses that slide on a track, each under a weight of its own."""
+    """Two masses that slide on a track, each under its own weight."""
     masses = [st.PointMass(0.2, name="first"), st.PointMass(0.3, name="second")]
     contacts = [
         st.PointContact(mass.centre, track, at=place, friction=law or st.Coulomb(0.3), gap=1e-5, name=mass.name)

@@ -184,7 +184,7 @@ def patch(kind):
 
 
 def of_27_nodes(mesh):
-    """Return a mesh of straight hexahedra of 20 nodes with nodes in the middle of faces and elements, too."""
+    """Return a mesh of straight hexahedra of 20 nodes and further nodes in the middle of faces and elements."""
     kind = mesh.element_kind
     faces = mesh.elements[:, np.array(kind.faces)]
     keys, number = np.unique(np.sort(faces.reshape(-1, 4), axis=1), axis=0, return_inverse=True)

@@ -1,4 +1,4 @@
-"""Damping in scenarios: every form from TOML, by key, on the card and in the schema; what is refused, in one line."""
+"""Damping in scenarios: every form from TOML, by key, on the card and in the schema; refusals in one line."""
 
 from __future__ import annotations
 

@@ -118,7 +118,7 @@ def test_contact_tip_is_a_point_of_another_body_than_the_track():
     ],
 )
 def test_a_force_accelerates_the_slider_along_its_direction(component, direction, angle):
-    """Free flight, a gap of 1 m: the momentum after T is F T along the world direction, whatever the point."""
+    """Free flight, a gap of 1 m: the momentum after T is F T along the world direction, for any point."""
     rod = slider(angle)
     for position in (0.0, 0.17, 0.5):
         force = st.Force(rod.at(position), **{component: 0.4})

@@ -502,7 +502,7 @@ def test_a_text_may_not_name_meshes():
         tables_of_text(text, "text")
 
 
-# What is wrong.
+# Errors.
 
 BAD_DISCS = {
     "a rectangle inside out": ({"profile.outer": "2 cm"}, "bodies.disc.profile.outer must be above inner, 0.03 m, got"),

@@ -180,7 +180,7 @@ def test_bursts_of_noise_are_not_squeal():
 
 @pytest.mark.parametrize(("share", "expected"), [(0.4, "judder"), (0.6, "squeal")])
 def test_a_tone_must_carry_half_of_the_power(share, expected):
-    """Tone in noise, of which half is left at the reduced rate of 10 kHz, less what lies below 300 Hz."""
+    """Tone in noise, half of which remains at the reduced rate of 10 kHz, without the part below 300 Hz."""
     heard = 0.5 * (1.0 - 300.0 / 5000.0)
     sound = tone(1000.0, np.sqrt(2.0 * share)) + np.sqrt((1.0 - share) / heard) * NOISE
     name, confidence = named(record(*bursts(0.5 * sound)))
@@ -340,7 +340,7 @@ def test_a_hinge_that_creaks_and_rings_while_it_sticks(leaf, rate):
 @pytest.mark.parametrize("rate", RATES)
 @pytest.mark.parametrize(("frequency", "modes"), [(150.0, 1), (196.0, 8)])
 def test_a_bowed_mode_and_a_bowed_string(frequency, modes, rate):
-    """A string of some modes, bowed at 0.13 of its length; the bow has a little mass of its own."""
+    """A string of some modes, bowed at 0.13 of its length; the bow has a small mass."""
     number = np.arange(1, modes + 1)
     angular = np.append(2.0 * np.pi * frequency * number, 0.0)
     rows = np.zeros((2, modes + 1))

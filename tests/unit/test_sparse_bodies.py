@@ -16,7 +16,7 @@ STIFF, HEAVY = 1e6, 1e-3
 
 
 def chain(held):
-    """Return mass and stiffness of a chain, its first mass held by a spring of its own or free."""
+    """Return mass and stiffness of a chain, its first mass held by another spring or free."""
     diagonal = np.full(SIZE, 2.0)
     diagonal[-1] = 1.0
     diagonal[0] = 2.0 if held else 1.0

@@ -330,7 +330,7 @@ def test_a_full_disk_keeps_the_parts(monkeypatch, tmp_path):
 
 
 def test_two_processes_may_compute_the_same_sweep(tmp_path):
-    """Another process completes the sweep and removes the parts while this one is under way."""
+    """Another process completes the sweep and removes the parts while this one runs."""
 
     def other_completes(progress):
         if progress.done < 144 and not (tmp_path / "map.nc").exists():
@@ -468,7 +468,7 @@ def _die(run):
 
 
 def test_ctrl_c_stops_threads_at_once():
-    """The second part would take a minute and more; what the first one compiles is compiled before."""
+    """The second part would take a minute or more; compilation of the first one is done before."""
 
     def interrupt(progress):
         raise KeyboardInterrupt

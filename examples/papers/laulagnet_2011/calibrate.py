@@ -158,7 +158,7 @@ class CandidateRuns(Runs):
         return CandidateRuns(self.values | {"section.width": width})
 
     def under_pressure(self, record: Any) -> CandidateRuns:
-        """Return these runs with a record of 3.4, whatever its load."""
+        """Return these runs with a record of 3.4 at any load."""
         other = copy(self)
         other._records = {**self._records, "weak-pressure": record, "strong-pressure": record}
         return other

@@ -70,7 +70,7 @@ def plane_sound(
     Raises
     ------
     ValueError
-        If nothing can be heard, a listener is where it cannot be heard, or the record is not usable.
+        If no body can be heard, a listener is on a body or behind the wall, or the record is not usable.
     """
     run = record("run", run)
     tracks, beams = _tracks(system), _beams(system)

@@ -24,7 +24,7 @@ class Way(Protocol):
         """Its surface and the modes that bend it."""
 
     def check(self, listeners: Array) -> None:
-        """Raise ValueError if a listener is where it cannot be heard."""
+        """Raise ValueError if a listener is on the track or behind its baffle."""
 
     def responses(
         self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float

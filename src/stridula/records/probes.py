@@ -43,7 +43,7 @@ class _Motion:
 
     @property
     def place(self) -> str:
-        """Place on its body and direction, in words."""
+        """Place on its body and direction, as text."""
         is_word = isinstance(self.direction, str)
         way = self.direction if is_word else f"({', '.join(f'{one:.6g}' for one in self.direction)})"
         return f"{_words(self.point)} {way}"
@@ -129,7 +129,7 @@ class Reaction:
 
     @property
     def place(self) -> str:
-        """Place on its body and direction, in words."""
+        """Place on its body and direction, as text."""
         return f"root {self.component}"
 
     @property
@@ -167,7 +167,7 @@ class SupportForce:
 
     @property
     def place(self) -> str:
-        """Place on its body, in words."""
+        """Place on its body, as text."""
         return f"{self.end} end"
 
     @property
@@ -190,7 +190,7 @@ class _OfMode:
 
     @property
     def place(self) -> str:
-        """Mode of its body, in words."""
+        """Mode of its body, as text."""
         return f"mode {self.mode}"
 
     @property
