@@ -414,7 +414,7 @@ def test_wallace_close_by_falls_short(monkeypatch):
         ({"track": st.ModalBeam(STEEL, st.Section(1e-4, 1e-9), 0.8), "baffled": False}, "a Rectangle or a Circle"),
         ({"track": PLATE, "baffled": False}, "must be a ModalBeam to radiate without a baffle, got a ModalPlate$"),
         ({"track": st.RigidTrack()}, "must be a ModalBeam or a ModalPlate, got a RigidTrack$"),
-        ({"track": replace(BEAM, length=0.08)}, "the one the run presses on"),
+        ({"track": replace(BEAM, length=0.08)}, "must include all contact positions"),
         ({"run": record(1)}, "at least 2 samples"),
         ({"run": record(100, ended="energy created")}, "energy created"),
         ({"run": record(100).drop_vars("normal_force")}, "run must be a record with normal_force, got one"),
