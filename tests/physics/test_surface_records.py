@@ -12,11 +12,11 @@ import pytest
 import stridula as st
 from stridula import analysis, plot
 from stridula.acoustics.redriven import redriven
-from stridula.contact.resultants import RESULTANTS
 from stridula.integration import together
 from stridula.plot.surfaces import QUANTITIES
 from stridula.records.by_point import by_point, counted
 from stridula.records.by_surface import by_surface
+from stridula.records.resultants import RESULTANTS
 
 STEEL = st.Material(2.1e11, 7800.0, 0.3)
 RATE, MAPS = 2e4, 2e3

@@ -16,8 +16,8 @@ import scipy.sparse
 
 import stridula as st
 from stridula import analysis, plot
-from stridula.bodies.ordinary import MOST_MODES
 from stridula.checks import brief, by_key, count, finite, in_one_line, suggestion
+from stridula.ordinary import MOST_MODES
 
 STEEL, STRIP = st.Material(2.1e11, 7800.0), st.Rectangle(0.02, 0.008)
 

@@ -11,11 +11,11 @@ import numpy as np
 
 from ..checks import ArgumentError, at_least, instance, within
 from ..declared import Count, CountFrom0, Frequency, Length, Name, Own, Tension, check_declared
+from ..ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .body_surfaces import HIGHEST, PointSurface, largest_part
 from .damping import DampingLaw, check_damping_count, checked_damping, damping_rates
 from .drawn_lines import places_between
 from .modes import Array, BodyPoint, Modes, hashed_once
-from .ordinary import check_first_modes, check_mode_count, of_ordinary_size
 from .paths import Path, along_one_angle
 from .planes import InPlane, checked_plane
 from .prism_surfaces import beam_surface

@@ -50,7 +50,7 @@ def run_scenario(
         with bar(scenario.title or name) as show:
             record = scenario.simulate(watchers=[told_of_time(show)])
     except (Interrupted, Diverged) as stop:
-        interrupted = isinstance(stop, Interrupted)
+        interrupted = isinstance(stop, KeyboardInterrupt)
         kept = _finish(stop.record, scenario, name, out, None if interrupted else plot)
         words = [stop.reason]
         words.append("nothing was kept (no --out)" if out is None else f"the record so far is in {out}")

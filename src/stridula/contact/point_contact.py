@@ -219,6 +219,13 @@ class PointContact:
         """The track if it is rigid."""
         return self.track if isinstance(self.track, RigidTrack) else None
 
+    def reaches(self, place: float) -> bool:
+        """Return whether a tip at an abscissa [m] is on its track; rigid tracks and points have no ends."""
+        if self.path_body is None:
+            return True
+        low, high = self.path_body.ends
+        return bool(low < place < high)
+
     @property
     def placed_end(self) -> BodyPoint | None:
         """The end with a known world place, the tip first; None if there is none."""

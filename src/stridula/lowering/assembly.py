@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array
-from ..bodies.ordinary import of_ordinary_size
+from ..ordinary import of_ordinary_size
 from ..records.probes import Probe
 from ..system import System
 from .contact_rows import ContactRows, contact_rows

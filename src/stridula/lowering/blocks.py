@@ -204,8 +204,8 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
             constants[i, [at.ALONG, at.ALONG_PHASE]] = one.rate, -one.rate * one.contact.at
         codes[i], laws[i] = _law(one.contact.friction)
         constants[i, at.AT_REST] = laws[i, 0]
-        if one.contact.yields is not None and not one.is_second:
-            constants[i, at.YIELD_STIFFNESS :] = one.contact.yields.numbers
+        if one.yields is not None:
+            constants[i, at.YIELD_STIFFNESS :] = one.yields.numbers
         if one.is_second:
             codes[i] = at.SECOND_TANGENT
         elif not one.fixed[0].any() and along is None:

@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import Array
 from ..bodies.turning import Turning
 from ..checks import ArgumentError
+from ..histories import Constant
 from .coordinates import Coordinates
 
 
@@ -33,6 +34,11 @@ class TurningModes:
     pairs: Array
     span: tuple[int, int] = (0, 0)
     has_circle: bool = False
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether the body turns at a constant velocity."""
+        return type(self.turning.history) is Constant
 
     @property
     def orders(self) -> Array:

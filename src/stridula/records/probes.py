@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from ..arrays import Array
-from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam
+from ..bodies import BodyPoint, FiniteElementBeam, ModalBeam, is_track
 from ..bodies.modes import Body
 from ..checks import ArgumentError, choice, count, instance
 from ..declared import Way, check_declared
+from ..system import System
 
 DIRECTION = Way(("x", "y", "z", "axial", "transverse"))
 
@@ -275,3 +276,10 @@ def _words(point: BodyPoint) -> str:
     if isinstance(point.position, tuple):
         return f"({', '.join(f'{one:.6g}' for one in point.position)}) m"
     return f"{point.position:.6g} m"
+
+
+def usual_probes(system: System) -> tuple[Probe, ...]:
+    """Return the default probes of a run: the acceleration in the middle of its track, along its normal."""
+    if not is_track(system.track):
+        return ()
+    return (Acceleration(system.track.centre, "transverse" if system.track.is_spatial else "y"),)
