@@ -39,10 +39,10 @@ def over_before() -> Iterator[Ratio | str]:
         return
     with sources_of_before() as sources:
         if sources is None:
-            yield f"the map of older sources needs the commit {BEFORE}, which is not in this copy of the sources"
+            yield f"the earlier map needs the commit {BEFORE}, which is not in this copy of the sources"
             return
         now, before = seconds(sweep, lambda: sweep(sources=sources))
-    yield Ratio("whole command with its figure, over that of before", over(now, before), most=SHARE)
+    yield Ratio("whole command with its figure, over that of an earlier commit", over(now, before), most=SHARE)
 
 
 @contextmanager

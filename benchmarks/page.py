@@ -132,21 +132,21 @@ def table(seen: dict[str, list[float]], words: str) -> list[str]:
         "",
         "| quantity | bar | median | 95 % | worst |",
         "|---|---|---:|---:|---:|",
-        f"| slider to ear [ms], {latency.size} turns, {seen['output'][0]:.0f} of them limiter and output | < 150 | "
+        f"| slider to ear [ms], {latency.size} changes, {seen['output'][0]:.0f} ms of it limiter and output | < 150 | "
         f"{np.median(latency):.0f} | {np.percentile(latency, 95):.0f} | {latency.max():.0f} |",
-        f"| pictures a second | >= 30 | {np.median(fps):.0f} | {np.percentile(fps, 5):.0f} | {fps.min():.0f} |",
-        f"| drop-outs in all | 0 | | | {seen['dropouts'][-1]:.0f} |",
-        f"| share of one core that the server takes | | {seen['share'][0]:.2f} | | |",
+        f"| pictures per second | >= 30 | {np.median(fps):.0f} | {np.percentile(fps, 5):.0f} | {fps.min():.0f} |",
+        f"| drop-outs in total | 0 | | | {seen['dropouts'][-1]:.0f} |",
+        f"| processor time of the server, over that of one core | | {seen['share'][0]:.2f} | | |",
         f"| memory of the server [MB], at the start and at the end | | {first:.0f} | | {last:.0f} |",
     ]
 
 
 def circumstances(minutes: float, with_map: bool, is_busy: bool) -> str:
     """Return a description of the measurement."""
-    words = f"{minutes:g} minutes, {'with maps computed beside it' if with_map else 'without maps'}"
+    words = f"{minutes:g} minutes, {'with maps computed meanwhile' if with_map else 'without maps'}"
     words += ", a busy process on the core of the server" * is_busy
     cores = len(os.sched_getaffinity(0))
-    return words + (f", all on {cores} core{'s' * (cores > 1)}" if cores < (os.cpu_count() or cores) else "")
+    return words + (f", everything on {cores} core{'s' * (cores > 1)}" if cores < (os.cpu_count() or cores) else "")
 
 
 def main() -> None:
@@ -155,7 +155,7 @@ def main() -> None:
     parser.add_argument("--minutes", type=float, default=sized(2.0, 0.1))
     parser.add_argument("--map", nargs="+", choices=("on", "off"), default=["on"], help="both are measured in turns")
     parser.add_argument("--busy", action="store_true", help="with a busy process on the core of the server")
-    parser.add_argument("--cores", type=int, help="cores for all of it, browser included; every one if left out")
+    parser.add_argument("--cores", type=int, help="cores for server and browser together; all if left out")
     parser.add_argument("--write", type=Path)
     asked = parser.parse_args()
     if asked.cores:

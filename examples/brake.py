@@ -2,7 +2,7 @@
 Disc brake
 ==========
 
-Two lined pads press on a turning disc with a hat: growing modes, their limit cycle, and the pressure of the pads.
+Two lined pads press on a turning disc with a hat: the growing modes, their limit cycle, and the pressure of the pads.
 :doc:`../brake` explains it.
 
 The disc is made of cast iron and held at the flange of its hat. Each pad is a backing plate of steel with a lining. All

@@ -2,12 +2,12 @@
 Pad on a disc, node by node
 ===========================
 
-Growing modes of a brake pad that slides on a disc, and the first hundredth of a second of their growth.
+The modes of a brake pad on a disc that grow in sliding, and the first hundredth of a second of their growth.
 
-A disc of cast iron, clamped inside, turns under a pad of friction material, which is held by springs and pressed by
+A disc of cast iron, clamped inside, turns under a pad of friction material, which is held by springs and pressed with
 600 N. Both are elastic bodies in space; the pad touches with fifteen of its nodes, each of which slides, sticks or
-lifts off separately. The disc is modelled in a fixed frame: its surface moves under the pad, and its vibration does not
-turn with it.
+lifts off by itself. The disc has a frame at rest: its surface moves under the pad, and its vibration does not turn with
+it.
 """
 
 import matplotlib.pyplot as plt

@@ -2,13 +2,12 @@
 Modes beyond a cutoff
 =====================
 
-The static flexibility of modes beyond a cutoff: a block on five feet, and a slender beam that judders.
-:doc:`../cutoffs` explains it.
+Effect of the modes beyond a cutoff: a block on five feet, and a slender beam that judders. :doc:`../cutoffs` explains
+it.
 
-A block presses on a moving floor with the nodes of its lower face. Modes up to a cutoff are kept; the others are
+A block presses on a moving floor with the nodes of its lower face. Modes up to a cutoff are kept; those left out are
 dropped, or yield statically (`residual_flexibility`). Equilibrium and squeal with all modes show which is right. The
-second case is the slider of the paper's judder, a beam so slender that the deflection of its tip travels away as waves,
-so that a static response is wrong.
+second system is the slider of the paper's judder, a beam so slender that a displacement of its tip runs away as waves.
 """
 
 from dataclasses import replace

@@ -5,9 +5,9 @@ Pin on disc
 A pin rubs on a disc and squeals: one unstable mode, its growth, and its limit cycle.
 :doc:`../pin-on-disc` explains it.
 
-The rig of Allgaier, Gaul, Keiper and Willner (1999), as in the Ansys verification case VM275: a disc of aluminium,
-25 mm thick, held at its shaft, and a pin of 10 mm x 10 mm x 149 mm that leans by 4 degrees, held at its far end, with
-five nodes of one edge on the disc. The rig and Ansys have one unstable mode, at 2215 Hz.
+The rig of Allgaier, Gaul, Keiper and Willner (1999), as in verification case VM275 of Ansys: a disc of aluminium, 25 mm
+thick, held at its shaft, and a pin of 10 mm x 10 mm x 149 mm that leans by 4 degrees, held at its far end, with five
+nodes of one edge on the disc. The rig and Ansys have one unstable mode, at 2215 Hz.
 """
 
 import matplotlib.pyplot as plt

@@ -2,11 +2,11 @@
 Railway wheel
 =============
 
-A railway wheel that squeals in a curve: its growing modes, standing and rolling, and the limit cycle.
-:doc:`../wheel` explains it.
+A railway wheel that squeals in a curve: the growing modes, standing and rolling, and the limit cycle. :doc:`../wheel`
+explains it.
 
-The shipped scenario ``wheel``. The rim creeps sideways over a point of the rail; there is no slip along the rail, which
-moves below the hub as the wheel turns.
+This is the shipped scenario ``wheel``. The rim creeps sideways over a rail point; it does not slip along the rail,
+because the rail moves below the hub as the wheel turns.
 """
 
 import matplotlib.pyplot as plt

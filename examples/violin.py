@@ -5,7 +5,7 @@ Violin
 The G string of a violin under a bow: Helmholtz motion, and Schelleng's diagram of the bow forces that sustain it.
 :doc:`../violin` explains it.
 
-The shipped scenario ``violin`` has a bow 8 mm wide; the diagram is for a narrow one, as in the theory.
+The shipped scenario ``violin`` has a bow 8 mm wide; the diagram is that of a narrow one, to which the theory applies.
 """
 
 import matplotlib.pyplot as plt

@@ -2,11 +2,11 @@
 Wine glass
 ==========
 
-A wet finger on the rim of a wine glass: the growing mode, its limit cycle, and the beats that you hear.
-:doc:`../glass` explains it.
+A wet finger on the rim of a wine glass: the growing mode, its limit cycle, and the beats that you hear. :doc:`../glass`
+explains it.
 
-The shipped scenario ``glass``. The glass turns below a fixed finger, as in Franklin's armonica; relative to the glass,
-the finger moves round the rim.
+This is the shipped scenario ``glass``. The glass turns below a finger at rest, as in Franklin's armonica; seen from the
+glass, the finger goes round.
 """
 
 import matplotlib.pyplot as plt

@@ -193,7 +193,7 @@ def test_files_without_sound_or_scale_are_refused(tmp_path):
     with pytest.raises(ValueError, match=r"^path must be a sound file, got '.*a\.wav': Format not recognised\.$"):
         st.read_wav(path)
     soundfile.write(path, np.array([0.0, 0.5]), 8000, subtype="PCM_16")
-    with pytest.raises(ValueError, match="full_scale must be given for a file that does not say its own"):
+    with pytest.raises(ValueError, match="full_scale must be given for a file without a stated full scale"):
         st.read_wav(path)
     assert list(st.read_wav(path, full_scale=4.0).values[:, 0]) == [0.0, 2.0]
 

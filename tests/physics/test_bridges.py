@@ -103,7 +103,7 @@ def test_records_without_a_support_force_are_refused():
     run = record(np.ones(100)).drop_vars("support_force")
     with pytest.raises(ValueError, match=r"^run must have a SupportForce probe for a Bridge"):
         st.radiate(run, st.Bridge(PLATE.at(0.1)))
-    with pytest.raises(ValueError, match=r"^bodies must be left out but for a System"):
+    with pytest.raises(ValueError, match=r"^bodies must be left out unless a System is given"):
         st.radiate(run, st.Bridge(PLATE.at(0.1)), bodies=[PLATE])
     with pytest.raises(ValueError, match=r"^point must be a BodyPoint"):
         st.Bridge(PLATE)

@@ -349,7 +349,7 @@ def jammed() -> st.System:
         (jammed, {"status": "sliding"}, "contact 1 is jammed"),
         (mass_on_a_belt, {"velocity": 0.1}, "velocity must be left out: drives and tracks prescribe the slip"),
         (mass_on_a_belt, {"mode": 5, "amplitude": 1e-6}, "mode must be below 1, the number of modes, got 5"),
-        (mass_on_a_belt, {"status": ["sliding", "sliding"]}, "status must hold one for each contact, 1 in all"),
+        (mass_on_a_belt, {"status": ["sliding", "sliding"]}, "status must have one value for each contact, 1 in all"),
         (
             lambda: dragged(st.RigidTrack(), velocity=0.0),
             {"velocity": 0.1},

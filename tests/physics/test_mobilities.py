@@ -119,7 +119,7 @@ def test_springs_of_a_system_hold_the_points():
     found = st.mobility(first.centre, second.centre, frequency=FREQUENCY, system=system)
     np.testing.assert_allclose(found.values, known, rtol=1e-9)
     assert found.attrs["response"] == "first centre y"
-    with pytest.raises(ValueError, match="excitation must be of the body of the response"):
+    with pytest.raises(ValueError, match="excitation must be on the body of the response"):
         st.mobility(first.centre, second.centre, frequency=FREQUENCY)
 
 

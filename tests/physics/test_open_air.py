@@ -171,7 +171,7 @@ def test_a_record_is_heard_without_the_mesh(stridula, tmp_path):
     assert not bare.has_surface
     assert bare != body
     with pytest.raises(
-        ValueError, match="system must have a body with a surface to be heard, got none of slider, track"
+        ValueError, match="system must have a body with a surface, which radiates sound, got none of slider, track"
     ):
         st.radiate(run, st.System(replace(system.contacts[0], track=bare.at(bare.point_names[0]))), place)
 

@@ -234,5 +234,7 @@ def test_a_wall_needs_a_track_and_sound_needs_a_surface():
     with pytest.raises(ValueError, match="baffled must be False, or left out, without a track"):
         st.radiate(record(0.0, pulse()), on_the_ground(ROD), PLACE, baffled=True)
     mass = st.PointMass(0.1)
-    with pytest.raises(ValueError, match="system must have a body with a surface to be heard, got none of slider"):
+    with pytest.raises(
+        ValueError, match="system must have a body with a surface, which radiates sound, got none of slider"
+    ):
         st.radiate(record(0.0, pulse()), st.System(st.PointContact(mass.centre, st.RigidTrack())), PLACE)

@@ -184,7 +184,7 @@ BAD = {
     "track": (lambda: st.SurfaceContact(flipped()[0], "top", 3.0), "track must be"),
     "beside": (
         lambda: st.SurfaceContact(flipped()[0], "top", flipped()[1], "left"),
-        "track_face must lie before the whole face",
+        "track_face must lie opposite the whole face",
     ),
     "overlap": (
         lambda: st.SurfaceContact(flipped()[0], "top", flipped()[1], "bottom", gap=-0.02),
@@ -194,7 +194,7 @@ BAD = {
         lambda: st.SurfaceContact(
             st.SolidBody(moved(flipped()[0].mesh, 0.13, 0.006, 0.0), LINING), "bottom", brake(0.1)[0].track
         ),
-        "track must lie before the whole face",
+        "track must lie opposite the whole face",
     ),
     "overlay": (
         lambda: st.SurfaceContact(flipped()[0], "top", st.RigidTrack(), overlay=True),

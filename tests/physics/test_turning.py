@@ -297,7 +297,7 @@ BAD = {
             st.PointContact(st.RigidBody(1.0).centre, disc(1.0).at(HERE), normal=(0.0, 0.0, 1.0)),
             connections=[st.Spring(disc(1.0).at(HERE), stiffness=1.0)],
         ),
-        "leave a body that turns",
+        "not act on a body that turns",
     ),
     "fast": (lambda: st.simulate(rubbed(4e4), 1e-3, step=4e-6), "turn by at most 0.5 rad"),
     "number": (lambda: disc(float("nan")), "turning must be"),

@@ -174,7 +174,10 @@ def call(ranges=None, targets=None, source=valley, **options):
         (call(ranges={"a": 1.0}), "ranges['a'] must be a Range or its two ends"),
         (call(ranges=[1.0]), "ranges must be ranges by key"),
         (call(targets={"far": 1.0}), "targets['far'] must be a Target, its two bounds or a word"),
-        (call(targets={"far": (2.0, 1.0)}), "targets['far']: low and high must be a range with an end"),
+        (
+            call(targets={"far": (2.0, 1.0)}),
+            "targets['far']: low and high must be bounds in order, at least one of them finite",
+        ),
         (call(targets={"far": (1.0, 1.0)}), "targets['far']: scale must be given for a target at one value"),
         (call(targets={"far": (None, 1.0)}), "targets['far']: low must be a number, got None"),
         (
@@ -189,7 +192,7 @@ def call(ranges=None, targets=None, source=valley, **options):
         (call(source=lambda points: []), "source must return the measures of each of 32 points, got []"),
         (call(source=lambda points: [{"far": None, "stiff": 1.0}] * len(points)), "got a NoneType"),
         (call(source=lambda points: [{"far": 1.0, "stiff": 1.0, "length": 1.0}] * len(points)), "got 'length'"),
-        (call(source="nope"), "targets must be of "),
+        (call(source="nope"), "targets must be among "),
         (call(source="squeal", targets={"trvel": (0.0, 1.0)}), "did you mean 'travel'?"),
         (call(source="squeal", targets={"travel": "squeal"}), "target of travel must be bounds, got 'squeal'"),
         (call(source="squeal", targets={"regime": "sqeal"}), "did you mean 'squeal'?"),

@@ -72,8 +72,8 @@ def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
 @pytest.mark.parametrize(
     ("name", "asked", "message"),
     [
-        ("brake", ("--set", "surface_rate=1 kHz"), "surface_rate must be left out, or all, to be heard, got 1000.0"),
-        ("squeal", ("--duration", "10 us"), "duration must be at least 2e-05 s, two samples, to be heard, got 1e-05"),
+        ("brake", ("--set", "surface_rate=1 kHz"), "surface_rate must be left out, or all, for sound, got 1000.0"),
+        ("squeal", ("--duration", "10 us"), "duration must be at least 2e-05 s, two samples, for its sound, got 1e-05"),
     ],
 )
 def test_inaudible_systems_are_refused_before_the_run(stridula, monkeypatch, tmp_path, name, asked, message):
@@ -251,7 +251,7 @@ BAD = [
     ((*IN, "--listener", "nan,0,1"), "--listener must be X,Y,Z in m"),
     ((*IN, "--listener", "0,0,1e9"), "within 1000 m, got '0,0,1e9'"),
     ((*IN, "--unbaffled", "--listener", "0.3,0,0"), "from the beam's axis"),
-    ((*IN, "--body", "trak"), "--body must be one that can be heard: track, slider, got 'trak'"),
+    ((*IN, "--body", "trak"), "--body must be a body that radiates sound: track, slider, got 'trak'"),
     ((*IN, "--wav", "none/a.wav"), "there is no folder 'none'"),
     ((*IN, "--wav", "."), "it is a directory"),
     ((*IN, "--wav", "run.nc"), "--wav must be another file than the record"),
@@ -278,7 +278,7 @@ BAD = [
     (("run", "squeal", "--wav", "a.nc", "--out", "a.nc"), "--wav must be another file than --out"),
     (("run", "squeal", "--wav", "a.png", "--plot", "a.png"), "--wav must be another file than --plot"),
     (("run", "run.nc", "--wav", "run.nc"), "--wav must be another file than the scenario"),
-    (("run", "belt", "--wav", "a.wav"), "system must have a body with a surface to be heard"),
+    (("run", "belt", "--wav", "a.wav"), "system must have a body with a surface, which radiates sound"),
     (("run", "round.toml", "--wav", "a.wav"), "track must have a Rectangle as section"),
     (("sound", "open.nc", "--body", "track", "--bands", "a.png"), "--bands must hold a sound, got silence"),
 ]

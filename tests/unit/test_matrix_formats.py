@@ -205,7 +205,7 @@ BAD_DECKS = {
     "no.inp": ("*HEADING\n", "it holds no nodes"),
     "word.inp": ("*NODE\n1, 0, x, 0\n", "line 2 must be the number of a node and its coordinates, got '1, 0, x, 0'"),
     "many.inp": ("*NODE\n1, 0, 0, 0, 0\n", "line 2 must be 'node, x, y, z', got '1, 0, 0, 0, 0'"),
-    "twice.inp": ("*NODE\n1, 0\n1, 1\n", "each node must have another number"),
+    "twice.inp": ("*NODE\n1, 0\n1, 1\n", "nodes must have different numbers"),
     "made.inp": ("*NODE\n1, 0\n9, 1\n*NGEN\n1, 9\n", "line 4 must be of nodes that are all written out here, got"),
     "other.bdf": ("GRID,1,3,0.,0.,0.\n", "line 1 must be a GRID in the basic coordinate system, got 'GRID,1,3,0"),
     "cut.bdf": ("GRID*                  1\n", "line 2 must be the rest of the card, the file ends before"),
@@ -297,7 +297,7 @@ OF_CARDS = {
     "cut": (CARDS + "DMIG,KAAX\n", "must be 'DMIG, name, node, dof, , node, dof, value', got 'DMIG,KAAX'"),
     "twice": (
         CARDS + "DMIG,MAAX,9,1,,9,1,1.0\n",
-        "each entry must stand once (assembled matrices), got two at (9, 1), (9, 1)",
+        "each entry must occur once (assembled matrices), got two at (9, 1), (9, 1)",
     ),
 }
 

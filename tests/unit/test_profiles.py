@@ -162,7 +162,7 @@ def test_cells_of_higher_degree_and_mixed_ones_are_read(tmp_path):
     assert len(profile.nodes) == 6
     assert profile.region_names == ("body",)
     assert profile.mesh(lambda thickness, region: 1.0).volumes.sum() == pytest.approx(math.pi * 4.0)
-    with pytest.raises(st.ArgumentError, match="plane must be the plane of the mesh"):
+    with pytest.raises(st.ArgumentError, match="plane must be the plane in which the mesh"):
         st.MeshProfile.read(path)
 
 
@@ -239,7 +239,7 @@ def body(**changes):
         (body(held=[3]), "held.0. must be a Held"),
         (lambda: st.Held("inner", "x"), "directions.0. must be one of r, theta, z"),
         (lambda: st.Held((0, 1)), "place must be the name of a place or a box"),
-        (lambda: st.Held(((1, 0), (0, 1))), "place must have ranges that do not fall"),
+        (lambda: st.Held(((1, 0), (0, 1))), "place must have ranges whose first number is not above the second"),
         (body(material={"disc": STEEL}), "material must be given for all regions, disc, hat, got none for hat"),
         (body(material={"disc": STEEL, "hub": STEEL}), "material must be one of disc, hat"),
         (body(material=7800.0), "material must be a Material"),

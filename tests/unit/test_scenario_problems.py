@@ -77,7 +77,9 @@ def test_bodies_out_of_range_are_named(tmp_path):
     reduced = 'kind = "reduced"\nmass = [[1e-300]]\nstiffness = [[1e10]]\npoints = {a = {x = 0}}'
     text = BELT.replace('kind = "point mass"\nmass = 1.0', reduced)
     (found,) = problems(text, tmp_path)
-    assert found.startswith("bodies.m.stiffness must be of a size that mass can carry, got up to 1e+10 N/m on masses")
+    assert found.startswith(
+        "bodies.m.stiffness must be of an ordinary size relative to mass, got up to 1e+10 N/m on masses"
+    )
     with pytest.raises(st.ScenarioError, match=r"must hold numbers of ordinary size: its modes overflow"):
         st.load_scenario("squeal", {"density": 1e-320})
 

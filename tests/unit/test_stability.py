@@ -417,13 +417,13 @@ def unmoved():
     [
         (lambda: None, {}, "system must be a System"),
         (pair(dragged()), {"status": "stuck"}, "status must be one of separated, sticking, sliding"),
-        (pair(dragged()), {"status": ["sliding", "sliding"]}, "status must hold one for each contact, 1 in all"),
+        (pair(dragged()), {"status": ["sliding", "sliding"]}, "status must have one value for each contact, 1 in all"),
         (pair(dragged()), {"status": 2}, "status must be one"),
         (pair(dragged()), {"status": [2]}, r"status\[0\] must be one of"),
         (pair(dragged(), LURE), {"status": "sticking"}, "status must be sliding or separated under lugre"),
         (pair(pushed(y=-1.0)), {"velocity": 0.0}, "velocity must not be 0"),
         (pair(dragged()), {"velocity": 0.1}, "velocity must be left out: drives and tracks prescribe the slip"),
-        (pair(pushed(y=-1.0)), {"velocity": [0.1, 0.2]}, "velocity must hold one for each contact, 1 in all"),
+        (pair(pushed(y=-1.0)), {"velocity": [0.1, 0.2]}, "velocity must have one value for each contact, 1 in all"),
         (pair(dragged()), {"velocity": [0.1]}, r"velocity\[0\] must be 0: drives and tracks prescribe the slip"),
         (
             pair(pushed(y=-1.0)),

@@ -110,7 +110,7 @@ def test_a_force_on_a_face_presses_evenly(block):
         ({"gap": "-1 mm"}, "surfaces.0.gap must leave the faces apart"),
         ({"surfaces.0.tangent": [1.0, 0.0]}, "surfaces.0"),
         ({"bodies.die.contact_faces": ["sole"]}, "bodies.die.contact_faces.0 must be one of left, right"),
-        ({"bodies.die.mesh.offset": [0.05, 0.0, 0.0]}, "must lie before the whole face"),
+        ({"bodies.die.mesh.offset": [0.05, 0.0, 0.0]}, "must lie opposite the whole face"),
         ({"drives.0.point": "crown"}, "drives.0.point must be"),
     ],
 )

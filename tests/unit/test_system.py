@@ -141,11 +141,11 @@ ROUND = st.ModalBeam(st.Material(2.1e11, 7800.0), st.Circle(0.01), 0.8)
         ),
         (
             lambda: st.PointContact(BAR.centre, BAR, 0.1),
-            "track must be another body than the tip's (equal ones need names), got a ModalBeam for both",
+            "track must be a body other than the tip's (equal bodies need names), got a ModalBeam for both",
         ),
         (
             lambda: st.Spring(PLATE.centre, PLATE.centre, stiffness=1.0),
-            "second must be another point than first (equal bodies need names), got a BodyPoint for both",
+            "second must be a point other than first (equal bodies need names), got a BodyPoint for both",
         ),
         (
             lambda: st.Force(PLATE, y=1.0),

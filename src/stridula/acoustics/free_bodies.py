@@ -142,7 +142,9 @@ def chosen(system: System, bodies: Sequence[Any] | None, heard: list[Any]) -> tu
     silent = [system.body_name(body) for body in system.bodies if body not in heard]
     if bodies is None:
         if not heard:
-            raise ArgumentError("system", "have a body with a surface to be heard", got=f"none of {listed(silent)}")
+            raise ArgumentError(
+                "system", "have a body with a surface, which radiates sound", got=f"none of {listed(silent)}"
+            )
         return heard, silent
     if isinstance(bodies, str) or not isinstance(bodies, Sequence) or not bodies:
         raise ArgumentError("bodies", "be one or more bodies of the system", bodies)

@@ -30,11 +30,13 @@ def check_hearable(system: System, surface_rate: float | str | None = None) -> N
     """
     if not hearable(system):
         names = [system.body_name(body) for body in system.bodies]
-        raise ArgumentError("system", "have a body with a surface to be heard", got=f"none of {listed(names)}")
+        raise ArgumentError(
+            "system", "have a body with a surface, which radiates sound", got=f"none of {listed(names)}"
+        )
     if not system.is_spatial:
         check_plane(system)
     if surface_rate is not None and not isinstance(surface_rate, str):
-        raise ArgumentError("surface_rate", "be left out, or all, to be heard", surface_rate)
+        raise ArgumentError("surface_rate", "be left out, or all, for sound", surface_rate)
 
 
 def body_named(system: System, name: str) -> Any:
@@ -47,5 +49,5 @@ def body_named(system: System, name: str) -> Any:
     """
     known = {system.body_name(body): body for body in hearable(system)}
     if name not in known:
-        raise ArgumentError("body", f"be one that can be heard: {listed(list(known)) or 'none'}", name)
+        raise ArgumentError("body", f"be a body that radiates sound: {listed(list(known)) or 'none'}", name)
     return known[name]

@@ -134,7 +134,7 @@ def _wall(tracks: Sequence[Any], outlines: dict[Any, Outline], baffled: bool | N
     if baffled is False or (baffled is None and not tracks):
         return None
     if not tracks:
-        raise ArgumentError("baffled", "be False, or left out, without a track that can be heard", baffled)
+        raise ArgumentError("baffled", "be False, or left out, without a track that radiates sound", baffled)
     heights = [float(outlines[one].place[1]) for one in tracks]
     if max(heights) - min(heights) > LEVEL:
         raise ArgumentError("baffled", "be False where tracks do not lie in one plane", got=baffled or "left out")

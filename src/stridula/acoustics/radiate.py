@@ -124,7 +124,7 @@ def _of_a_bridge(
 
 def _check_no_bodies(bodies: Any) -> None:
     if bodies is not None:
-        raise ArgumentError("bodies", "be left out but for a System", bodies)
+        raise ArgumentError("bodies", "be left out unless a System is given", bodies)
 
 
 def _labelled(pressure: Array, time: Array, listeners: Array, attributes: dict[str, Any]) -> xr.DataArray:

@@ -221,7 +221,7 @@ def read_wav(path: str | Path, full_scale: float | None = None) -> xr.DataArray:
     found = SCALE.search(comment)
     if full_scale is None and found is None:
         raise ArgumentError(
-            "full_scale", "be given for a file that does not say its own", str(path), got=f"{str(path)!r} alone"
+            "full_scale", "be given for a file without a stated full scale", str(path), got=f"{str(path)!r} alone"
         )
     scale = float(found[1]) if full_scale is None and found else positive("full_scale", full_scale)
     start = float(found[2]) if found else 0.0

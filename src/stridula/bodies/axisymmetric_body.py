@@ -608,7 +608,7 @@ def _box(place: Any) -> tuple[tuple[float, float], tuple[float, float]]:
             raise ArgumentError("place", words, place)
         low, high = (finite(f"place, {axis}[{k}]", one) for k, one in enumerate(values))
         if low > high:
-            raise ArgumentError("place", "have ranges that do not fall", place)
+            raise ArgumentError("place", "have ranges whose first number is not above the second", place)
         ranges.append((low, high))
     return ranges[0], ranges[1]
 

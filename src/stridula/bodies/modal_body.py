@@ -269,7 +269,7 @@ class ModalBody(NamedPoints):
             If it is not known.
         """
         if self.outer_surface is None:
-            raise ArgumentError("outer_surface", "be given to be heard", got="none")
+            raise ArgumentError("outer_surface", "be given for sound", got="none")
         return self.outer_surface
 
     @property

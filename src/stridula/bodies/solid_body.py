@@ -490,7 +490,7 @@ def _elements_of(materials: Any, mesh: SolidMesh) -> list[tuple[Material, Array]
             others = listed(name for name in mesh.volumes if name not in materials)
             raise ArgumentError(
                 "materials",
-                "give each element one",
+                "give each element a material",
                 got=f"{bad.sum()} of {bad.size} {words}; other groups: {others}",
             )
     return found

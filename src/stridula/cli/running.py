@@ -75,7 +75,7 @@ def _check_wav(wav: str, name: str, out: str | None, plot: str | None, scenario:
     check_ending(wav)
     check_hearable(scenario.system, scenario.surface_rate)
     if scenario.duration * scenario.sample_rate < 1.5:
-        words = f"be at least {at_least(2.0 / scenario.sample_rate)} s, two samples, to be heard"
+        words = f"be at least {at_least(2.0 / scenario.sample_rate)} s, two samples, for its sound"
         raise ArgumentError("duration", words, scenario.duration)
 
 

@@ -104,7 +104,7 @@ class PointContact:
         if self.track_body == self.tip.body:
             body = brief(self.tip.body)
             raise ArgumentError(
-                "track", "be another body than the tip's (equal ones need names)", self.track, got=f"{body} for both"
+                "track", "be a body other than the tip's (equal bodies need names)", self.track, got=f"{body} for both"
             )
         if not isinstance(self.friction, FrictionLaw):
             instance("friction", self.friction, LAWS)

@@ -96,7 +96,7 @@ def _check_whole(start: xr.Dataset) -> None:
             "start",
             f"be a record up to its final state, at {last * step:.6g} s",
             start,
-            got=f"a last time of {got}: a record that is cut cannot be continued, run as far as that first",
+            got=f"a last time of {got}: a cut record cannot be continued; run up to its last time first",
         )
 
 

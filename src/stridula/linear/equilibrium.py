@@ -347,16 +347,14 @@ def _check_held(structure: Structure, held: Array, contacts: Sequence[int]) -> N
     for size, contact in zip(sizes, contacts, strict=True):
         if size == 0.0:
             name = structure.system.contact_names[contact]
-            raise ArgumentError(
-                "contact", "be between points that move", got=f"{name} where neither moves as it is held"
-            )
+            raise ArgumentError("contact", "be between points that move", got=f"{name}, whose points are both held")
     if len(held) and _rank_is_short(held):
         names = ", ".join(dict.fromkeys(structure.system.contact_names[contact] for contact in contacts))
         raise ArgumentError(
             "contacts",
-            "not hold the same motion twice, so that forces are not determined",
+            "not hold the same motion twice, which leaves forces undetermined",
             contacts,
-            got=f"{names}; elastic bodies or another status settle it",
+            got=f"{names}; use elastic bodies or another status",
         )
 
 

@@ -106,7 +106,7 @@ def _settled(whole: Structure, velocity: Array, status: Sequence[str] | None) ->
         if not np.isfinite(shift).all() or (np.abs(shift - before) <= SETTLED * (np.abs(places) + np.abs(shift))).all():
             return structure, found
         structure = whole.shifted(shift)
-    raise ArgumentError("drives", "bend the track by less: its contact points find no place in equilibrium")
+    raise ArgumentError("drives", "bend the track less: no equilibrium of its contact points was found")
 
 
 def _check(structure: Structure, at: Equilibrium, status: Sequence[str] | None) -> None:
