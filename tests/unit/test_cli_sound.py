@@ -270,7 +270,7 @@ BAD = [
     ((*IN, *WAV, "--subtype", "PCM_16"), "did you mean 'PCM_24'?"),
     (("sound", "none.nc", *WAV), "cannot read 'none.nc'"),
     (("sound", "none.toml", *WAV), "must be a record"),
-    (("sound", "belt.nc", *WAV), "system must have a body with a surface to be heard, got none of block"),
+    (("sound", "belt.nc", *WAV), "system must have a body with a surface, which radiates sound, got none of block"),
     (("sound", "failed.nc", *WAV), "one that did not diverge, got one that ended 'not finite'"),
     (("sound", *WAV), "Missing argument"),
     (("run", "squeal", "--wav", "none/a.wav"), "there is no folder 'none'"),
