@@ -74,7 +74,7 @@ def bridged_sound(
     Raises
     ------
     ValueError
-        If the record has no such probe, the body has no surface, or a listener is on the body or behind its baffle.
+        If the record has no such probe, the body has no surface, or a listener is inside a body or behind the baffle.
     """
     start, interval, force = _force(run, bridge.probe)
     body: Any = bridge.point.body

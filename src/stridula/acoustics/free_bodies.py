@@ -137,7 +137,7 @@ def chosen(system: System, bodies: Sequence[Any] | None, heard: list[Any]) -> tu
     Raises
     ------
     ValueError
-        If there are none, or a wanted one cannot be heard.
+        If there are none, or a selected one has no surface.
     """
     silent = [system.body_name(body) for body in system.bodies if body not in heard]
     if bodies is None:

@@ -70,7 +70,7 @@ def plane_sound(
     Raises
     ------
     ValueError
-        If no body can be heard, a listener is on a body or behind the wall, or the record is not usable.
+        If no body radiates sound, a listener is inside a body or behind the baffle, or the record is not usable.
     """
     run = record("run", run)
     tracks, beams = _tracks(system), _beams(system)

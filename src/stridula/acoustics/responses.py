@@ -17,26 +17,26 @@ from .surfaces import surface_of
 
 
 class Way(Protocol):
-    """Way in which a track radiates."""
+    """Radiation of a track: flush with a baffle, or as a slim beam in free air."""
 
     @property
     def panel(self) -> Panel:
         """Its surface and the modes that bend it."""
 
     def check(self, listeners: Array) -> None:
-        """Raise ValueError if a listener is on the track or behind its baffle."""
+        """Raise ValueError if a listener is at a place without sound, inside a body or behind the baffle."""
 
     def responses(
         self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float
     ) -> list[Response]:
-        """Return the responses of modes, by their numbers in the panel, at every listener, `shift` samples later."""
+        """Return the responses of modes, by number in the panel, at every listener, `shift` samples later."""
 
     def notes(self, air: Air) -> list[str]:
         """Return notes on its validity."""
 
 
 def way_of(track: Any, baffled: bool) -> Way:
-    """Return the way in which a track radiates: in a baffle, or as a slim beam in free air.
+    """Return how a track radiates: in a baffle, or as a slim beam in free air.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def way_of(track: Any, baffled: bool) -> Way:
 
 
 class Baffled:
-    """A track that is flush with an infinite rigid wall."""
+    """A track that is flush with a rigid infinite wall."""
 
     def __init__(self, panel: Panel) -> None:
         self.panel = panel

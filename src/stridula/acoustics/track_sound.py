@@ -65,7 +65,7 @@ def track_sound(
     Raises
     ------
     ValueError
-        If the record is not usable, the track cannot radiate so, or a listener is in it or behind the baffle.
+        If the record is not usable, the track has no such surface, or a listener is inside a body or behind the baffle.
     """
 
     def moved(panel: Panel) -> Motion:
