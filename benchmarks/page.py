@@ -70,7 +70,7 @@ def idle() -> str:
 
 @contextmanager
 def busy(wanted: bool) -> Iterator[None]:
-    """Keep the core of the server busy, if wanted, by a process of the same priority that never rests."""
+    """Keep the core of the server busy, if wanted, with a process of the same priority."""
     if not wanted:
         yield
         return
@@ -84,7 +84,7 @@ def busy(wanted: bool) -> Iterator[None]:
 
 
 def played(minutes: float, with_map: bool) -> dict[str, list[float]]:
-    """Play for some minutes, changing the friction every 1.5 s; return the measurements."""
+    """Use the page for some minutes, changing the friction every 1.5 s; return the measurements."""
     from playwright.sync_api import sync_playwright
 
     server, address = served()
@@ -162,9 +162,9 @@ def main() -> None:
         os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: asked.cores])
     if not Path(CHROMIUM).exists():
         if not SHORT:
-            raise SystemExit(f"{CHROMIUM} must be there to play the page in")
+            raise SystemExit(f"{CHROMIUM} must be installed to measure the page")
         print(idle())
-        print(f"skipped: {CHROMIUM} is not there, so no page is played")
+        print(f"skipped: {CHROMIUM} is not installed, so the page is not measured")
         return
     lines = [f"- {line}" for line in machine.description()]
     print("\n".join(lines), flush=True)

@@ -43,7 +43,7 @@ pad = st.SolidBody(mesh, LINING, points=feet | backs, cutoff=12e3, damping=0.004
 
 
 def brake(friction: float) -> st.System:
-    """The pad, pressed on the disc that turns."""
+    """The pad, pressed on the turning disc."""
     first, second = disc.frame[:2]
     contacts = []
     for name, place in feet.items():

@@ -63,7 +63,7 @@ MASS, STIFFNESS, POINTS = block()
 
 
 def pressed(cutoff: float | None, residual: bool = True) -> st.System:
-    """The block, held by springs and pressed by 600 N on a floor that runs at 2 m/s."""
+    """The block, held by springs and pressed by 600 N on a floor that moves at 2 m/s."""
     body = st.ReducedBody(
         MASS, STIFFNESS, POINTS, damping=0.003, cutoff=cutoff, residual_flexibility=residual, name="block"
     )

@@ -48,13 +48,13 @@ for friction, word, hertz in zip(cut.friction.values, cut.regime.values, cut.fre
 # No mode grows on this map: linear theory of the held contact does not include motion that begins with a landing.
 
 counts = st.agreement(found)
-print(f"{counts.agree.item()} of {counts.compared.item()} runs do as linear theory says")
+print(f"{counts.agree.item()} of {counts.compared.item()} runs agree with linear theory")
 
 # %%
 # Where does it begin?
 # --------------------
 # Under an imposed velocity, as in the case ``weak-pressure``, the tip slides nearly everywhere, and linear theory
-# applies. :func:`stridula.root_loci` follows the modes over one key without any run, and
+# applies. :func:`stridula.root_loci` tracks the modes over one key without any run, and
 # :func:`stridula.critical_value` finds the onset.
 
 loci = st.root_loci("weak-pressure", "friction", np.linspace(0.0, 1.6, 33), highest=4e3)

@@ -1,6 +1,6 @@
-"""Pages of the documentation as their readers take them: blocks of code in their order, and commands.
+"""Pages of the documentation as readers run them: blocks of code in their order, and commands.
 
-What would take long is made short by rule, the same for all pages: `shorter`, `few` and `smaller`.
+Long runs are shortened by rules common to all pages: `shorter`, `few` and `smaller`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ BLOCK = {
 
 
 def blocks(page: Path, *languages: str) -> list[tuple[str, str]]:
-    """Return language and text of each block in some languages; a file of Python that is shown whole is one, too."""
+    """Return language and text of each block in some languages, including Python files shown whole."""
     found = []
     for block in re.finditer(BLOCK[page.suffix], page.read_text(encoding="utf-8"), re.MULTILINE):
         words = block.groupdict()
@@ -36,13 +36,13 @@ def blocks(page: Path, *languages: str) -> list[tuple[str, str]]:
 
 
 def commands(page: Path) -> list[list[str]]:
-    """Return the words of each command, without the folder that it lies in."""
+    """Return the words of each command, without its folder."""
     lines = [line.removeprefix("$ ") for _, text in blocks(page, "console") for line in text.splitlines() if line]
     return [shlex.split(line.removeprefix(".venv/bin/"), comments=True) for line in lines]
 
 
 def shorter(code: str) -> str:
-    """Return code in which a run of half a minute or more takes a hundredth of that."""
+    """Return code with runs of half a minute or more shortened to a hundredth."""
 
     def hundredth(found: re.Match[str]) -> str:
         return f"{found[1]}{float(found[2]) / 100.0 if float(found[2]) >= 30.0 else found[2]}"
@@ -51,7 +51,7 @@ def shorter(code: str) -> str:
 
 
 def few(keys: Mapping[str, Sequence[Any]]) -> dict[str, Sequence[Any]]:
-    """Return the two ends of each key of a grid that has ten values and more."""
+    """Return a grid with keys of ten or more values reduced to their two ends."""
     return {key: values if len(values) < 10 else values[:: len(values) - 1] for key, values in keys.items()}
 
 

@@ -1,4 +1,4 @@
-"""Compiled once and for all: the cache of one short run serves every kind of run, in every later process."""
+"""Compilation happens once: the cache of one short run serves every kind of run in later processes."""
 
 from __future__ import annotations
 

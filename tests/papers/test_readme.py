@@ -1,4 +1,4 @@
-"""The README says how many claims of the paper hold, in one sentence."""
+"""The README states the number of claims of the paper that hold, in one sentence."""
 
 from __future__ import annotations
 

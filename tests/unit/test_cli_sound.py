@@ -1,4 +1,4 @@
-"""What is heard, from the command line: `stridula sound` and `stridula run --wav`."""
+"""Sound from the command line: `stridula sound` and `stridula run --wav`."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
     np.testing.assert_allclose(pressure["x"], system.track.length / 2 + np.array([-0.09, 0.09]))
     assert stridula("sound", "run.nc", "--wav", "again.wav")[0] == 0
     assert (tmp_path / "run.wav").read_bytes() == (tmp_path / "again.wav").read_bytes()
-    # Each body can be heard by itself, and together they are the whole.
+    # Each body can be heard alone, and their sum is the whole.
     st.write_wav("track.wav", st.radiate(record, system.track))
     for body in ("track", "slider"):
         assert stridula("sound", "run.nc", "--body", body, "--wav", f"{body} alone.wav", "--full-scale", "1")[0] == 0
@@ -76,7 +76,7 @@ def test_a_run_is_written_as_a_pair_of_ears_hears_it(stridula, tmp_path):
         ("squeal", ("--duration", "10 us"), "duration must be at least 2e-05 s, two samples, for its sound, got 1e-05"),
     ],
 )
-def test_what_cannot_be_heard_is_refused_before_the_run(stridula, monkeypatch, tmp_path, name, asked, message):
+def test_inaudible_systems_are_refused_before_the_run(stridula, monkeypatch, tmp_path, name, asked, message):
     def fail(*_, **__):
         raise AssertionError("it ran")
 
@@ -127,7 +127,7 @@ def test_a_float_file_holds_what_is_beyond_full_scale(stridula):
 
 
 @pytest.mark.usefixtures("kept")
-def test_without_a_baffle_one_hears_less_and_from_below_too(stridula):
+def test_sound_without_a_baffle_is_quieter_and_reaches_below(stridula):
     places = ("--listener", "0.6,0,0.5", "--listener", "0.6,0,-0.5")
     alone = ("--body", "track")
     code, out, err = stridula("sound", "run.nc", *alone, "--unbaffled", *places, "--wav", "free.wav")
@@ -153,12 +153,12 @@ def test_a_spectrogram_is_drawn_and_named_after_the_case(stridula, tmp_path, mon
 
 
 @pytest.mark.usefixtures("kept")
-def test_silence_is_said(stridula):
+def test_silence_is_reported(stridula):
     code, out, err = stridula("sound", "open.nc", "--body", "track", "--wav", "a.wav")
     assert (code, err) == (0, "")
     assert out.startswith("a.wav: 2 channels, 48 kHz, 0.005 s, silence (full scale 1 Pa)\ntrack is silent: the contact")
     assert not st.read_wav("a.wav").any()
-    # A slider that is drawn into the air is heard all the same.
+    # A slider that is pulled into the air is still heard.
     code, out, err = stridula("run", "squeal", "--duration", "30 ms", "--set", "gap=10", "--wav", "b.wav")
     assert (code, err) == (0, "")
     assert "track is silent: the contact never presses; slider: a line of dipoles" in out
@@ -172,7 +172,7 @@ def test_a_silent_spectrogram_is_drawn(stridula):
 
 
 @pytest.mark.usefixtures("kept")
-def test_what_a_coarse_record_misses_is_said(stridula):
+def test_omissions_of_a_coarse_record_are_reported(stridula):
     code, out, err = stridula("sound", "coarse.nc")
     assert (code, err) == (0, "")
     assert "modes above what the record's sample rate carries are left out" in out
@@ -190,12 +190,12 @@ def with_another_track_on_the_way(records):
     return run, [s.system for s in scenarios], half
 
 
-def test_a_record_whose_track_was_changed_is_sounded_in_parts_only(stridula, records, tmp_path):
+def test_a_record_with_a_changed_track_is_heard_in_parts_only(stridula, records, tmp_path):
     run, systems, half = with_another_track_on_the_way(records)
-    message = rf"run must have the same track at all times for sound, got another one from {half:.6g} s on"
+    message = rf"run must have the same track throughout to be heard, got another one from {half:.6g} s on"
     with pytest.raises(ValueError, match=f"^{message}"):
         st.radiate(run, systems[1].track)
-    with pytest.raises(ValueError, match=r"^run must have the same bodies and drives at all times for sound"):
+    with pytest.raises(ValueError, match=r"^run must have the same bodies and drives throughout to be heard"):
         st.radiate(run, systems[1], bodies=[systems[1].slider])
     st.save(run, tmp_path / "changed.nc")
     code, out, err = stridula("sound", "changed.nc")
@@ -211,7 +211,7 @@ def test_a_record_whose_track_was_changed_is_sounded_in_parts_only(stridula, rec
         np.testing.assert_array_equal(*(soundfile.read(tmp_path / f"{name}.wav")[0] for name in ("part", "mine")))
 
 
-def test_of_a_record_on_which_drives_were_changed_the_track_is_heard_alone(stridula, records):
+def test_only_the_track_is_heard_if_drives_were_changed(stridula, records):
     run, _, half = with_another_track_on_the_way(records)
     system = st.load_scenario(records["run.nc"]).system
     texts = [
@@ -231,7 +231,7 @@ def test_a_plate_that_was_changed_is_another_track():
     scenarios = [st.load_scenario("squeal-on-plate", {"bodies.plate.thickness": t}) for t in (0.004, 0.008)]
     runs = [one.simulate(duration=2e-3) for one in scenarios]
     changes = [{"time": t, "scenario": run.attrs["scenario"]} for t, run in zip((0.0, 1e-3), runs, strict=True)]
-    with pytest.raises(ValueError, match="run must have the same track at all times for sound"):
+    with pytest.raises(ValueError, match="run must have the same track throughout to be heard"):
         st.radiate(runs[0].assign_attrs(changes=json.dumps(changes)), scenarios[0].system.track)
 
 
@@ -271,7 +271,7 @@ BAD = [
     (("sound", "none.nc", *WAV), "cannot read 'none.nc'"),
     (("sound", "none.toml", *WAV), "must be a record"),
     (("sound", "belt.nc", *WAV), "system must have a body with a surface, which radiates sound, got none of block"),
-    (("sound", "failed.nc", *WAV), "run must be reliable, got one that ended 'not finite'"),
+    (("sound", "failed.nc", *WAV), "one that did not diverge, got one that ended 'not finite'"),
     (("sound", *WAV), "Missing argument"),
     (("run", "squeal", "--wav", "none/a.wav"), "there is no folder 'none'"),
     (("run", "squeal", "--wav", "."), "it is a directory"),
@@ -297,7 +297,7 @@ def test_bad_input_is_one_line_and_writes_nothing(stridula, tmp_path, monkeypatc
     assert written(tmp_path) == before
 
 
-def test_an_interrupted_run_says_that_no_sound_was_written(stridula, monkeypatch, tmp_path):
+def test_an_interrupted_run_reports_that_no_sound_was_written(stridula, monkeypatch, tmp_path):
     def interrupt(*arguments, **fields):
         raise KeyboardInterrupt
 
@@ -320,7 +320,7 @@ def test_a_plate_is_heard_from_above_its_middle(stridula):
 
 
 @pytest.mark.parametrize("floor", [False, True])
-def test_of_several_contacts_those_on_a_track_drive_it(stridula, tmp_path, floor):
+def test_only_contacts_on_a_track_drive_it(stridula, tmp_path, floor):
     """Two feet of one body: one on a floor and one on a beam, or both on the beam."""
     feet = st.ReducedBody(
         np.eye(4) * 0.1, np.eye(4) * 1e5, {"left": (0, 1), "right": (2, 3)}, damping=st.Rayleigh(1.0, 1e-6)
@@ -341,7 +341,7 @@ def test_of_several_contacts_those_on_a_track_drive_it(stridula, tmp_path, floor
     assert (tmp_path / "feet.wav").read_bytes() == (tmp_path / "same.wav").read_bytes()
 
 
-def test_what_has_not_arrived_is_silence(stridula):
+def test_sound_that_has_not_arrived_is_silence(stridula):
     assert stridula("run", "judder", "--duration", "3 ms", "--out", "early.nc")[0] == 0
     code, out, _ = stridula("sound", "early.nc", "--body", "track", "--wav", "early.wav")
     assert code == 0
@@ -350,10 +350,10 @@ def test_what_has_not_arrived_is_silence(stridula):
 
 
 @pytest.mark.usefixtures("kept")
-def test_a_coarse_record_says_up_to_where_its_sound_is_whole(stridula):
+def test_a_coarse_record_reports_its_bandwidth(stridula):
     code, out, _ = stridula("sound", "coarse.nc")
     assert code == 0
-    assert "whole up to 833.3 Hz only" in out
+    assert "complete only up to 833.3 Hz" in out
 
 
 @pytest.mark.usefixtures("kept")

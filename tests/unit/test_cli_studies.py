@@ -1,4 +1,4 @@
-"""The verbs that look at many parameters: stability, calibrate, sensitivity."""
+"""Commands over many parameters: stability, calibrate, sensitivity."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from stridula.studies.measures import MEASURES
 SHORT = ("--duration", "2 ms")
 
 
-def test_stability_says_equilibrium_and_modes(stridula):
+def test_stability_prints_equilibrium_and_modes(stridula):
     code, out, err = stridula("stability", "weak-pressure", "--set", "friction=1.2")
     assert (code, err) == (0, "")
     modes = st.sliding_stability(st.load_scenario("weak-pressure", {"friction": 1.2}).system)
@@ -97,7 +97,7 @@ def test_stability_over_a_parameter_prints_draws_and_writes(stridula, tmp_path):
     assert (tmp_path / "loci.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_stability_says_what_holds_where_nothing_changes(stridula):
+def test_stability_reports_an_unchanged_verdict(stridula):
     code, out, _ = stridula("stability", "squeal", "--vary", "friction=0.5,1.5,1.6")
     assert (code, out) == (
         0,
@@ -216,7 +216,7 @@ def test_bad_input_is_one_line_and_writes_nothing(stridula, tmp_path, monkeypatc
     assert (tmp_path / "kept").read_text() == "kept"
 
 
-def test_what_was_calibrated_runs_again_as_the_best_did(stridula, tmp_path):
+def test_the_calibrated_scenario_reruns_the_best_set(stridula, tmp_path):
     (tmp_path / "mine.toml").write_text(
         'base = "stable-sliding"\ntitle = "Mine"\n[[simulation.probes]]\nbody = "track"\nquantity = "velocity"\n'
         'point = "centre"\n'
@@ -269,7 +269,7 @@ def interrupt(*arguments, **fields):
     raise KeyboardInterrupt
 
 
-def test_ctrl_c_says_the_best_so_far(stridula, monkeypatch, tmp_path):
+def test_ctrl_c_prints_the_best_so_far(stridula, monkeypatch, tmp_path):
     arguments = (*SEARCH, "--population", "5", "--out", "found.toml")
     with monkeypatch.context() as patch:
         patch.setattr(searching, "calibrate", interrupt)
@@ -302,7 +302,7 @@ def test_sensitivity_prints_and_writes(stridula):
     assert float(found["probability"].sum()) == pytest.approx(1.0)
 
 
-def test_sensitivity_says_why_there_are_no_shares(stridula):
+def test_sensitivity_explains_missing_shares(stridula):
     code, out, _ = stridula("sensitivity", "squeal", "--vary", "angle=95deg:99deg", *SHORT, "--samples", "8")
     assert code == 0
     assert "No shares of the variance: they need 8 samples in which all runs give numbers, got 0." in out

@@ -22,11 +22,11 @@ from .recorded_motion import recorded_motion
 from .redriven import Moved, redriven
 from .resampling import bandwidth_of, ratio_of, resample
 
-# Up to where sound is whole at most [Hz]: what is heard.
+# Largest bandwidth of a sound [Hz], the limit of hearing.
 HIGHEST = 20e3
-# Error of the normal motion at a mode's own frequency from which on it is said.
+# Error of the normal motion at a mode's own frequency above which a note states it.
 SAID = 0.05
-# Of the size of a body: no listener comes closer.
+# Smallest distance of a listener over the size of the body.
 NEAREST = 1e-3
 
 
@@ -36,7 +36,7 @@ def bodies_heard(system: System) -> list[Any]:
 
 
 def check_in_open_air(baffled: bool | None) -> None:
-    """Raise ValueError if bodies in space are wanted in a baffle."""
+    """Raise ValueError if bodies in space are to be baffled."""
     if baffled:
         raise ArgumentError("baffled", "be False, or left out, for bodies in space", baffled)
 
@@ -81,8 +81,8 @@ def bodies_sound(
 ) -> tuple[Array, Array, Array, dict[str, Any], Moved]:
     """Return pressures (listeners, samples), their times, the listeners, attributes and the motion, of bodies by name.
 
-    Listeners left out are two ears along the first of the directions `above` from their middle, side by side along the
-    second one.
+    If `listener` is None, two ears are taken: above the middle of the bodies along the first direction of `above`, side
+    by side along the second one.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def bodies_sound(
         first, _ = moved.spans[name]
         modes = first + np.flatnonzero(~body.modes().massless)
         frequency = body.modes().frequency[: modes.size]
-        # A body that does not vibrate moves as a whole up to any frequency.
+        # A body that does not vibrate moves as a rigid one at any frequency.
         highest = float(frequency.max(initial=0.0)) or np.inf
         sent = free_responses(surface, places, away, air, moved.interval, shift, bandwidth, highest)
         pressure += convolved(sent.responses, moved, modes)
@@ -132,7 +132,7 @@ def bodies_sound(
 
 
 def chosen(system: System, bodies: Sequence[Any] | None, heard: list[Any]) -> tuple[list[Any], list[str]]:
-    """Return those of the bodies heard that are wanted, and the names of others that are silent where all are wanted.
+    """Return the audible bodies that are wanted and, if all are wanted, the names of the silent ones.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def chosen(system: System, bodies: Sequence[Any] | None, heard: list[Any]) -> tu
 
 
 def _ears(above: tuple[Array, Array], surfaces: Sequence[BodySurface]) -> list[list[float]]:
-    """Return two ears above the middle of what is heard, along a normal and side by side along a tangent."""
+    """Return two ears above the middle of the surfaces, along a normal and side by side along a tangent."""
     normal, tangent = above
     points = np.concatenate([surface.as_points.points for surface in surfaces])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
@@ -178,7 +178,7 @@ def distances_to(surface: BodySurface, places: Array) -> Array:
         away = points.points - place
         distance = np.linalg.norm(away, axis=1)
         if surface.form == "points":
-            # As the patches are, for a body may be thinner than they are long.
+            # Exact for patches, as a body may be thinner than its patches are long.
             corners = points.corners.reshape(-1, 4, 3)
             angle = float(patch_integrals(np.repeat(place[None], len(corners), axis=0), corners)[1].sum())
         else:
@@ -199,20 +199,20 @@ def convolved(responses: Sequence[Response], moved: Moved, modes: Array) -> Arra
 
 
 def _doubts(name: str, frequency: Array, sent: Sent) -> tuple[list[str], float]:
-    """Return what is doubtful of a body's responses, in words, and the largest error of a mode at its own frequency."""
+    """Return notes on doubtful responses of a body, and the largest error of a mode at its own frequency."""
     within = np.flatnonzero(frequency <= sent.frequencies[-1])
     own = np.array([np.interp(frequency[k], sent.frequencies, sent.errors[:, k]) for k in within])
     worst, notes = float(own.max(initial=0.0)), []
     if worst > SAID:
         at = frequency[within[int(own.argmax())]]
-        notes.append(f"{name}: its surface is met to {100.0 * worst:.2g} % at {at:.4g} Hz only")
+        notes.append(f"{name}: error of {100.0 * worst:.2g} % in its normal motion at {at:.4g} Hz")
     if sent.left > LEFT:
-        notes.append(f"{name}: {100.0 * sent.left:.2g} % of its sound rings on for longer than is heard")
+        notes.append(f"{name}: {100.0 * sent.left:.2g} % of its response lasts longer than is included")
     return notes, worst
 
 
 def ends_of(heard: dict[str, Any], moved: Moved) -> list[str]:
-    """Return where the modes of bodies, by their names, end, in words."""
+    """Return notes on the highest modes of bodies by name."""
     notes = []
     if moved.left_out.any():
         left_out = int(moved.left_out.sum())
@@ -223,7 +223,7 @@ def ends_of(heard: dict[str, Any], moved: Moved) -> list[str]:
 
 
 def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], moved: Moved) -> list[str]:
-    """Return what is left out, in words."""
+    """Return notes on what is left out."""
     notes = []
     if silent:
         notes.append(f"without a surface and not heard: {listed(silent)}")
@@ -233,5 +233,5 @@ def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], moved: Mo
     if moved.start > 0.5 * moved.interval:
         notes.append("the record continues another one; vibration left from that one is not included")
     elif started := [str(drive) for drive in system.drives if drive.starts_motion]:
-        notes.append(f"the vibration that it starts with is not included: {listed(started)}")
+        notes.append(f"vibration at the start is not included: {listed(started)}")
     return notes

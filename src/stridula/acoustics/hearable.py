@@ -1,4 +1,4 @@
-"""Which bodies of a system can be heard."""
+"""Bodies of a system that can be heard."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from .plane_sound import check_plane, plane_bodies
 
 
 def hearable(system: System) -> list[Any]:
-    """Return the bodies of a system that `radiate` can hear.
+    """Return the bodies of a system whose sound `radiate` can compute.
 
-    In space those with a surface, in the plane tracks that are flat, and slim beams.
+    In space these have a surface; in the plane they are flat tracks and slim beams.
     """
     return bodies_heard(system) if system.is_spatial else plane_bodies(system)
 
 
 def check_hearable(system: System, surface_rate: float | str | None = None) -> None:
-    """Raise ValueError if nothing can be heard of a system.
+    """Raise ValueError if no body of a system can be heard.
 
     Parameters
     ----------
     system : System
         The system.
     surface_rate : float or str, optional
-        What is to be recorded of its surfaces, as for `simulate`: maps alone have no sound.
+        Rate of the maps of its surfaces, as for `simulate`: a record of maps alone has no sound.
     """
     if not hearable(system):
         names = [system.body_name(body) for body in system.bodies]

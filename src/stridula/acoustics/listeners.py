@@ -1,4 +1,4 @@
-"""Where one listens, checked."""
+"""Places of listeners, checked."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..bodies import ModalBeam, ModalPlate
 from ..checks import ArgumentError, at_least, at_most, finite, positive
 
 FARTHEST = 1000.0
-# Of a pair of ears, above what they hear and between them [m].
+# Height of a pair of ears above the source, and distance between them [m].
 HEIGHT, SPACING = 1.0, 0.18
 
 
@@ -42,17 +42,17 @@ def ears(
 
 
 def listeners_of(listener: Any) -> Array:
-    """Return one or several listeners as an array, shape (listeners, 3).
+    """Return listeners as an array, shape (listeners, 3).
 
     Raises
     ------
     ValueError
-        If it is no triple of finite numbers, no list of them, or is farther than 1000 m away.
+        If it is neither a triple of finite numbers nor a list of them, or is farther than 1000 m away.
     """
     if isinstance(listener, np.ndarray):
         listener = listener.tolist()
     if not isinstance(listener, Sequence) or isinstance(listener, (str, bytes)) or not listener:
-        raise ArgumentError("listener", "be (x, y, z) or a list of such", listener)
+        raise ArgumentError("listener", "be (x, y, z) or a list of these", listener)
     several = listener if isinstance(listener[0], (Sequence, np.ndarray)) else [listener]
     found = []
     for number, place in enumerate(several):

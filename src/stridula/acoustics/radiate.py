@@ -33,51 +33,52 @@ def radiate(
 ) -> xr.DataArray:
     """Return the sound pressure of a track, or of the bodies of a system, in time.
 
-    The track is driven again by the normal forces of the record where they pressed, with all its bending modes, and
-    is heard through Rayleigh's integral with exact travel times (in a rigid baffle) or as a line of dipoles (a beam in
+    The track, with all its bending modes, is driven again by the normal forces of the record at their places. Its sound
+    follows from Rayleigh's integral with exact travel times (in a rigid baffle) or from a line of dipoles (a beam in
     free air). Bodies in space are driven again by all forces of the record at their contacts and by the drives of the
-    system, and are heard in open air by equivalent sources within them. Bodies are at rest before the record, and the
+    system, and radiate into open air by equivalent sources within them. Bodies are at rest before the record, and the
     air does not act back on them.
 
-    Bodies whose motion the record has, see `ModalMotion`, move as that says and are not driven again.
+    Bodies whose motion is recorded, see `ModalMotion`, move as recorded and are not driven again.
 
-    Of a system in the plane its tracks are heard so, and its beams, such as the slider, as lines of dipoles driven
+    The same holds for the tracks of a system in the plane. Its beams, such as the slider, are lines of dipoles driven
     again by all forces at their contacts and by the drives; a baffle that tracks are flush with reflects their sound.
 
     Parameters
     ----------
     run : xarray.Dataset
-        A record, with or without probes. All its contacts press on the track: choose with ``run.sel(contact=[...])``.
+        A record, with or without probes. All its contacts press on the track: select them with
+        ``run.sel(contact=[...])``.
     track : ModalBeam, ModalPlate, System or Bridge
-        What is heard. A track need not be the body of the run, but must be as long as where it is pressed. Of a system,
-        that of the run, the sum over its bodies is heard: in space over all that have a surface, in the plane over
-        tracks and beams. Of a bridge, the body that the recorded force on the support of a string drives.
+        Source of the sound. A track need not be the body of the run, but must reach as far as it is pressed. For a
+        system, that of the run, the sound is the sum over its bodies: in space over all that have a surface, in the
+        plane over tracks and beams. For a bridge, it is that of the body driven by the recorded force on the support of
+        a string.
     listener : tuple of float, or sequence of tuples, optional
-        Where one listens, x, y, z [m]: x along the track from its left end, y across it in its surface, from the axis
-        of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above the
-        middle of the track if left out. These are the axes of a track in space, too, and those of the first track of a
-        system in the plane; without one they are world x, across the plane, and world y. Of a system in space they are
-        those of the world; the ears are then a metre above the middle of what is heard, on the side of the first
-        contact's tip.
+        Places of the listeners, x, y, z [m]: x along the track from its left end, y across it in its surface, from the
+        axis of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above
+        the middle of the track if left out. A track in space has the same axes; a system in the plane has those of its
+        first track, or, without a track, world x, across the plane, and world y. For a system in space they are the
+        world axes; the ears are then a metre above the middle of the bodies, on the side of the first contact's tip.
     bodies : sequence of AxisymmetricBody, SolidBody, ModalBeam, ModalPlate or FiniteElementBeam, optional
-        Which bodies of a system are heard; all that can be if left out.
+        Bodies of a system to include; all that can be heard if left out.
     baffled : bool, optional
-        Whether the surface of a track is flush with an endless rigid wall, which it is if left out; else it is a slim
-        beam in free air. Bodies in space are in open air, and so are beams of a system in the plane without a track.
+        Whether the surface of a track is flush with an infinite rigid wall, the default; otherwise it is a slim beam in
+        free air. Bodies in space are in open air, and so are beams of a system in the plane without a track.
     air : Air, optional
         The air, `Air()` if left out.
     sample_rate : float, optional
-        Samples per second of the sound [Hz], at most the record's, which it is if left out.
+        Sample rate of the sound [Hz], at most that of the record, which is the default.
 
     Returns
     -------
     xarray.DataArray, shape (time, listener)
-        Pressure [Pa]. Time starts where the record starts, when the first sound is sent; before it can arrive the
-        pressure is zero. ``attrs`` have the bandwidth [Hz], up to which the sound is whole and above which it is cut
-        off, the air, the distances [m] to the nearest point of the track, and notes on what is missing. ``motion`` is
-        "recorded", "driven again", or both. Of a system they have the names of the bodies heard and, as ``fit_error``,
-        the largest relative error with which the sources of each meet the normal motion of a mode all over the surface,
-        at the mode's own frequency; notes say it where it is above 5 %.
+        Pressure [Pa]. Time starts with the record, when the first sound is sent; until it arrives the pressure is zero.
+        ``attrs`` have the bandwidth [Hz], up to which the sound is complete and above which it is cut off, the air, the
+        distances [m] to the nearest point of the track, and notes on what is missing. ``motion`` is "recorded", "driven
+        again", or both. For a system they have the names of the bodies and, as ``fit_error``, for each the largest
+        relative error of its sources in the normal motion of a mode over the surface, at the mode's own frequency;
+        notes state it where it is above 5 %.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a track sends to a listener in each way in which it is heard: an impulse response for each of its modes."""
+"""Impulse responses from the modes of a track to listeners, in a baffle or in free air."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Way(Protocol):
         """Return the responses of modes, by number in the panel, at every listener, `shift` samples later."""
 
     def notes(self, air: Air) -> list[str]:
-        """Return what is to be said of it, in words."""
+        """Return notes on its validity."""
 
 
 def way_of(track: Any, baffled: bool) -> Way:
@@ -59,7 +59,7 @@ class Baffled:
     def responses(
         self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float
     ) -> list[Response]:
-        """Return what is sent to every listener."""
+        """Return the responses at every listener."""
         panel, kernel = self.panel.only(modes), interpolation(bandwidth * interval)
         surfaces = [surface_of(panel, listener, 2.0 * np.pi * bandwidth / air.speed) for listener in listeners]
         return [
@@ -68,7 +68,7 @@ class Baffled:
         ]
 
     def notes(self, air: Air) -> list[str]:
-        """Return nothing: it holds for whatever is heard."""
+        """Return no notes: it is always valid."""
         return []
 
 
@@ -85,12 +85,12 @@ class SlimLine:
     def responses(
         self, modes: Array, listeners: Array, air: Air, interval: float, shift: float, bandwidth: float
     ) -> list[Response]:
-        """Return what is sent to every listener."""
+        """Return the responses at every listener."""
         panel, kernel = self.panel.only(modes), interpolation(bandwidth * interval)
         return [dipole_response(panel, self.area, one, air, interval, kernel, shift) for one in listeners]
 
     def notes(self, air: Air) -> list[str]:
-        """Return up to where it holds, in words."""
+        """Return a note on the frequency up to which it is valid."""
         return [f"a line of dipoles: the beam is slim below {slim_below(self.beam, air):.4g} Hz"]
 
 

@@ -1,4 +1,4 @@
-"""Slim beams of a system in the plane, anywhere in it, as lines of dipoles."""
+"""Slim beams anywhere in a system in the plane, as lines of dipoles."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .listeners import check_off_beam
 
 @dataclass(frozen=True)
 class SlimBeam:
-    """A beam as far as it sounds: what `dipole_response` asks of a line of it, and where it is.
+    """A beam as a line of dipoles, with the properties that `dipole_response` needs, and its place.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class SlimBeam:
     wavenumbers : ndarray, shape (modes, 2)
         Wavenumbers of bending at their frequencies, along it and across [rad/m].
     origin : ndarray, shape (2,)
-        Where its abscissa 0 is in the plane [m].
+        Place of its abscissa 0 in the plane [m].
     """
 
     width: ClassVar[float] = 0.0
@@ -46,7 +46,7 @@ class SlimBeam:
         return float(self.body.length)
 
     def shapes(self, x: Array, y: Array) -> Array:
-        """Return by how much the modes move places x along it across itself, shape (places, modes) [kg^(-1/2)]."""
+        """Return the transverse mode shapes at abscissas x, shape (places, modes) [kg^(-1/2)]."""
         across = self.body.axes[1]
         rows = [across @ self.body.trace(float(place), self.held) for place in x]
         return np.array(rows)[:, self.numbers]
@@ -54,7 +54,7 @@ class SlimBeam:
     def beside(self, places: Array) -> Array:
         """Return listeners, given along the track, across it and above it, in its own axes, shape (listeners, 3).
 
-        Along it, square to the plane, and across it in the plane.
+        These are along it, perpendicular to the plane, and across it in the plane.
         """
         along, across = self.body.axes
         away = places[:, [0, 2]] - self.origin
@@ -77,7 +77,7 @@ class SlimBeam:
 
 
 def slim_beam(body: Any, held: bool, numbers: Array, origin: Array) -> SlimBeam:
-    """Return a beam of which some modes are heard, where it is."""
+    """Return a beam with the modes that are heard, at its place."""
     section, material = body.section, body.material
     stiff = (material.density * section.area / (material.young * section.second_moment)) ** 0.25
     along = np.sqrt(body.modes(held).angular_frequency[numbers]) * stiff

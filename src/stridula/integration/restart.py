@@ -13,7 +13,7 @@ import xarray as xr
 from .._kernels import layout as at
 from ..arrays import Array
 from ..checks import ArgumentError, brief, instance, listed
-from ..lowering import Assembly, Signal, going_on, with_travel
+from ..lowering import Assembly, Signal, with_motion_so_far, with_travel
 from ..lowering.blocks import Recurrence
 from ..lowering.contact_rows import STATEFUL
 from ..lowering.schemes import Scheme
@@ -162,7 +162,7 @@ def moved_on(
     turns = not np.array_equal(here, was)
     if turns or offset.any():
         moved = replace(arrays, motion=described)
-        arrays = going_on(moved, offset, last * step, was[0] + kept[2] if turns else None)
+        arrays = with_motion_so_far(moved, offset, last * step, was[0] + kept[2] if turns else None)
     return arrays, offset
 
 

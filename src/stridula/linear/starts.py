@@ -27,7 +27,7 @@ ROUND_OFF = 1e-9
 WAYS_OUT = {
     HELD: "is held by friction: status='sticking' starts it so, another velocity or a larger push lets it slide",
     LIFTED_OFF: "is lifted off: press it down, or status='separated' starts it open",
-    JAMMED: "is jammed, neither slides on nor opens: take less friction or another angle",
+    JAMMED: "is jammed, can neither slide nor open: reduce friction or change the angle",
 }
 
 

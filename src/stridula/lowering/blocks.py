@@ -211,8 +211,8 @@ def contact_blocks(arrays: Assembly, modes: Recurrence) -> ContactBlocks:
         elif not one.fixed[0].any() and along is None:
             raise ArgumentError(
                 f"contact {one.contact.name or i + 1}",
-                "be between bodies of which one moves along its normal",
-                got="a tip that does not",
+                "have a tip or a track that moves along its normal",
+                got="neither",
             )
     constant = rows.copy()
     circles = np.full(count, -1, dtype=np.int64)

@@ -79,7 +79,7 @@ def _check_round(coordinates: Coordinates, body: Any, turning: Any) -> None:
     if not turning.pairs:
         raise ArgumentError("track", f"have waves round its axis: {name} has none below its cutoff", got="a circle")
     if body in coordinates.joined and len(coordinates.blend):
-        words = f"not act on {name}, round which a contact moves, if joined bodies have residual shapes"
+        words = f"not join {name}, round which a contact moves, if joined bodies have residual shapes"
         raise ArgumentError("connections", words, got="one to it")
     first, second = np.array(turning.pairs).T
     if (modes.damping_rate[first] != modes.damping_rate[second]).any():
