@@ -9,6 +9,7 @@ import socket
 from importlib.resources import files
 
 import pytest
+from kernels.caches import incomplete_cache
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
@@ -165,8 +166,8 @@ def test_a_port_that_is_taken_is_named_in_one_line():
     assert re.fullmatch(words, done.stderr)
 
 
-def test_a_first_start_reports_compiling_and_no_problem(tmp_path):
-    server = Server(tmp_path / "errors", NUMBA_CACHE_DIR=str(tmp_path / "cache"))
+def test_a_start_that_compiles_reports_it_and_no_problem(tmp_path):
+    server = Server(tmp_path / "errors", NUMBA_CACHE_DIR=str(incomplete_cache(tmp_path)))
     try:
         assert server.said == f"{COMPILING}\n"
         assert server.complaints == ""

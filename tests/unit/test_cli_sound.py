@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -27,11 +28,19 @@ def records():
     }
 
 
-@pytest.fixture
-def kept(records, tmp_path):
-    """Write the records."""
+@pytest.fixture(scope="module")
+def folder(records, tmp_path_factory):
+    """Write the records into a folder and return it."""
+    folder = tmp_path_factory.mktemp("records")
     for name, record in records.items():
-        st.save(record, tmp_path / name)
+        st.save(record, folder / name)
+    return folder
+
+
+@pytest.fixture
+def kept(folder, tmp_path):
+    """Copy the files of the records."""
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
     (tmp_path / "none.toml").write_text("a = 1\n")
     round_track = "base = 'squeal'\n[track]\nsection = { shape = 'circle', diameter = '9 mm' }\n"
     (tmp_path / "round.toml").write_text(round_track)

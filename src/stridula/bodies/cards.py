@@ -54,9 +54,11 @@ def facts_of(body: Any) -> dict[str, str | Sequence[str]]:
 
 
 def materials_of(body: Any) -> dict[str, Material]:
-    """Return the materials of a body by the names of its regions; one for the whole body has an empty name."""
+    """Return the materials of a body by the names of its regions; a material of all regions has an empty name."""
     given = getattr(body, "materials", None) or getattr(body, "material", None) or {}
-    return dict(given) if isinstance(given, Mapping) else {"": given}
+    by_name = dict(given) if isinstance(given, Mapping) else {"": given}
+    different = list(dict.fromkeys(by_name.values()))
+    return {"": different[0]} if len(different) == 1 else by_name
 
 
 def _materials(body: Any) -> list[str]:
