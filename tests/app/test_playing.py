@@ -9,7 +9,7 @@ import stridula as st
 from stridula.app.playable import PRESETS
 from stridula.app.sources import SOURCES
 
-from .conversation import RATE, Conversation, conversation
+from .conversation import RATE, Conversation, conversation, parts_of
 
 FRICTION, ANGLE, LENGTH, AT = "contact.friction.coefficient", "slider.angle", "slider.length", "contact.at"
 
@@ -240,3 +240,17 @@ def test_linear_theory_lists_growing_modes(talk):
     found = st.sliding_stability(st.load_scenario("stable-sliding").system)
     assert theory["equilibrium"] == found.attrs["equilibrium"] == "sliding"
     assert len(theory["modes"]) == min(12, int(found["unstable"].sum()))
+
+
+def test_a_case_sounds_until_another_one_is_ready(talk):
+    talk.scene("squeal")
+    before = talk.revision
+    talk.revision += 1
+    talk.say("scene", revision=talk.revision, case="wheel", overrides={}, text=None)
+    talk.say("pull", parts=2, samples=480)
+    heard = []
+    while not heard or not isinstance(heard[-1], dict) or heard[-1]["type"] != "scene":
+        heard.append(talk.hear())
+    (parts,) = [parts_of(one) for one in heard if isinstance(one, bytes)]
+    assert [(part.revision, len(part.sound)) for part in parts] == [(before, 480)] * 2
+    assert {part.revision for part in talk.play(960).parts} == {talk.revision}
