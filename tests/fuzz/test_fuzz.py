@@ -11,7 +11,7 @@ from . import __main__ as runner
 from .outcomes import ACCEPTED, REFUSED
 
 # Numbers that take some seconds; other kinds have FEW.
-SEED, COUNTS, FEW = 0, {"scenarios": 200, "matrices": 400, "records": 100, "calls": 150}, 100
+SEED, COUNTS, FEW = 0, {"scenarios": 200, "matrices": 400, "records": 100, "calls": 150, "controls": 40}, 100
 PARTS = 10
 KINDS = runner.modules()
 
