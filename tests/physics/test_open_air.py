@@ -13,9 +13,9 @@ import pytest
 
 import stridula as st
 from stridula.acoustics import equivalent_sources, surface_pressures
+from stridula.acoustics.distances import distances_to
 from stridula.acoustics.fits import fits_of
 from stridula.acoustics.flat_patches import patch_integrals
-from stridula.acoustics.free_bodies import distances_to
 from stridula.acoustics.free_responses import free_responses
 from stridula.acoustics.redriven import redriven
 from stridula.acoustics.ring_sources import RingSources

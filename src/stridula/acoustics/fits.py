@@ -18,14 +18,26 @@ from ..bodies.body_surfaces import BodySurface
 from ..cache import keep, key, recall
 from .equivalent_sources import Fit, Radiator
 from .ring_sources import RingSources
+from .sheets import Sheet, SheetDipoles
 from .surface_pressures import SurfacePressures
 
 # By the form of the surface.
-RADIATORS: dict[str, Callable[[Any], Radiator]] = {"rings": RingSources, "points": SurfacePressures}
+RADIATORS: dict[str, Callable[[Any], Radiator]] = {
+    "rings": RingSources,
+    "points": SurfacePressures,
+    "sheet": SheetDipoles,
+}
 # What fits depend on beside a surface and a wavenumber.
-SOURCES = ("equivalent_sources.py", "ring_sources.py", "surface_pressures.py", "flat_patches.py", "fits.py")
-# Time that making fits takes from which on they are kept [s].
-WORTH = 1.0
+SOURCES = (
+    "equivalent_sources.py",
+    "ring_sources.py",
+    "surface_pressures.py",
+    "flat_patches.py",
+    "sheets.py",
+    "fits.py",
+)
+# Time that making fits takes from which on they are kept [s], and bytes up to which they are.
+WORTH, LARGEST = 1.0, 125_000_000
 
 
 class Fits:
@@ -33,11 +45,11 @@ class Fits:
 
     Parameters
     ----------
-    surface : PointSurface or RingSurface
+    surface : PointSurface, RingSurface or Sheet
         The surface of the body.
     """
 
-    def __init__(self, surface: BodySurface) -> None:
+    def __init__(self, surface: BodySurface | Sheet) -> None:
         self.radiator = RADIATORS[surface.form](surface)
         self.name = key([_code(), surface.form.encode(), *surface.content])
         self.known: dict[float, Fit] | None = None
@@ -58,14 +70,16 @@ class Fits:
         return [self.known[one] for one in wavenumbers]
 
     def keep(self) -> None:
-        """Keep what has been found for other processes, if it took long enough."""
+        """Keep what has been found for other processes, if it took long enough and leaves room for others."""
         if self.known and self.took > WORTH:
-            keep(self.name, _arrays(self.known))
+            arrays = _arrays(self.known)
+            if sum(one.nbytes for one in arrays.values()) <= LARGEST:
+                keep(self.name, arrays)
             self.took = 0.0
 
 
 @lru_cache(maxsize=8)
-def fits_of(surface: BodySurface) -> Fits:
+def fits_of(surface: BodySurface | Sheet) -> Fits:
     """Return the fits of a body by its surface; they are kept for the bodies asked for last."""
     return Fits(surface)
 

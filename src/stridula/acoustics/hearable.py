@@ -13,7 +13,7 @@ from .plane_sound import check_plane, plane_bodies
 def hearable(system: System) -> list[Any]:
     """Return the bodies of a system that `radiate` can hear.
 
-    In space those with a surface, in the plane tracks that are flat, and slim beams.
+    In space those with a surface, plates and beams among them, in the plane tracks that are flat, and slim beams.
     """
     return bodies_heard(system) if system.is_spatial else plane_bodies(system)
 

@@ -216,19 +216,22 @@ def _of_beams(
         first, last = moved.spans[system.body_name(body)]
         numbers = first + np.flatnonzero(moved.accelerations[first:last].any(axis=1))
         travel, reach = _travel(run, system, body)
-        beam = slim_beam(body, system.is_held(body), numbers - first, outlines[body].place + np.array([travel, 0.0]))
-        beam.check(seen)
+        x, y = outlines[body].place
+        # Along world x, across the plane and along world y.
+        along, across = (np.array([axis[0], 0.0, axis[1]]) for axis in body.axes)
+        frame, origin = np.array([along, [0.0, 1.0, 0.0], across]), np.array([x + travel, 0.0, y])
+        beam = slim_beam(body, system.is_held(body), numbers - first, frame, origin)
+        distances.append(beam.distances(seen))
         for places in images if numbers.size else []:
             responses = beam.responses(places, air, moved.interval, shift, bandwidth)
             pressure += convolved(responses, moved, numbers)
-        distances.append(beam.distances(seen))
         notes += _said(system, body, beam, travel, reach, air)
     sounding = resample(pressure, ratio)
     times = np.arange(sounding.shape[1]) * moved.interval / float(ratio)
     nearest = np.min(distances, axis=0)
     sounding[times < nearest[:, None] / air.speed] = 0.0
     modes = sum(last - first for first, last in (moved.spans[system.body_name(body)] for body in beams))
-    notes += lacks(system, beams, silent, moved)
+    notes += lacks(system, beams, silent, [moved])
     attributes = {"bandwidth": bandwidth, "modes": modes, "baffled": int(wall is not None), "motion": moved.words}
     return sounding, moved.start + times, {**attributes, "distance": nearest.tolist(), "notes": "; ".join(notes)}
 

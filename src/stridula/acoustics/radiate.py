@@ -16,7 +16,7 @@ from ..records.variables import described
 from ..system import System
 from .air import Air
 from .bridges import Bridge, bridged_sound
-from .free_bodies import check_in_open_air, free_sound
+from .free_bodies import free_sound
 from .plane_sound import plane_sound
 from .track_sound import track_sound
 
@@ -34,15 +34,18 @@ def radiate(
     """Return the sound pressure of a track, or of the bodies of a system, in time.
 
     The track is driven again by the normal forces of the record where they pressed, with all its bending modes, and
-    is heard through Rayleigh's integral with exact travel times (in a rigid baffle) or as a line of dipoles (a beam in
-    free air). Bodies in space are driven again by all forces of the record at their contacts and by the drives of the
-    system, and are heard in open air by equivalent sources within them. Bodies are at rest before the record, and the
+    is heard through Rayleigh's integral with exact travel times (in a rigid baffle), as a sheet of dipoles (a plate in
+    free air) or as a line of them (a beam in free air). Bodies in space are driven again by all forces of the record at
+    their contacts and by the drives of the system, and are heard in open air: discs by equivalent sources within them,
+    meshed bodies by the pressure on their surface, plates as sheets of dipoles, beams as lines of dipoles where they
+    are slim at all frequencies of their modes and else by their surface. Bodies are at rest before the record, and the
     air does not act back on them.
 
     Bodies whose motion the record has, see `ModalMotion`, move as that says and are not driven again.
 
     Of a system in the plane its tracks are heard so, and its beams, such as the slider, as lines of dipoles driven
     again by all forces at their contacts and by the drives; a baffle that tracks are flush with reflects their sound.
+    Of a system in space it does so if it is asked for: plates and beams of rectangular section are flush with it.
 
     Parameters
     ----------
@@ -51,19 +54,20 @@ def radiate(
     track : ModalBeam, ModalPlate, System or Bridge
         What is heard. A track need not be the body of the run, but must be as long as where it is pressed. Of a system,
         that of the run, the sum over its bodies is heard: in space over all that have a surface, in the plane over
-        tracks and beams. Of a bridge, the body that the recorded force on the support of a string drives.
+        tracks and slim beams. Of a bridge, the body that the recorded force on the support of a string drives.
     listener : tuple of float, or sequence of tuples, optional
         Where one listens, x, y, z [m]: x along the track from its left end, y across it in its surface, from the axis
         of a beam or from the first edge of a plate, z above it, on the slider's side. A pair of ears a metre above the
         middle of the track if left out. These are the axes of a track in space, too, and those of the first track of a
         system in the plane; without one they are world x, across the plane, and world y. Of a system in space they are
         those of the world; the ears are then a metre above the middle of what is heard, on the side of the first
-        contact's tip.
+        contact's tip. Plates and beams in space are where the bodies that they touch are, if these know their places,
+        else the track of the first contact begins at the origin.
     bodies : sequence of AxisymmetricBody, SolidBody, ModalBeam, ModalPlate or FiniteElementBeam, optional
         Which bodies of a system are heard; all that can be if left out.
     baffled : bool, optional
-        Whether the surface of a track is flush with an endless rigid wall, which it is if left out; else it is a slim
-        beam in free air. Bodies in space are in open air, and so are beams of a system in the plane without a track.
+        Whether flat surfaces are flush with an endless rigid wall: by default those of tracks are, but for bodies in
+        space, which are in open air, and for beams of a system in the plane without a track.
     air : Air, optional
         The air, `Air()` if left out.
     sample_rate : float, optional
@@ -77,15 +81,15 @@ def radiate(
         off, the air, the distances [m] to the nearest point of the track, and notes on what is missing. ``motion`` is
         "recorded", "driven again", or both. Of a system they have the names of the bodies heard and, as ``fit_error``,
         the largest relative error with which the sources of each meet the normal motion of a mode all over the surface,
-        at the mode's own frequency; notes say it where it is above 5 %.
+        at the mode's own frequency, nan for plates and lines of dipoles; notes say it where it is above 5 %.
 
     Raises
     ------
     ValueError
         If the record diverged, holds NaN or fewer than 2 samples, or presses beyond the track; if its track was changed
-        while it was played; if a listener is in the surface, behind the baffle, on the beam or in a body; if the sample
-        rate is more than the record supports, or too low; if a body has no surface, or the record is not one of the
-        system.
+        while it was played; if a listener is in the surface, behind the baffle, on the beam or in a body; if flat
+        bodies do not lie in one baffle, or others behind it; if the sample rate is more than the record supports, or
+        too low; if a body has no surface, or the record is not one of the system.
     """
     if baffled is not None:
         instance("baffled", baffled, bool)
@@ -109,8 +113,7 @@ def _of_a_system(
 ) -> Sound:
     if not system.is_spatial:
         return plane_sound(run, system, listener, bodies, baffled, air, sample_rate)
-    check_in_open_air(baffled)
-    return free_sound(run, system, listener, bodies, air, sample_rate)
+    return free_sound(run, system, listener, bodies, baffled, air, sample_rate)
 
 
 @_sound.register
