@@ -323,6 +323,22 @@ def test_a_plate_in_the_plane_has_no_need_of_a_baffle(plate):
     assert found.attrs["baffled"] == 0
 
 
+def test_a_rod_that_slides_on_a_plate_sounds_as_in_the_plane():
+    """From the middle of its way, by all forces at its tip and at its end."""
+    rod = st.FiniteElementBeam(STEEL, st.Circle(0.004), 0.05, 0.2, elements=3, damping=0.02, cutoff=10e3, name="rod")
+    flat = replace(PLATE, plane=None, line=None)
+    heard = []
+    for track, place in ((flat, (0.2, 0.025, 0.4)), (replace(flat, plane=np.eye(3)[:2]), (0.2, 0.4, 0.1))):
+        contact = st.PointContact(rod.tip, track, at=0.1, friction=st.Coulomb(0.3))
+        system = st.System(contact, [st.Force(rod.root, x=2.0, y=-5.0)])
+        run = st.simulate(system, 0.02, step=4e-6, sample_rate=2.5e4, probes=[])
+        heard.append(st.radiate(run, system, place, bodies=[rod], baffled=False))
+    assert error(heard[1].values, heard[0].values) < 1e-6
+    for one in heard:
+        assert "rod: it slides over 0.0" in one.attrs["notes"]
+        assert "rod: a line of dipoles, slim below" in one.attrs["notes"]
+
+
 def test_a_held_beam_moves_with_the_modes_of_its_drive():
     """Slim or not they are those with the root held along x."""
     for height, form in ((0.02, "OpenSurface"), (0.002, "Slim")):

@@ -12,6 +12,7 @@ from ..arrays import Array, in_space
 from ..bodies import Modes
 from ..checks import ArgumentError, listed
 from ..places import origins_in_space
+from ..records.checked import record
 from ..system import System
 from .air import Air
 from .convolution import Convolution
@@ -22,6 +23,7 @@ from .recorded_motion import recorded_motion
 from .redriven import Moved, redriven
 from .resampling import bandwidth_of, ratio_of, resample
 from .sounding import Sounding, sounding_of, wall_of
+from .travels import travel_note, travel_of
 
 
 def bodies_heard(system: System) -> list[Any]:
@@ -53,10 +55,13 @@ def free_sound(
     normal, tangent = map(in_space, system.contacts[0].frame[:2])
     # Bodies that touch nothing have the origin of the world.
     origins = dict.fromkeys(heard, np.zeros(3)) | origins_in_space(system)
-    sounding = [
-        sounding_of(system.body_name(body), body, system.is_held(body), origins[body], bool(baffled), air)
-        for body in heard
-    ]
+    run, sounding, slid = record("run", run), [], []
+    for body in heard:
+        name, (travel, reach) = system.body_name(body), travel_of(run, system, body)
+        sounding.append(
+            sounding_of(name, body, system.is_held(body), origins[body] + travel, baffled=bool(baffled), air=air)
+        )
+        slid += travel_note(name, reach)
     pressure, time, places, attributes, motions = bodies_sound(
         lambda: _motions(run, system, heard),
         sounding,
@@ -65,7 +70,7 @@ def free_sound(
         air,
         sample_rate,
     )
-    notes = [attributes["notes"], *lacks(system, heard, silent, motions.values())]
+    notes = [attributes["notes"], *slid, *lacks(system, heard, silent, motions.values())]
     return pressure, time, places, attributes | {"notes": "; ".join(filter(None, notes))}
 
 
@@ -200,6 +205,9 @@ def lacks(system: System, heard: Sequence[Any], silent: Sequence[str], motions: 
         notes.append(f"without a surface and not heard: {listed(silent)}")
     moved = next((one for one in motions if not one.is_recorded), None)
     notes += ends_of({system.body_name(body): body.modes(system.is_held(body)) for body in heard}, moved)
+    imposed = system.imposed_velocity
+    if imposed is not None and imposed.point.body in heard and imposed.history.kind != "constant":
+        notes.append(f"{system.body_name(imposed.point.body)}: changes of its imposed velocity are not included")
     if moved is None:
         return notes
     if moved.start > 0.5 * moved.interval:

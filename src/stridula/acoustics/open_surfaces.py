@@ -11,7 +11,6 @@ import numpy as np
 
 from ..arrays import Array
 from ..bodies import Modes
-from ..bodies.body_surfaces import HIGHEST as FINE_ENOUGH
 from ..bodies.body_surfaces import BodySurface
 from .air import Air
 from .delays import Response
@@ -130,6 +129,8 @@ def by_fits(
     air, interval, shift, bandwidth
         As in `free_responses`.
     """
+    if not numbers.size:
+        return Heard(numbers, [])
     # A body that does not vibrate moves as a whole up to any frequency.
     highest = float(frequency.max(initial=0.0)) or np.inf
     sent = free_responses(surface, places, distances, air, interval, shift, bandwidth, highest)
@@ -137,11 +138,11 @@ def by_fits(
     return Heard(numbers, sent.responses, worst, notes)
 
 
-def open_surface(name: str, surface: BodySurface, modes: Modes, origin: Array) -> OpenSurface:
-    """Return a body by its closed surface, with the modes that move it outwards and that it is fine enough for."""
+def open_surface(name: str, surface: BodySurface, modes: Modes, origin: Array, highest: float = np.inf) -> OpenSurface:
+    """Return a body by its closed surface, with the modes that move it outwards, up to a frequency [Hz]."""
     frequency = modes.frequency[~modes.massless]
     moved = np.abs(surface.shapes).max(axis=0)
-    sounds = (moved > STILL * moved.max(initial=0.0)) & (frequency <= FINE_ENOUGH)
+    sounds = (moved > STILL * moved.max(initial=0.0)) & (frequency <= highest)
     numbers = np.flatnonzero(sounds)
     return OpenSurface(
         name,

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import Array, in_space
 from ..bodies import Modes
+from ..bodies.body_surfaces import HIGHEST as FINE_ENOUGH
 from ..checks import ArgumentError, listed
 from .air import Air
 from .listeners import check_off_panel
@@ -193,10 +194,14 @@ def sounding_of(name: str, body: Any, held: bool, origin: Array, baffled: bool, 
         away = np.array([*way.panel.place(np.zeros(())), 0.0])
         return Flat(name, way, body.frame, origin - away @ body.frame)
     modes = body.modes(held)
-    line = line_in_space(body, held, origin) if hasattr(body, "section") else None
-    if line is not None and is_slim(line, modes, air):
+    if not hasattr(body, "section"):
+        return open_surface(name, body.surface(), modes, origin)
+    line = line_in_space(body, held, origin)
+    if is_slim(line, modes, air):
         return Slim(name, line)
-    return open_surface(name, body.surface(held_x=True) if held else body.surface(), modes, origin)
+    surface = body.surface(held_x=True) if held else body.surface()
+    # Of a beam of finite elements all modes are known, more than a surface can tell apart.
+    return open_surface(name, surface, modes, origin, FINE_ENOUGH)
 
 
 def line_in_space(beam: Any, held: bool, origin: Array) -> SlimBeam:
