@@ -81,6 +81,18 @@ class PointSurface:
         """Return the surface with some of its modes, by their numbers."""
         return replace(self, shapes=self.shapes[:, modes])
 
+    def placed(self, frame: Array, origin: Array) -> PointSurface:
+        """Return the surface with its axes turned to the rows of a frame, and its origin moved to a place [m]."""
+        corners = self.corners.reshape(-1, 3) @ frame + origin
+        return PointSurface(
+            self.points @ frame + origin,
+            self.normals @ frame,
+            self.areas,
+            self.shapes,
+            corners.reshape(self.corners.shape),
+            self.owners,
+        )
+
     @property
     def content(self) -> tuple[bytes, ...]:
         """Content of all arrays, for comparison."""
